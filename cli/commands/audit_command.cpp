@@ -43,9 +43,10 @@ struct AuditArguments {
 
 // The message for a tolerance and an input in which nothing moves: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
-    "nothing moves stored normals, so that there is nothing to judge, and no limit is of use";
+    "nothing could be judged, since no target and no animation moves stored normals; perhaps the export lost them";
 
-constexpr const char* kDividesSequences = "it divides the segments of a sequence, and a glTF file is none";
+constexpr const char* kDividesSequences =
+    "only a sequence of keyframes can be divided, not a glTF file; leave this option out";
 
 // Quotes a word so that a shell reads it back.
 std::string shell_word(const std::string& word) {
@@ -76,31 +77,35 @@ std::string words_of(const InputOptions& input) {
 }
 
 const std::vector<RefusedOption> kRefusedByAudit = {
-    {"--world", "audit judges each mesh in its own space, since nodes turn the shown and the right normal alike"}};
+    {"--world", "errors do not depend on where nodes put a mesh, so audit judges each mesh in its own space"}};
 
 std::vector<std::vector<Option>> tables(AuditArguments& options) {
   return {input_table(options.input, kRefusedByAudit),
-          {{"--rule NAME", &options.rule,
-            "what a viewer makes of stored normals between keyframes: gltf (default for\n"
-            "glTF), lerp, nlerp (default for the rest), slerp, step, flat"}},
-          options.judge.table("judge what these viewers show of a glTF file"),
+          {{"--rule NAME",
+            &options.rule,
+            "how normals between keyframes are interpolated\nOne of gltf (default for glTF), lerp, nlerp (default for "
+            "all other inputs), slerp, step and flat",
+            {.rare = true}}},
+          options.judge.table("judge what these viewers show"),
           {{"--tolerance DEG", &options.limits.degrees,
-            "exit with code 4 if the worst error is larger, in any viewer of --for"},
+            "exit with code 4 if an error is larger than DEG degrees\nErrors count in every viewer of --for"},
            {"--tears N", &options.limits.torn_edges,
-            "exit with code 4 if more than N edges of a glTF file are torn at any moment: errors jump\n"
-            "by more than 10 degrees over them, and a fold is seen that is not there"},
+            "exit with code 4 if more than N edges are torn at a moment\nAn edge of a glTF file is torn if errors jump "
+            "by more than 10 degrees across it, so that a fold shows that is not there"},
            {"--poses FILE|random", &options.poses,
-            "judge poses of a glTF file, too: those of FILE, as JSON ([{\"jawOpen\": 0.7}, ...]), or\n"
-            "random ones that a program may set"},
-           {"--weights LO:HI", &options.weights,
-            "judge each target of a glTF file alone from weight LO to HI (default 0:1)"},
+            "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
+            "judges random poses"},
+           {"--weights LO:HI",
+            &options.weights,
+            "judge each target alone from weight LO to HI\nThe default is 0:1",
+            {.rare = true}},
            {"--errors FILE", &options.errors,
-            "write the error of every vertex at every sample: .npz for programs, or .ply\n"
-            "with the worst of each vertex as its quality, for MeshLab and Blender"},
-           {"--no-weld", &options.no_weld, "keep vertices apart that are at one point throughout"}},
-          options.run.options("judge the Ith of N equal shares of the segments of a sequence alone: OUT is a part\n"
-                              "for chronormal merge"),
-          {{"--json", &options.json, "print one JSON object, for programs"}},
+            "write the error of every vertex at every sample\nEither .npz for programs, or .ply with the largest error "
+            "of each vertex as its quality, for MeshLab and Blender"},
+           {"--no-weld", &options.no_weld, "do not merge vertices that are always at one point", {.rare = true}}},
+          options.run.options("judge only share I of N equal shares of a sequence\nOUT is a shard, and chronormal "
+                              "merge puts all shards together"),
+          {{"--json", &options.json, "print JSON, for programs"}},
           options.common.table(false)};
 }
 
@@ -134,13 +139,16 @@ Result<std::optional<Audited>> audit_input(const AuditArguments& options, const 
   const GltfDocument* const document = input.document();
   if (const Status known = check_viewers(how.viewers, input); !known) return known.error();
   if (document == nullptr && options.poses)
-    return misuse("--poses", "it gives the targets of a glTF file weights; this input is none");
+    return misuse("--poses", "poses can only be judged in glTF files, and this input is not one; leave --poses out");
   if (document == nullptr && options.weights)
-    return misuse("--weights", "it is for the targets of a glTF file; this input is none");
+    return misuse("--weights",
+                  "weights can only be chosen for glTF files, and this input is not one; leave --weights out");
   if (document == nullptr && options.limits.torn_edges)
-    return misuse("--tears", "torn edges are counted in glTF files; this input is none");
+    return misuse("--tears",
+                  "torn edges can only be counted in glTF files, and this input is not one; leave --tears out");
   if (document != nullptr && options.run.resume)
-    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+    return misuse("--resume",
+                  "--resume is only for sequences of keyframes, and the input is not one; leave --resume out");
   if (const Status status = document != nullptr ? refuse_shares(options.run, kDividesSequences) : Success{}; !status)
     return status.error();
   std::optional<Audit> found;
@@ -170,7 +178,7 @@ Result<std::array<double, 2>> read_weights(const std::string& text) {
   const std::string_view words = text;
   if (colon == std::string::npos || !is_number(words.substr(0, colon), range[0]) ||
       !is_number(words.substr(colon + 1), range[1]) || !(range[0] < range[1]) || !std::isfinite(range[1] - range[0]))
-    return misuse("--weights", formatted("'{}': it must be two weights, the smaller one first, such as -1:1", text));
+    return misuse("--weights", formatted("'{}' must be two weights, the smaller one first, such as -1:1", text));
   return range;
 }
 
@@ -183,7 +191,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   }
   if (const Status named = options.judge.read("audit", how.weighting, how.viewers); !named) return named.error();
   if (!how.viewers.empty() && how.rule && *how.rule != AuditRule::kGltf)
-    return misuse("--for", "viewers go with the rule gltf, which they stand for");
+    return misuse("--for", "viewers can only be chosen with the rule gltf; leave --rule out");
   if (options.weights) {
     const Result<std::array<double, 2>> weights = read_weights(*options.weights);
     if (!weights) return weights.error();
@@ -196,7 +204,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
     how.poses = std::move(poses).value();
   }
   if (options.limits.degrees && !(*options.limits.degrees >= 0 && std::isfinite(*options.limits.degrees)))
-    return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
+    return misuse("--tolerance", "the tolerance must be an angle in degrees, at least 0");
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.errors) {
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
@@ -207,10 +215,14 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   std::vector<NamedFile> inputs = input_files(options.input);
   if (options.poses && *options.poses != "random") inputs.push_back({"--poses", *options.poses});
   if (const Status distinct = check_distinct(outputs, inputs); !distinct) return distinct.error();
-  if (options.run.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (options.run.shard && options.errors)
+    return misuse("--errors", "a run with --shard cannot write single errors; leave --errors or --shard out");
   if (options.run.shard && options.json)
-    return misuse("--json", "OUT of a shard is a part, of which chronormal merge makes the JSON");
-  if (options.run.resume && options.errors) return misuse("--errors", "a run with --resume keeps sums alone");
+    return misuse(
+        "--json",
+        "a shard cannot be written as JSON; leave --json out, and let chronormal merge make the JSON of all shards");
+  if (options.run.resume && options.errors)
+    return misuse("--errors", "a run with --resume cannot write single errors; leave --errors or --resume out");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
@@ -221,21 +233,20 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 
 // Explains why small normals do not pass. `place` ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
-  return formatted("where faces all but vanish, the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}",
+  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}, where faces almost vanish{}",
                    error.faint_worst, *audited.limits.degrees, place);
 }
 
 // Explains why torn edges do not pass.
 std::string why_torn(const Audited& audited, const MotionError& error) {
-  return formatted("at one moment {}, beyond the limit of {}",
+  return formatted("{} at one moment, beyond the limit of {}",
                    counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
 // Explains why normals that cancel do not pass.
 std::string why_cancelled(const MotionError& error) {
-  return formatted(
-      "{} no right normal although the faces around have an area, and no tolerance allows what nobody can judge",
-      counted(error.cancelled, "pair has", "pairs have"));
+  return formatted("{} no true normal, since the normals of the faces around cancel, and cannot be judged",
+                   counted(error.cancelled, "sample has", "samples have"));
 }
 
 // Explains why errors exceed the tolerance, or else which other limit is exceeded.
@@ -245,7 +256,8 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
   const auto at = [](const std::string& label) { return label.empty() ? "" : ": " + label; };
   const std::optional<double> tolerance = audited.limits.degrees;
   if (tolerance && error.unlit > 0)
-    return counted(error.unlit, "pair", "pairs") + " cannot be lit, which no tolerance allows" + at(unlit_label);
+    return counted(error.unlit, "normal", "normals") +
+           " of the file would be zero, infinite or NaN in a viewer, which no tolerance allows" + at(unlit_label);
   if (tolerance && error.worst > *tolerance)
     return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}", error.worst, *tolerance,
                      at(worst_label));
@@ -257,8 +269,8 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
 // Explains why a viewer does not pass.
 std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
-    return formatted("{}: a mesh has {} more than it takes: {}", found.viewer.title,
-                     counted(found.beyond, "target", "targets"), found.viewer.beyond);
+    return formatted("{}: a mesh has {} too many; {}", found.viewer.title, counted(found.beyond, "target", "targets"),
+                     found.viewer.beyond);
   return formatted("{}: {}", found.viewer.title,
                    why_beyond(audited, found.error, worst_label(audited, found), "", "", ""));
 }
@@ -266,7 +278,7 @@ std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
 std::string why_beyond(const Audited& audited) {
   const MotionError& error = audited.audit.error;
   if (!audited.audit.is_judged() && error.cancelled == 0 && error.unlit == 0)
-    return "no pair could be judged, since no face that moves has an area: nothing is known to be right";
+    return "nothing could be judged, since no face that moves has an area";
   return why_beyond(audited, error, worst_label(audited), unlit_label(audited), faint_label(audited),
                     cancelled_label(audited));
 }
@@ -318,10 +330,12 @@ int worse_exit(int a, int b) {
 // Judges files one by one. A file that cannot be read does not stop the others from being judged.
 Result<int> run_several(const AuditArguments& options, const AuditOptions& how, const std::vector<std::string>& names,
                         Progress& progress) {
-  if (options.run.resume) return misuse("--resume", "it goes on with one sequence, and these are several glTF files");
+  if (options.run.resume)
+    return misuse("--resume",
+                  "--resume is only for one sequence of keyframes, not for several glTF files; leave --resume out");
   if (!options.input.animation.empty())
-    return misuse("--animation", "it chooses among the animations of one file: name one file");
-  if (options.errors) return misuse("--errors", "it holds the errors of one input: name one file");
+    return misuse("--animation", "--animation is only for a single glTF file; name one file");
+  if (options.errors) return misuse("--errors", "--errors is only for a single input; name one file");
   std::vector<AuditedFile> files;
   int exit = kExitDone;
   for (const std::string& name : names) {
@@ -374,24 +388,23 @@ Result<int> run(const AuditArguments& options) {
 
 Command audit_command() {
   auto options = std::make_shared<AuditArguments>();
-  return {
-      "audit",
-      "Measure how far the normals that a viewer shows are from the right ones",
-      tables(*options),
-      "A viewer is a program that shows meshes, such as three.js or Godot. "
-      "Without --animation, a glTF file is judged by each of its targets alone, from weight 0 to 1, and by all of\n"
-      "its animations. The base normals as they were authored are kept: only what motion does to them is an error.\n"
-      "Several glTF files, or a folder of them, are judged one by one: a row each, and the worst exit code.\n"
-      "\nExamples:\n"
-      "  chronormal audit face.glb\n"
-      "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
-      "  chronormal audit models/ intro.glb --tolerance 1\n"
-      "  chronormal audit face.glb --for three,godot,gltfpack\n"
-      "  chronormal audit walk/ --rule slerp --json\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
-      [options] { return run(*options); },
-      kRefusedByAudit,
-      true};
+  return {"audit",
+          "Measure the errors of the normals that a viewer shows",
+          tables(*options),
+          "A viewer is a program that shows meshes, such as three.js or Godot. Without --animation, each target of "
+          "a\nglTF file is judged alone, from weight 0 to 1, and then all animations. Your base normals count as true, "
+          "so only\nwhat motion does to them is an error. Several glTF files, or a folder of them, are judged one by "
+          "one, with a row\nfor each and the worst exit code.\n"
+          "\nExamples:\n"
+          "  chronormal audit face.glb\n"
+          "  chronormal audit face.glb --tolerance 1 --quiet > /dev/null\n"
+          "  chronormal audit models/ intro.glb --tolerance 1\n"
+          "  chronormal audit face.glb --for three,godot,gltfpack\n"
+          "  chronormal audit walk/ --rule slerp --json\n"
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance was exceeded",
+          [options] { return run(*options); },
+          kRefusedByAudit,
+          true};
 }
 
 }  // namespace chronormal::cli

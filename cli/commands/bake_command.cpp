@@ -58,7 +58,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
     if (!how.encoding)
-      return misuse("--encode", "it must be harmless, exact, endpoint, smallest, or of sequences keys");
+      return misuse("--encode", "the encoding must be smallest, harmless, exact or endpoint, or for a sequence keys");
   }
   if (!options.viewers.empty()) {
     Result<std::vector<Viewer>> viewers = find_viewers(options.viewers);
@@ -72,9 +72,9 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     how.weighting = weighting.value();
   }
   if (!(options.crease_angle >= 0 && options.crease_angle <= 180))
-    return misuse("--crease", "it must be an angle from 0 to 180 degrees");
+    return misuse("--crease", "the angle must be from 0 to 180 degrees");
   if (options.tolerance && !(*options.tolerance >= 0 && *options.tolerance <= 90))
-    return misuse("--tolerance", "it must be an angle from 0 to 90 degrees");
+    return misuse("--tolerance", "the tolerance must be an angle from 0 to 90 degrees");
   how.crease_angle = options.crease_angle;
   how.recompute_base = options.recompute_base;
   how.smooth = options.smooth;
@@ -85,16 +85,17 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   how.animations_only = options.animations_only;
   how.plan = options.plan;
   if (how.encoding.value_or(BakeEncoding::kSmallest) != BakeEncoding::kSmallest) {
-    constexpr const char* kNeedsSmallest = "it is for --encode smallest, which is the default";
+    constexpr const char* kNeedsSmallest = "this option can only be used with --encode smallest; leave --encode out";
     if (options.most_targets) return misuse("--max-targets", kNeedsSmallest);
     if (options.animations_only) return misuse("--animations-only", kNeedsSmallest);
     if (options.plan) return misuse("--plan", kNeedsSmallest);
     if (options.poses) return misuse("--poses", kNeedsSmallest);
   }
   if (options.json && !options.plan && is_stream(options.common.output))
-    return misuse("--json", "it goes to the standard output: write the result to a file");
+    return misuse("--json", "JSON and the result cannot both go to the standard output; write the result to a file");
   if (options.drivers) {
-    if (options.drivers->empty() || *options.drivers == "-") return misuse("--drivers", "it must name a file");
+    if (options.drivers->empty() || *options.drivers == "-")
+      return misuse("--drivers", "the name of the file is missing");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
@@ -147,7 +148,10 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   if (options.no_audit || is_stream(options.common.output)) return result;
   // Tells a user who interrupts the audit that the file is complete.
   struct Stands {
-    Stands() { say_at_end("chronormal: the output stands; only its audit was ended (--no-audit leaves it out)\n"); }
+    Stands() {
+      say_at_end(
+          "chronormal: the output is complete; only the comparison of errors was stopped (--no-audit leaves it out)\n");
+    }
     Stands(const Stands&) = delete;
     Stands& operator=(const Stands&) = delete;
     ~Stands() { say_at_end(nullptr); }
@@ -188,7 +192,9 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
 bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
-  say("bake", formatted("{} of the result cannot be lit, which no tolerance allows", counted(unlit, "pair", "pairs")),
+  say("bake",
+      formatted("{} of the result would be zero, infinite or NaN in a viewer, which no tolerance allows",
+                counted(unlit, "normal", "normals")),
       Tone::kError);
   return false;
 }
@@ -197,9 +203,9 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   const std::string& output = options.common.output;
   const GltfDocument& document = *input.document();
   if (options.input.frames_per_second != 1)
-    return misuse("--fps", "the animations of a glTF file have times of their own");
+    return misuse("--fps", "the animations of a glTF file have their own times; leave --fps out");
   if (options.crease_angle != 180 && !options.smooth)
-    return misuse("--crease", "it chooses the hard edges of primitives without normals: add --smooth");
+    return misuse("--crease", "--crease is only for primitives without normals, so it needs --smooth; add --smooth");
   if (how.encoding.value_or(BakeEncoding::kSmallest) == BakeEncoding::kSmallest)
     how.most_delta_bytes = std::exchange(how.most_bytes, std::nullopt);
   how.progress = progress.callback("baking");
@@ -255,41 +261,49 @@ Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
 
 Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& input, Progress& progress) {
   const std::string& output = options.common.output;
-  constexpr const char* kNotOfSequences = "it is for glTF files, which have targets of their own";
+  constexpr const char* kNotOfSequences =
+      "this option is only for glTF files, and the input is a sequence; leave the option out";
   if (options.most_targets) return misuse("--max-targets", kNotOfSequences);
   if (options.animations_only) return misuse("--animations-only", kNotOfSequences);
   if (options.plan) return misuse("--plan", kNotOfSequences);
-  if (options.drivers) return misuse("--drivers", "the animation of a sequence drives its extra targets");
+  if (options.drivers)
+    return misuse("--drivers",
+                  "this option is not for sequences, whose animation drives all targets; leave --drivers out");
   const bool adds_up = std::all_of(how.viewers.begin(), how.viewers.end(),
                                    [](const Viewer& viewer) { return viewer.normals == NormalRule::kSum; });
   if (!how.encoding && !options.viewers.empty() && options.viewers != "all" && !adds_up)
     how.encoding = BakeEncoding::kHarmless;
   if (how.encoding == BakeEncoding::kSmallest)
-    return misuse("--encode", "a sequence is written harmless, exact, endpoint or keys");
+    return misuse("--encode", "the encoding of a sequence must be harmless, exact, endpoint or keys");
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
-    return misuse("--tolerance", "of --encode keys it must be 0.001 degrees or more");
+    return misuse("--tolerance", "the tolerance must be at least 0.001 degrees with --encode keys");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
     // The tolerance is about the curves, and their straight pieces use a part of it.
     const double asked = how.tolerance.value_or(kHarmlessTolerance),
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
     if (*how.tolerance < kLeastKeyTolerance)
-      return misuse("--path", formatted("pieces within {:g} degrees of the curves leave keys nothing of the "
-                                        "tolerance of {:g}: give a larger --tolerance, or a smaller angle",
+      return misuse("--path", formatted("the curves are cut with an error of {:g} degrees, which uses up the tolerance "
+                                        "of {:g}; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
                                         pieces, asked));
   }
-  if (options.smooth) return misuse("--smooth", "it is for primitives of glTF files that have no normals");
-  if (options.recompute_base) return misuse("--recompute-base", "it is for glTF files that have normals");
+  if (options.smooth)
+    return misuse("--smooth", "--smooth is only for glTF files, and the input is a sequence; leave --smooth out");
+  if (options.recompute_base)
+    return misuse("--recompute-base",
+                  "--recompute-base is only for glTF files, and the input is a sequence; leave --recompute-base out");
   const std::string extension = std::filesystem::path(output).extension().string();
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
-    return misuse(output, "a sequence is written as .glb");
+    return misuse(output, "a sequence can only be written as .glb; choose such a name");
   MotionStream& stream = *input.stream().value();
   const Motion& motion = stream.motion();
   if (motion.kind == MotionKind::kTargets)
     return invalid_input(input.name(),
-                         "these are targets and no sequence: convert makes a .glb of them, and bake takes that");
+                         "the input is targets, not a sequence; write a .glb with convert first, and bake that file");
   if (motion.segments.size() + 1 != motion.keyframes.size())
-    return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
+    return invalid_input(
+        input.name(),
+        "the weights of this animation jump, so it cannot be baked as a sequence; bake the glTF file itself");
   // By default hard edges follow the stored normals of the file.
   const StoredNormals& stored = *input.normals().value();
   if (!stored.of_keyframes.empty()) {
@@ -343,7 +357,7 @@ Status take_output(BakeArguments& options) {
   if (options.plan && files.size() < 2) return Success{};
   const std::string extension = files.size() < 2 ? "" : std::filesystem::path(files.back()).extension().string();
   if (extension != ".glb" && extension != ".gltf" && extension != ".vrm" && extension != ".GLB")
-    return misuse("-o,--output", "say where to write: bake IN OUT, or -o OUT");
+    return misuse("-o,--output", "the output is missing; give it last (bake IN OUT), or with -o OUT");
   options.common.output = files.back();
   files.pop_back();
   return Success{};
@@ -370,8 +384,7 @@ Result<int> run(BakeArguments options) {
   // This error is reported before anything is read; for other names it depends on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
-    return misuse(options.common.output,
-                  "bake writes glTF: the name must end in .glb, or .gltf or .vrm for such a file");
+    return misuse(options.common.output, "bake can only write glTF; choose a name that ends in .glb, .gltf or .vrm");
   if (writes) {
     if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   }
@@ -390,7 +403,7 @@ Result<int> run(BakeArguments options) {
 
 // Returns the table that all commands share, but OUT is optional here.
 std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
-  table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT, where there are several)"};
+  table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT of several)"};
   return table;
 }
 
@@ -399,72 +412,82 @@ std::vector<Option> with_output(std::vector<Option> table, std::optional<std::st
 Command bake_command() {
   auto options = std::make_shared<BakeArguments>();
   const std::vector<RefusedOption> refused = {
-      {"--base",
-       "bake takes keyframes or a glTF file; convert makes a .glb of a base and its targets, and bake takes that"},
-      {"--animation", "bake writes normals for all animations of a glTF file"},
-      {"--world", "bake writes the normals of each mesh in the space of that mesh"}};
+      {"--base", "write a .glb of the base and its targets with convert first, and bake that file"},
+      {"--animation", "bake corrects all animations of a glTF file at once"},
+      {"--world", "normals are stored in the space of each mesh"}};
   return {
       "bake",
-      "Write right normals into a glTF file, or make a glTF file of a sequence",
+      "Correct the normals of a glTF file, or make a glTF file from a sequence",
       {input_table(options->input, refused),
        {{"--for VIEWER,...", &options->viewers,
-         "the viewers that the result is made for: " + viewer_names() +
-             ",\nor all that are no compressors (default: those that add up deltas, three,\n"
-             "babylon, playcanvas and bevy, and no worse in the others)"},
+         "the viewers that the result is made for, such as three\nViewers and compressors are " + viewer_names() +
+             "; all names all viewers. The default is three, babylon, playcanvas and bevy, and no worse in all others"},
         {"--encode HOW", &options->encode,
-         "smallest (default): the best candidate as a whole, of what the file has, new deltas\n"
-         "of its targets, and extra targets that weights or animations drive: at most 2.5\n"
-         "times as large a file, or with --tolerance the fewest bytes within that; harmless:\n"
-         "unit normals that every viewer shows alike, after any compressor; exact: extra\n"
-         "targets for all quadratic terms, right where a viewer adds up targets as stored; endpoint: the best single "
-         "delta per target, by least squares\n"
-         "where several are active at once; keys: of sequences, the fewest keys between which\n"
-         "straight lines are within the tolerance at every instant"},
-        {"--weighting NAME", &options->weighting,
-         "how faces count: area (exact), angle, uniform, area-angle, max, inverse-edges,\n"
-         "inverse-roots (default: as in the base normals of each mesh, else area)"},
-        {"--crease DEG", &options->crease_angle,
-         "of sequences, and with --smooth: edges between faces that differ by\n"
-         "more than this are hard (default 180: none)"},
-        {"--recompute-base", &options->recompute_base, "replace the base normals by those of the geometry"},
-        {"--smooth", &options->smooth, "give normals to primitives that have none, which are flat"},
+         "how the new normals are stored (default: smallest)\nsmallest: the best result for the size, at most 2.5 "
+         "times as large a file, or with --tolerance the fewest bytes that reach it. harmless: unit normals that "
+         "look the same in every viewer and after any compression. exact: correction targets that make normals "
+         "exact in viewers that add up targets as glTF says. endpoint: the best single delta for each target, "
+         "without correction targets. keys, only for sequences: the fewest keys that stay within the tolerance at "
+         "every instant"},
+        {"--weighting NAME",
+         &options->weighting,
+         "how much each face counts in a vertex normal\nOne of area, angle, uniform, area-angle, max, "
+         "inverse-edges and inverse-roots, of which only area is exact. The default is what the base normals of "
+         "each mesh follow, else area",
+         {.rare = true}},
+        {"--crease DEG",
+         &options->crease_angle,
+         "make edges hard that are sharper than DEG degrees\nFor sequences, and with --smooth. The default is 180, "
+         "for no hard edges",
+         {.rare = true}},
+        {"--recompute-base",
+         &options->recompute_base,
+         "replace the base normals, too, from the geometry",
+         {.rare = true}},
+        {"--smooth", &options->smooth, "give smooth normals to primitives that have none"},
         {"--max-bytes N",
          &options->most_bytes,
-         "for each mesh, keep to so many bytes of deltas; of sequences, and with another\n"
-         "--encode than smallest: fail where more bytes of arrays would be added",
+         "spend at most N bytes on the normals of each mesh\nFor a sequence, and with another --encode than "
+         "smallest, the limit is on all new arrays, and the command fails if they are larger",
          {.check = check_whole(0)}},
         {"--max-targets N",
          &options->most_targets,
-         "of smallest: how many targets a mesh may have (default: what the viewers bear)",
+         "write at most N morph targets for each mesh\nCorrection targets count, too. The default is what the "
+         "viewers can show. Only with --encode smallest",
          {.check = check_whole(0)}},
         {"--animations-only", &options->animations_only,
-         "of smallest: nothing but the animations will ever be played, so that deltas may be\n"
-         "fitted to these: a target that is set by itself shows anything"},
+         "make only the animations right, not single sliders\nNormals are fitted to the animations of the file. "
+         "Moving a slider by hand may then look wrong. Only with --encode smallest"},
         {"--poses FILE|random", &options->poses,
-         "of smallest: a program poses the meshes that no animation drives, and drives their\n"
-         "extra targets as the file says; FILE has the poses that they are made for, as JSON:\n"
-         "[{\"smile\": 1, \"jaw\": 0.5}, ...] (default: such meshes get no extra targets)"},
-        {"--plan", &options->plan, "of smallest: print what each candidate would come to, and write nothing"},
-        {"--dense-zeros", &options->dense_zeros, "write zeros as bytes: for readers that need them (Assimp)"},
+         "make poses right that a program sets\nFILE has poses as JSON, such as [{\"smile\": 1, \"jaw\": 0.5}, "
+         "...]; random uses random poses. Meshes that no animation drives then get correction targets, which the "
+         "program has to drive as the file says. Only with --encode smallest"},
+        {"--plan", &options->plan,
+         "print what each candidate would give, and write nothing\nOnly with --encode smallest"},
+        {"--dense-zeros",
+         &options->dense_zeros,
+         "write zeros as bytes, for readers that need them (Assimp)",
+         {.rare = true}},
         {"--tolerance DEG", &options->tolerance,
-         "how far off normals may be at worst along the animations; with harmless and exact:\n"
-         "how far extra targets that are left out may turn one (default 0.5; of exact 0.001)"},
-        {"--drivers FILE", &options->drivers,
-         "write what drives extra targets, which stands in the result, to a JSON file too"},
-        {"--no-weld", &options->no_weld, "keep vertices apart that are at one point throughout"},
-        {"--no-audit", &options->no_audit, "do not compare the errors before and after"},
-        {"--json", &options->json, "one JSON object"}},
+         "the largest error allowed along the animations\nWith harmless and exact it is how far correction targets "
+         "that are left out may turn a normal. The default is 0.5, and 0.001 with exact"},
+        {"--drivers FILE",
+         &options->drivers,
+         "also write how to drive correction targets, as JSON\nThe extras of the result say the same",
+         {.rare = true}},
+        {"--no-weld", &options->no_weld, "do not merge vertices that are always at one point", {.rare = true}},
+        {"--no-audit", &options->no_audit, "do not compare the errors before and after", {.rare = true}},
+        {"--json", &options->json, "print JSON, for programs"}},
        with_output(options->common.table(true), options->output)},
-      "The base normals stay as they were authored, and so does every byte that has nothing to do with normals of\n"
-      "targets. OUT may be INPUT, with --force.\n"
+      "Your base normals stay as they are, and so do all bytes that have nothing to do with the normals of "
+      "targets.\nOUT may be INPUT with --force.\n"
       "\nExamples:\n"
       "  chronormal bake face.glb face.right.glb\n"
       "  chronormal bake avatar.vrm -o avatar.right.vrm\n"
       "  chronormal bake face.glb -o face.glb --force --encode endpoint\n"
       "  chronormal bake 'frames/*.obj' --fps 24 -o dance.glb\n"
-      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but no candidate is within the "
-      "--tolerance,\n"
-      "--max-targets or --max-bytes that were asked for",
+      "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 written, but beyond --tolerance, --max-targets\nor "
+      "--max-bytes",
       [options] { return run(*options); },
       refused};
 }

@@ -8,12 +8,16 @@ namespace {
 // Checks the options as far as possible without the input.
 Status check(const InputOptions& input, bool elements_given, const BlendArguments& arguments) {
   if (*arguments.rows < 1 || *arguments.rows > kMostBlendRows)
-    return misuse("--blend", "it must be a whole number from 1 to 10,000: how many weight vectors");
-  if (arguments.active == std::size_t{0}) return misuse("--active", "it must be a whole number of 1 or more");
+    return misuse("--blend", "the number of poses must be a whole number from 1 to 10,000");
+  if (arguments.active == std::size_t{0})
+    return misuse("--active", "the number of targets must be a whole number of at least 1");
   if (!input.animation.empty() && arguments.active)
-    return misuse("--active", "an animation says itself which targets are active");
+    return misuse("--active",
+                  "--active cannot be used with --animation, which decides itself which targets are active; leave one "
+                  "of the two out");
   if (!input.animation.empty() && elements_given)
-    return misuse("--animation", "with --blend it goes with the normals that the file stores: leave out --elements");
+    return misuse("--animation",
+                  "--animation with --blend can only compare the stored normals of the file; leave --elements out");
   return Success{};
 }
 
@@ -27,13 +31,16 @@ Error blamed(Error error, const std::string& option) {
 
 std::vector<Option> BlendArguments::table() {
   return {{"--blend N", &rows,
-           "blend shapes: compare deltas of normals, which viewers add up, with exact normals at\n"
-           "N random sets of weights, or at N moments of an --animation"},
+           "compare deltas of blend shapes at N random poses\nDeltas of normals, which viewers add up, are compared "
+           "with exact normals. With --animation, the poses are N moments of it"},
           {"--active N",
            &active,
-           "how many targets are active at once (default 1, 2, 4, 8, 16, all)",
-           {.needs = "--blend"}},
-          {"--seed N", &seed, "the seed of the random weights (default 1)", {.needs = "--blend"}}};
+           "how many targets are active at once, with --blend\nThe default is 1, 2, 4, 8, 16 and all",
+           {.needs = "--blend", .rare = true}},
+          {"--seed N",
+           &seed,
+           "the seed of the random poses of --blend\nThe default is 1",
+           {.needs = "--blend", .rare = true}}};
 }
 
 Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, const ElementArguments& elements,
@@ -52,9 +59,12 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   if (!opened) return opened.error();
   if (opened.value().document() != nullptr && !elements_given) {
     if (input.world)
-      return misuse("--world", "the normals that a file stores are in the space of its meshes: say which --elements");
+      return misuse(
+          "--world",
+          "stored normals cannot be compared where nodes put a mesh; leave --world out, or choose --elements");
     if (elements.crease_angle != 180 || elements.no_weld)
-      return misuse("--elements", "the file says which normals there are, unless this does");
+      return misuse("--elements",
+                    "--crease and --no-weld do not apply to the stored normals of the file; choose --elements");
     options.progress = progress.callback("comparing");
     Result<BlendComparison> compared = compare_blends(*opened.value().document(), options);
     progress.clear();
@@ -65,7 +75,8 @@ Result<NamedBlendComparison> compare_blend_input(const InputOptions& input, cons
   const Result<const Motion*> motion = opened.value().motion();
   if (!motion) return motion.error();
   if (motion.value()->kind != MotionKind::kTargets)
-    return misuse("--blend", "the input is a sequence: it goes with blend shapes, as of --base FILE or a glTF file");
+    return misuse("--blend",
+                  "--blend is only for blend shapes, and the input is a sequence of keyframes; leave --blend out");
   ElementArguments wanted = elements;
   wanted.usual = "vertices";
   const Result<ElementOptions> understood = wanted.options();

@@ -105,49 +105,59 @@ std::string compare_footer() {
 
 std::vector<std::vector<Option>> tables(CompareArguments& options) {
   const auto check_access = [](const std::string& value) {
-    return value == "random" || value == "sequential" ? "" : value + " not in {random,sequential}";
+    return value == "random" || value == "sequential" ? "" : "the access must be random or sequential";
   };
   const auto check_table = [](const std::string& value) {
     return value == "text" || value == "operations" || value == "latex" ? ""
-                                                                        : value + " not in {text,operations,latex}";
+                                                                        : "the table must be text, operations or latex";
   };
   return {input_table(options.input),
-          {{"--each", &options.each, "compare motions side by side: every INPUT and --sample is one of its own"},
-           {"--schemes A,B,...", &options.schemes, "which schemes, in which order (listed below)"},
+          {{"--each", &options.each,
+            "compare several motions side by side\nEvery INPUT and every --sample is a motion of its own"},
+           {"--schemes A,B,...", &options.schemes, "which schemes, in this order (listed below)"},
            {"--samples N",
             &options.samples,
-            "how many moments of each segment are compared, its ends included (default 21)",
-            {.check = check_whole(2, kMostSamples)}}},
+            "how many moments of each segment are compared\nBoth ends are included. The default is 21",
+            {.check = check_whole(2, kMostSamples), .rare = true}}},
           options.elements.table(),
-          {{"--weighting NAME", &options.weighting,
-            "how the faces around a vertex count, with --elements vertices or corners: area\n"
-            "(default) or another one that sample --help lists"},
+          {{"--weighting NAME",
+            &options.weighting,
+            "how much each face counts in a vertex normal\nNeeds --elements vertices or corners. area (default), or "
+            "another that sample --help lists",
+            {.rare = true}},
            {"--access KIND",
             &options.access,
-            "random (default): each moment on its own; sequential: each from the one before",
-            {.check = check_access}}},
-          {{"--certify", &options.certify,
-            "bound the largest error of each scheme at any time, rounding included: no sample exceeds it"},
+            "compute each moment alone, or from the one before\nThe first is random (default), the second sequential",
+            {.check = check_access, .rare = true}}},
+          {{"--certify",
+            &options.certify,
+            "bound the largest error of each scheme at any time\nRounding is included, and no sample exceeds the bound",
+            {.rare = true}},
            {"--tolerance DEG", &options.tolerance,
-            "certify, and find the cheapest scheme that is never off by more; exit code 4 if there is none"}},
+            "find the cheapest scheme that is always within DEG degrees\nIts bound is certified at every time. The "
+            "exit code is 4 if there is none"}},
           options.blend.table(),
           options.truth.table(),
-          {{"--face N", &options.face,
-            "one face, from 0, in segment 0, or in S of N:S: what each scheme makes of its normal, and\n"
-            "how; --json has all that Figures 1 to 3 of the paper are drawn from"},
-           {"--errors FILE", &options.errors,
-            "write the error of every element at every sample: .npz for programs, or .ply of one\n"
-            "scheme with the worst of each as its quality, for MeshLab and Blender"}},
-          options.run.options("compare the Ith of N equal shares of the segments alone: OUT is a part for chronormal\n"
-                              "merge"),
-          {{"--json", &options.json, "print one JSON object, for programs"},
-           {"--csv", &options.csv, "print comma-separated values, a line per scheme", {.excludes = "--json"}},
+          {{"--face N",
+            &options.face,
+            "show what each scheme does to face N, counted from 0\nThe face is in segment 0, or in segment S with N:S. "
+            "--json has all data of Figures 1 to 3 of the paper",
+            {.rare = true}},
+           {"--errors FILE",
+            &options.errors,
+            "write the error of every element at every sample\nEither .npz for programs, or .ply of one scheme with "
+            "the largest error of each element as its quality, for MeshLab and Blender",
+            {.rare = true}}},
+          options.run.options("compare only share I of N equal shares of the segments\nOUT is a shard, and chronormal "
+                              "merge puts all shards together"),
+          {{"--json", &options.json, "print JSON, for programs"},
+           {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
            {"--table KIND",
             &options.table,
-            "text (default); operations: with what an evaluation takes; latex: both tables of the\n"
-            "paper for your meshes, with --each of several side by side",
-            {.excludes = "--json", .check = check_table}},
-           {"--no-times", &options.no_times, "leave out measured times: the same output on every run"}},
+            "print another kind of table\nOne of text (default), operations, with the cost of an evaluation, and "
+            "latex, both tables of the paper for your meshes",
+            {.excludes = "--json", .check = check_table, .rare = true}},
+           {"--no-times", &options.no_times, "leave out measured times, so that output repeats", {.rare = true}}},
           options.common.table(false)};
 }
 
@@ -257,7 +267,7 @@ Status check_files(const CompareArguments& options) {
 
 Result<int> run_blend(const CompareArguments& options) {
   if (const std::string option = option_of_schemes(options); !option.empty())
-    return misuse(option, "it is about schemes, and does not go with --blend");
+    return misuse(option, "this option cannot be used with --blend; leave one of the two out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   Progress progress(options.common.quiet);
@@ -288,7 +298,7 @@ std::string option_of_samples(const CompareArguments& options) {
 
 Result<int> run_truth(const CompareArguments& options) {
   if (const std::string option = option_of_samples(options); !option.empty())
-    return misuse(option, "it does not go with --truth, which compares at the keyframes that are left out");
+    return misuse(option, "this option cannot be used with --truth; leave one of the two out");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   Progress progress(options.common.quiet);
   const auto comparison =
@@ -326,15 +336,15 @@ Result<FaceFigureOptions> figure_options(const CompareArguments& options) {
   if (read.ec == std::errc{} && read.ptr != end && *read.ptr == ':')
     read = from_chars(read.ptr + 1, end, result.segment);
   if (read.ec != std::errc{} || read.ptr != end)
-    return misuse("--face", "it must be the number of a face, or FACE:SEGMENT; both count from 0");
+    return misuse("--face", "the value must be the number of a face, or FACE:SEGMENT, both counted from 0");
   return result;
 }
 
 Result<int> run_face(const CompareArguments& options) {
   if (const std::string option = option_of_all_faces(options); !option.empty())
-    return misuse(option, "it does not go with --face, which looks at one face");
+    return misuse(option, "this option cannot be used with --face; leave one of the two out");
   if (const auto elements = options.elements.options(); !elements || elements.value().kind != ElementKind::kFaces)
-    return misuse("--elements", "it does not go with --face, which looks at one face");
+    return misuse("--elements", "this option cannot be used with --face; leave one of the two out");
   const Result<FaceFigureOptions> how = figure_options(options);
   if (!how) return how.error();
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
@@ -357,11 +367,11 @@ Result<int> run_face(const CompareArguments& options) {
 Result<int> run(const CompareArguments& options) {
   if (const Status status = options.run.check(option_of_one_process(options)); !status) return status.error();
   if (!options.face && options.blend.rows && options.truth.every)
-    return misuse("--truth", "blend shapes move straight: leave out --blend for a sequence of keyframes");
+    return misuse("--truth", "--truth is for sequences and --blend for blend shapes; leave one of the two out");
   if (!options.face && options.blend.rows) return run_blend(options);
   // Reports wrong names before any long computation.
   for (const std::string& name : scheme_names(options)) {
-    if (name.empty()) return misuse("--schemes", "there is an empty name in the list");
+    if (name.empty()) return misuse("--schemes", "the list has an empty name; remove the extra comma");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
   }
   if (const auto elements = options.elements.options(); !elements) return elements.error();
@@ -371,30 +381,36 @@ Result<int> run(const CompareArguments& options) {
     if (!weighting) return misuse("--weighting", weighting.error().message);
     const bool by_area = weighting.value() == Weighting::kArea;
     if (!by_area && options.elements.options().value().kind == ElementKind::kFaces)
-      return misuse("--weighting", "faces are not weighted: add --elements vertices or corners");
+      return misuse("--weighting",
+                    "a weighting has no meaning for normals of faces; add --elements vertices or corners");
     if (!by_area && (options.certify || options.tolerance))
-      return misuse(options.certify ? "--certify" : "--tolerance", "it is about area-weighted normals alone");
+      return misuse(options.certify ? "--certify" : "--tolerance",
+                    "bounds can only be computed for --weighting area; leave one of the two out");
   }
   if (const Status distinct = check_files(options); !distinct) return distinct.error();
   if (options.truth.every) return run_truth(options);
   if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
-    return misuse("--tolerance", "it must be an angle in degrees, 0 or more");
+    return misuse("--tolerance", "the tolerance must be an angle in degrees, at least 0");
   if (options.access == "sequential" && (options.certify || options.tolerance))
     return misuse(options.certify ? "--certify" : "--tolerance",
-                  "it is about normals at random access: leave out --access sequential");
+                  "bounds can only be computed for random access; leave --access out");
   if (const Status output = options.run.check_output(options.common); !output) return output.error();
 
-  if (options.run.shard && options.each) return misuse("--shard", "it divides one motion: leave out --each");
-  if (options.run.shard && options.errors) return misuse("--errors", "a shard keeps sums alone: leave out --shard");
+  if (options.run.shard && options.each)
+    return misuse("--shard", "--shard is only for a single motion; leave --each out");
+  if (options.run.shard && options.errors)
+    return misuse("--errors", "a run with --shard cannot write single errors; leave --errors or --shard out");
   if (options.run.shard && (options.json || options.csv))
     return misuse(options.json ? "--json" : "--csv",
-                  "OUT of a shard is a part, of which chronormal merge makes the JSON");
+                  "a shard cannot be written in this format; leave this option out, and let chronormal merge make the "
+                  "JSON of all shards");
   if (!options.table.empty() && (options.csv || options.run.shard))
-    return misuse("--table", options.csv ? "it is another form than --csv" : "OUT of a shard is a part");
+    return misuse("--table", options.csv ? "--table and --csv cannot be used together; leave one of the two out"
+                                         : "a shard cannot be printed as a table; leave --table out");
   if (options.run.resume && (options.each || options.errors))
-    return misuse("--resume", "it keeps the sums of one motion: leave out --each and --errors");
+    return misuse("--resume", "--resume is only for sums of a single motion; leave --each and --errors out");
   if (options.errors) {
-    if (options.each) return misuse("--errors", "it holds the errors of one motion: leave out --each");
+    if (options.each) return misuse("--errors", "--errors is only for a single motion; leave --each out");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)
       return output.error();
   }
@@ -435,9 +451,9 @@ Result<int> run(const CompareArguments& options) {
     const bool is_judged = std::any_of(schemes.begin(), schemes.end(),
                                        [](const SchemeComparison& scheme) { return scheme.quality.count > 0; });
     say("compare",
-        is_judged ? formatted("{}: no scheme is within the tolerance of {:g} degrees at every time",
-                              printable(input.name), *options.tolerance)
-                  : formatted("{}: no scheme could be judged, since no element has a normal at any sample",
+        is_judged ? formatted("{}: no scheme is always within the tolerance of {:g} degrees", printable(input.name),
+                              *options.tolerance)
+                  : formatted("{}: no scheme could be judged, since no face has an area at any sample",
                               printable(input.name)),
         Tone::kError);
     exit = kExitBeyond;

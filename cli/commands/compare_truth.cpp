@@ -7,8 +7,8 @@ namespace chronormal::cli {
 std::vector<Option> TruthArguments::table() {
   return {{"--truth N",
            &every,
-           "keep every N-th keyframe of a sequence, and compare with those that are left out: what\n"
-           "the motion really did between; curved paths take part",
+           "keep every Nth keyframe, and compare with the others\nThe keyframes of a sequence that are left out show "
+           "what really happened. Curved paths are compared, too",
            {.check = check_whole(2)}}};
 }
 

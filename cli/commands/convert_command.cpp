@@ -22,9 +22,9 @@ struct ConvertArguments {
 
 std::string convert_footer() {
   std::string text =
-      "The extension of OUT chooses the format: .npz, .pc2 or .mdd for one file; .obj or .ply (binary) for a\n"
-      "file per keyframe, where %d in the name stands for the number, %03d for 000, 001, ...\n"
-      "Targets over a base become morph targets of a .glb.\n"
+      "The name of OUT chooses the format: .npz, .pc2 or .mdd is one file; .obj or .ply (binary) is a file for "
+      "each\nkeyframe, with %d in the name for its number, or %03d for 000, 001, ... Targets over a base become morph "
+      "targets\nof a .glb.\n"
       "\nBuilt-in morphs:\n";
   for (const auto& morphs : {builtin_morphs(), builtin_blend_shapes()})
     for (const BuiltinMorph& morph : morphs) text += formatted("  {:<9} {}\n", morph.name, morph.summary);
@@ -51,7 +51,9 @@ Result<int> run(const ConvertArguments& options) {
   const std::string& output = options.common.output;
   const bool is_float = output.ends_with(".pc2") || output.ends_with(".mdd");
   if (is_float && motion.value()->motion().origin != std::array<double, 3>{})
-    say("convert", "the positions are far from the origin, and this format keeps them as float32, which loses digits",
+    say("convert",
+        "the mesh is far from the origin, so that positions lose digits in this format (float32); write .npz or .ply "
+        "to keep them",
         Tone::kWarning);
   const Status written = write_motion(*motion.value(), options.common.output, options.common.force,
                                       input.value().expansion(), !options.no_weld);
@@ -69,8 +71,10 @@ Command convert_command() {
   return {"convert",
           "Write a motion, or a built-in morph, in another format",
           {input_table(options->input),
-           {{"--no-weld", &options->no_weld,
-             "targets: keep vertices apart in the normals that are at one point throughout"}},
+           {{"--no-weld",
+             &options->no_weld,
+             "do not merge vertices that are always at one point\nOnly for the normals of targets",
+             {.rare = true}}},
            options->common.table(true)},
           convert_footer(),
           [options] { return run(*options); }};

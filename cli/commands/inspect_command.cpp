@@ -51,11 +51,11 @@ Command inspect_command() {
   return {"inspect",
           "List what a file contains and what may cause wrong normals",
           {input_table(options->input),
-           {{"--json", &options->json, "print one JSON object, for programs"}},
+           {{"--json", &options->json, "print JSON, for programs"}},
            options->common.table(false)},
-          "A motion, or a single mesh. Trouble is what normals suffer from: faces without area at keyframes and on\n"
-          "the way, faces that turn far, edges of more than two faces, doubled vertices, normals that do not follow.\n"
-          "It does not change the exit code.\n"
+          "INPUT is a motion or a single mesh. inspect lists what makes normals go wrong, such as faces without area, "
+          "faces\nthat turn far, edges of more than two faces, vertices at the same point, and normals that do not "
+          "follow a target.\nThe exit code does not depend on it.\n"
           "\nExamples:\n"
           "  chronormal inspect head.glb\n"
           "  chronormal inspect walk/ --json\n"

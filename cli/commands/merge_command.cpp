@@ -21,7 +21,7 @@ struct MergeArguments {
 };
 
 Result<int> run(const MergeArguments& options) {
-  if (options.parts.empty()) return misuse("", "there is nothing to merge: name the parts");
+  if (options.parts.empty()) return misuse("", "the shards are missing; name the files that --shard wrote");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   std::vector<NamedFile> read;
   for (const std::string& path : options.parts)
@@ -44,7 +44,7 @@ Result<int> run(const MergeArguments& options) {
   if (const Status written = print_to(options.common.output, merged.value().json, options.common.force); !written)
     return written.error();
   if (merged.value().is_within) return kExitDone;
-  say("merge", "the tolerance that the parts were made with is exceeded", Tone::kError);
+  say("merge", "the worst error is beyond the tolerance that the shards were made with", Tone::kError);
   return kExitBeyond;
 }
 
@@ -53,15 +53,15 @@ Result<int> run(const MergeArguments& options) {
 Command merge_command() {
   auto options = std::make_shared<MergeArguments>();
   return {"merge",
-          "Put the shards of a comparison, an audit or of samples together",
-          {{{"PART", &options->parts, "what --shard 1/N, 2/N, ... of compare, audit or sample wrote, in any order"}},
+          "Put the shards of compare, audit or sample together",
+          {{{"PART", &options->parts, "the shards that compare, audit or sample wrote, in any order"}},
            options->common.table(false)},
-          "What comes out is what one run would have written, byte for byte: of compare and audit the JSON of --json\n"
-          "(and --no-times), of sample the array.\n"
+          "The result has the bytes that a single run would have written: the JSON of compare --json --no-times "
+          "or\naudit --json, or the array of sample.\n"
           "\nExamples:\n"
           "  for i in 1 2 3; do chronormal compare walk/ --shard $i/3 -o part_$i.json; done\n"
           "  chronormal merge part_1.json part_2.json part_3.json -o walk.json\n"
-          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance of the parts was exceeded",
+          "\nExit codes: 0 done, 1 failed, 2 usage, 3 input invalid, 4 the tolerance of the shards was exceeded",
           [options] { return run(*options); }};
 }
 

@@ -54,15 +54,17 @@ Result<Question> find_question(const QueryArguments& options) {
   const auto& questions = options.questions;
   std::string names;
   for (const Question& question : questions) names += (names.empty() ? "" : ", ") + question.name;
-  if (options.question.empty()) return misuse("QUESTION", "name one: " + names);
+  if (options.question.empty()) return misuse("QUESTION", "the question is missing; choose one of " + names);
   const auto found = std::find_if(questions.begin(), questions.end(),
                                   [&](const Question& question) { return question.name == options.question; });
   if (found == questions.end())
-    return misuse("QUESTION", formatted("there is no '{}'; there are {}", printable(options.question), names));
+    return misuse("QUESTION",
+                  formatted("there is no question '{}'; choose one of {}", printable(options.question), names));
   for (const Question& other : questions) {
     for (const Option& option : other.options)
       if (other.name != found->name && was_given(option))
-        return misuse(option.spelling.substr(0, option.spelling.find(' ')), "it belongs to query " + other.name);
+        return misuse(option.spelling.substr(0, option.spelling.find(' ')),
+                      "this option is only for query " + other.name + "; leave it out");
   }
   return *found;
 }
@@ -74,13 +76,13 @@ Status check_skins(const Input& input, const InputOptions& options) {
   for (const GltfNode& node : input.document()->nodes()) {
     if (!node.has_skin || !node.mesh) continue;
     if (options.world)
-      return misuse("--world",
-                    formatted("mesh {} is placed by a skin, which query does not follow: leave out --world to "
-                              "ask about the mesh before it is skinned",
-                              *node.mesh));
+      return misuse(
+          "--world",
+          formatted(
+              "mesh {} has a skin, which query does not apply; leave --world out to examine the mesh before skinning",
+              *node.mesh));
     say("query",
-        formatted("mesh {} is placed by a skin, which query does not follow: the answer is about the mesh before it is "
-                  "skinned",
+        formatted("mesh {} has a skin, which query does not apply; the answer is about the mesh before skinning",
                   *node.mesh),
         Tone::kWarning);
     return Success{};
@@ -96,7 +98,8 @@ Result<int> run(const QueryArguments& options) {
   const Result<ElementOptions> elements = options.elements.options();
   if (!elements) return elements.error();
   if (options.elements.asked && !question.value().takes_elements)
-    return misuse("--elements", formatted("query {} is about faces", question.value().name));
+    return misuse("--elements",
+                  formatted("query {} can only be asked of faces; leave --elements out", question.value().name));
   const std::string& output = options.common.output;
   const bool is_file = !options.json && output != "-";
   if (const Status status =
@@ -145,9 +148,8 @@ std::string footer(const std::vector<Question>& questions) {
   std::string text = "Questions:\n";
   for (const Question& question : questions) text += formatted("  {:<12}{}\n", question.name, question.summary);
   return text +
-         "\nThe answer is a table for people, with --json one JSON object, and in OUT.npz arrays: a row for each\n"
-         "interval, face or vertex, with its segment. Times t are fractions of a segment. docs/uses.md says what is "
-         "guaranteed.\n"
+         "\nThe answer is a table, with --json a JSON object, and with -o OUT.npz arrays that have a row for each "
+         "interval,\nface or vertex. Times t are fractions of a segment. docs/uses.md says what is guaranteed.\n"
          "\nExamples:\n"
          "  chronormal query collapse face.glb\n"
          "  chronormal query facing walk/ --eye 4,-5,2,5,-4,1 --silhouettes -o sides.npz\n"
@@ -164,20 +166,19 @@ Command query_command() {
   auto options = std::make_shared<QueryArguments>();
   // A query takes an interval of time instead of a range of keyframes.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
-  input.insert(input.begin(), {"QUESTION", &options->question, "what is asked (listed below)"});
+  input.insert(input.begin(), {"QUESTION", &options->question, "the question (listed below)"});
   for (const Question& question : options->questions)
     for (Option option : question.options) {
-      option.help = question.name + ": " + option.help;
+      option.help = "for " + question.name + ": " + option.help;
       own.push_back(std::move(option));
     }
   for (Option& option : options->elements.table()) {
-    option.help = "facing, shutter: " + option.help;
+    option.help = "for facing and shutter: " + option.help;
     own.push_back(std::move(option));
   }
-  own.push_back({"--from T", &options->span.from,
-                 "ask about what is at or after this time of the motion (of targets, this weight)"});
-  own.push_back({"--to T", &options->span.to, "ask about what is at or before this time"});
-  own.push_back({"--json", &options->json, "print one JSON object, for programs"});
+  own.push_back({"--from T", &options->span.from, "examine the motion from this time on\nFor targets, T is a weight"});
+  own.push_back({"--to T", &options->span.to, "examine the motion up to this time"});
+  own.push_back({"--json", &options->json, "print JSON, for programs"});
   return {"query",
           "Ask what normals do over whole intervals of time",
           {std::move(input), std::move(own), options->common.table(false)},

@@ -9,9 +9,9 @@ namespace chronormal::cli {
 Question cones_question() {
   auto meshlets = std::make_shared<std::optional<std::size_t>>();
   return {"cones",
-          "the cones in which normals stay, and bounds of meshlets",
+          "the cones that contain all normals of a face, and bounds of meshlets",
           {{"--meshlets N", meshlets.get(),
-            "also build meshlets of up to N triangles, with bounds as meshoptimizer has them"}},
+            "also build meshlets of up to N triangles\nTheir bounds have the format of meshoptimizer"}},
           [meshlets] {
             return Result<Ask>(
                 [meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,

@@ -13,9 +13,11 @@ Question contain_question() {
   const auto file = std::make_shared<std::string>();
   return {"contain",
           "which points are inside a closed mesh, and when they cross its surface",
-          {{"--points P.npy", file.get(), "(n, 3), or (n, 2, 3): from there to there, in the time of the motion"}},
+          {{"--points P.npy", file.get(),
+            "the points, an array (n, 3)\nAn array (n, 2, 3) has points that move straight from the first place to the "
+            "second, in the time of the motion"}},
           [file]() -> Result<Ask> {
-            if (file->empty()) return misuse("--points", "name a .npy file of points");
+            if (file->empty()) return misuse("--points", "the points are missing; name a .npy file of points");
             Result<PointPaths> points = read_points_file(*file);
             if (!points) return points.error();
             return Ask([points = std::move(points).value()](const Motion& motion, const QuerySpan& span,

@@ -37,13 +37,14 @@ Result<std::vector<double>> parse_numbers(const std::string& option, std::string
 
 Result<View> view_of(const FacingOptions& options) {
   if (options.direction.has_value() == options.eye.has_value())
-    return misuse("--direction", "say who looks: --direction X,Y,Z or --eye X,Y,Z");
+    return misuse("--direction", "the viewer is missing; give either --direction X,Y,Z or --eye X,Y,Z");
   const std::string option = options.eye ? "--eye" : "--direction";
   const Result<std::vector<double>> numbers = parse_numbers(option, options.eye ? *options.eye : *options.direction);
   if (!numbers) return numbers.error();
   const std::vector<double>& n = numbers.value();
   if (n.size() == 6 && options.eye) return View::of_moving_eye({n[0], n[1], n[2]}, {n[3], n[4], n[5]});
-  if (n.size() != 3) return misuse(option, options.eye ? "it must be X,Y,Z or X,Y,Z,X,Y,Z" : "it must be X,Y,Z");
+  if (n.size() != 3)
+    return misuse(option, options.eye ? "the value must be X,Y,Z or X,Y,Z,X,Y,Z" : "the value must be X,Y,Z");
   if (options.eye) return View::of_eye({n[0], n[1], n[2]});
   return View::of_direction({n[0], n[1], n[2]});
 }
@@ -53,12 +54,12 @@ Result<View> view_of(const FacingOptions& options) {
 Question facing_question() {
   auto options = std::make_shared<FacingOptions>();
   return {"facing",
-          "when faces, or normals of vertices, show their front to a viewer; silhouette edges",
-          {{"--direction X,Y,Z", &options->direction, "the viewer is infinitely far away in this direction"},
+          "when faces or vertices face a viewer, and silhouette edges",
+          {{"--direction X,Y,Z", &options->direction, "the viewer is far away in this direction"},
            {"--eye X,Y,Z", &options->eye,
-            "the viewer is here; X,Y,Z,X,Y,Z: and moves straight to the second place, from the\n"
+            "the viewer is at this point\nWith X,Y,Z,X,Y,Z the viewer moves straight to the second point, from the "
             "first to the last time of the motion"},
-           {"--silhouettes", &options->silhouettes, "list the edges between a front and a back, too"}},
+           {"--silhouettes", &options->silhouettes, "also list the silhouette edges"}},
           [options]() -> Result<Ask> {
             const Result<View> view = view_of(*options);
             if (!view) return view.error();

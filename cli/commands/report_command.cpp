@@ -50,8 +50,8 @@ Result<std::string> read_template(const ReportArguments& options) {
   std::error_code failed;
   if (!options.page_template && (!path || !fs::exists(*path, failed)))
     return Error{ErrorCode::kFailed, path.value_or("report.html"),
-                 "the template of the page is not there: ./run report, in the source folder of chronormal, makes it; "
-                 "or name one with --template, or write OUT.bin, which needs none"};
+                 "the template of the page is missing; make it with ./run report in the source folder of chronormal, "
+                 "or name one with --template"};
   const Result<FileBytes> file = FileBytes::open(*path);
   if (!file) return file.error();
   if (const Status status = check_report_template(file.value().bytes()); !status)
@@ -64,8 +64,9 @@ Result<ReportOptions> understand(const ReportArguments& options, Progress& progr
   if (const Status named = options.judge.read("report", how.weighting, how.viewers); !named) return named.error();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (!is_container(options) && lower_extension(options.common.output) != ".html")
-    return misuse(options.common.output, "the name must end in .html for a page, or in .bin for its data");
-  if (is_container(options) && options.page_template) return misuse("--template", "OUT.bin is data, and needs no page");
+    return misuse(options.common.output, "the name of the output must end in .html, or in .bin for the data alone");
+  if (is_container(options) && options.page_template)
+    return misuse("--template", "--template is only for pages, and OUT.bin is data; leave --template out");
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
   how.plan = !options.no_plan;
@@ -119,23 +120,22 @@ Result<int> run(const ReportArguments& options) {
 Command report_command() {
   auto options = std::make_shared<ReportArguments>();
   const std::vector<RefusedOption> refused = {
-      {"--world", "report shows each mesh in its own space, since nodes turn the shown and the right normal alike"}};
+      {"--world", "errors do not depend on where nodes put a mesh, so report shows each mesh in its own space"}};
   return {
       "report",
-      "Write a page that shows an input as it is shown beside as it should be",
+      "Make a web page that compares your model with correct shading",
       {input_table(options->input, refused),
-       options->judge.table("glTF: what these viewers show can be looked at too"),
-       {{"--no-plan", &options->no_plan, "glTF: leave out the forms that bake could give each mesh, which take time"},
+       options->judge.table("also show what these viewers show"),
+       {{"--no-plan", &options->no_plan, "do not compute what bake could do, which takes time\nOnly for glTF files"},
         {"--template FILE",
          &options->page_template,
-         "the page that the report goes into (default: the one that comes with the program)",
-         {.check = check_given("it must name a file")}},
-        {"--json", &options->json, "print one JSON object, for programs"}},
+         "use this page as the template of the report\nThe default is the one that comes with the program",
+         {.check = check_given("the name of the template is empty"), .rare = true}},
+        {"--json", &options->json, "print JSON, for programs"}},
        options->common.table(true)},
-      "OUT.html is one page that needs nothing else and sends nothing: the mesh, a heat map of the errors in degrees, "
-      "a\n"
-      "slider over the motion, and a list of the worst places. It stays below 30 MB: what was left out for that is\n"
-      "said. OUT.bin is its data alone (docs/formats.md).\n"
+      "OUT.html is a single page that needs no network: the mesh, its errors in colours, a slider over the motion, "
+      "and\na list of the worst places. It stays below 30 MB, and says what was left out for that. OUT.bin has the "
+      "data\nalone (docs/formats.md).\n"
       "\nExamples:\n"
       "  chronormal report face.glb -o face.html\n"
       "  chronormal report face.glb -o face.html --for three,godot --no-plan\n"

@@ -39,9 +39,9 @@ std::string sample_footer() {
   for (const SchemeDescription& scheme : scheme_descriptions())
     text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);
   return text +
-         "\nOUT is chosen by its extension: .npy, an array (times, elements, 3) of float32; .npz, normals with times,\n"
-         "positions and faces; .ply or .obj, the mesh with its normals, a file per time, where %d in the name stands\n"
-         "for the number. An element without a normal has (0, 0, 0).\n"
+         "\nThe name of OUT chooses the format: .npy is an array (times, elements, 3) of float32; .npz has normals, "
+         "times,\npositions and faces; .ply or .obj is the mesh with its normals, a file for each time, with %d in the "
+         "name for\nits number. (0, 0, 0) stands where there is no normal.\n"
          "\nExamples:\n"
          "  chronormal sample walk/ --times 0:0.25:12 -o normals.npy\n"
          "  chronormal sample body.obj walk.pc2 --times 1.5 --elements corners --crease 60 -o shaded.obj\n"
@@ -58,19 +58,25 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
   return {input_table(options.input),
           options.moments.table(),
           options.elements.table(),
-          {{"--weighting NAME", &options.weighting, "how the faces around a vertex count (listed below)"},
-           {"--length KIND", &options.length,
-            "unit (default): of length 1; area: twice the area of the face, or the sum of those\n"
-            "around a vertex (with --weighting area)"},
+          {{"--weighting NAME", &options.weighting, "how much each face counts in a vertex normal (listed below)"},
+           {"--length KIND",
+            &options.length,
+            "the length of normals: unit (default) or area\nunit is 1. area is twice the area of a face, or the sum "
+            "around a vertex, and needs --weighting area",
+            {.rare = true}},
            {"--scheme NAME", &options.scheme,
-            "interpolate between the normals at the ends of each segment, as compare does (listed\n"
-            "below); without it normals are exact"}},
+            "interpolate normals instead of computing exact ones\nThe normals at the ends of each segment are "
+            "interpolated, as in compare. The schemes are listed below"}},
           {{"--hard-edges KIND", &options.hard_edges,
-            "with --elements corners: take hard edges from the first .obj, the base or a glTF\n"
-            "file, by its smoothing groups (groups) or its own normals (normals)"},
-           {"--format NAME", &options.format, "the format of OUT: npy (default for -), npz, ply, obj"}},
-          options.run.options("write the Ith of N equal shares of the times alone: .npy for chronormal merge, .ply or\n"
-                              ".obj with the numbers that they have among all"),
+            "take hard edges from the file: groups or normals\nNeeds --elements corners. groups are the smoothing "
+            "groups, and normals the stored normals, of the first .obj, the base or a glTF file"},
+           {"--format NAME",
+            &options.format,
+            "the format of OUT: npy, npz, ply or obj\nOnly needed if the name of OUT does not tell. The default for - "
+            "is npy",
+            {.rare = true}}},
+          options.run.options("write only share I of N equal shares of the times\nchronormal merge puts .npy shards "
+                              "together. Files .ply and .obj have the numbers that they would have without --shard"),
           options.common.table(true)};
 }
 
@@ -88,28 +94,32 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
   const ElementKind kind = elements.value().kind;
   const auto weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
-  if (options.length != "unit" && options.length != "area") return misuse("--length", "it must be unit or area");
+  if (options.length != "unit" && options.length != "area")
+    return misuse("--length", "the length must be unit or area");
   const bool by_area = weighting.value() == Weighting::kArea;
-  if (options.length == "area" && !by_area) return misuse("--length", "the area is a length of --weighting area alone");
+  if (options.length == "area" && !by_area)
+    return misuse("--length", "the length area needs --weighting area; leave one of the two out");
   if (kind == ElementKind::kFaces && !by_area)
-    return misuse("--weighting", "faces are not weighted: it goes with vertices or corners");
+    return misuse("--weighting", "a weighting has no meaning for normals of faces; add --elements vertices or corners");
   if (!options.scheme.empty()) {
-    if (!by_area) return misuse("--weighting", "schemes interpolate area-weighted normals: leave it out");
-    if (options.length == "area") return misuse("--length", "schemes interpolate unit normals: leave it out");
+    if (!by_area)
+      return misuse("--weighting", "a scheme can only be used with --weighting area; leave --weighting out");
+    if (options.length == "area")
+      return misuse("--length", "a scheme can only be used with --length unit; leave --length out");
     if (const auto scheme = scheme_for(options.scheme, kind); !scheme)
       return misuse("--scheme", scheme.error().message);
   } else if (!options.moments.step.empty()) {
-    return misuse("--step", "it plays a scheme: name one with --scheme");
+    return misuse("--step", "--step needs a scheme; name one with --scheme");
   }
   if (!options.hard_edges.empty()) {
     if (options.hard_edges != "groups" && options.hard_edges != "normals")
-      return misuse("--hard-edges", "it must be groups or normals");
+      return misuse("--hard-edges", "the kind must be groups or normals");
     if (kind != ElementKind::kCorners)
-      return misuse("--hard-edges", "only corners can have hard edges: add --elements corners");
+      return misuse("--hard-edges", "only corners can have hard edges; add --elements corners");
     if (options.elements.crease_angle != 180)
-      return misuse("--hard-edges", "edges are hard by the file or by --crease, not both");
+      return misuse("--hard-edges", "--hard-edges and --crease cannot be used together; leave one of the two out");
     if (!options.input.samples.empty())
-      return misuse("--hard-edges", "a built-in morph stores no hard edges: give an OBJ or glTF file");
+      return misuse("--hard-edges", "a built-in morph has no hard edges; give an OBJ or glTF file");
   }
   return SampleOptions{elements.value(), weighting.value(),
                        options.length == "area" ? NormalLength::kArea : NormalLength::kUnit, options.scheme};
@@ -123,7 +133,9 @@ Result<SampleFormat> format_of(const SampleArguments& options) {
   }
   if (options.common.output == "-") return SampleFormat::kNpy;
   if (const auto format = find_sample_format(options.common.output)) return *format;
-  return misuse(options.common.output, "the name must end in .npy, .npz, .ply or .obj, or --format say what it is");
+  return misuse(
+      options.common.output,
+      "the format of the output is unknown; choose a name that ends in .npy, .npz, .ply or .obj, or add --format");
 }
 
 Result<Request> understand(const SampleArguments& options) {
@@ -135,7 +147,9 @@ Result<Request> understand(const SampleArguments& options) {
   if (!asked) return asked.error();
   sample.value().stepping = asked.value().stepping;
   if (sample.value().stepping && !make_scheme(options.scheme).value()->sequential_operations())
-    return misuse("--step", options.scheme + " has no sequential form: give --times instead");
+    return misuse(
+        "--step",
+        options.scheme + " cannot go step by step, since it computes every normal on its own; give --times instead");
   if (const Status status = options.run.check(); !status) return status.error();
   Request request{
       sample.value(), std::move(asked).value(), {options.common.output, format.value(), options.common.force}, {}};
@@ -143,9 +157,11 @@ Result<Request> understand(const SampleArguments& options) {
   request.run.peers = ranks_as_peers();
   if (const Status status = check_input(options.input); !status) return status.error();
   if (options.run.resume) {
-    if (request.sample.stepping) return misuse("--resume", "the drift of steps is that of one run: leave out --step");
+    if (request.sample.stepping)
+      return misuse("--resume", "--resume cannot be used with --step; leave one of the two out");
     if (format.value() != SampleFormat::kNpy)
-      return misuse("--resume", "only .npy files can be continued: write one, or give the times in several runs");
+      return misuse("--resume",
+                    "--resume needs a .npy file as the output; write .npy, or divide the times among several runs");
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
@@ -164,20 +180,23 @@ Result<Request> understand(const SampleArguments& options) {
 Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
   const std::string& file = input.shaded_by();
   if (file.empty())
-    return misuse("--hard-edges",
-                  input.name() + " stores neither normals nor smoothing groups: give an OBJ or glTF file");
+    return misuse("--hard-edges", input.name() + " has neither normals nor smoothing groups; give an OBJ or glTF file");
   if (what == "groups") {
-    if (input.document() != nullptr) return misuse("--hard-edges", "a glTF file has no smoothing groups: give normals");
+    if (input.document() != nullptr)
+      return misuse("--hard-edges", "a glTF file has no smoothing groups; give --hard-edges normals");
     if (input.group_of_face().empty())
-      return invalid_input(file, "the file has no smoothing groups (lines that begin with s)");
+      return invalid_input(
+          file, "the file has no smoothing groups (lines that begin with s); try --hard-edges normals or --crease");
     elements.group_of_face = input.group_of_face();
     return Success{};
   }
   const Result<const StoredNormals*> normals = input.normals();
   if (!normals) return normals.error();
   if (normals.value()->of_keyframes.empty())
-    return invalid_input(file, input.document() != nullptr ? "no primitive of the motion has normals"
-                                                           : "the file has no normals (faces of the form v//vn)");
+    return invalid_input(file,
+                         input.document() != nullptr
+                             ? "the file has no normals; try --crease"
+                             : "the file has no normals (faces written as v//vn); try --hard-edges groups or --crease");
   const std::vector<float>& first = normals.value()->of_keyframes.front();
   elements.normal_of_corner = VectorView<const float>::packed(first.data(), first.size() / 3);
   return Success{};
@@ -192,8 +211,8 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
     say("sample",
-        formatted("the normals of {} times {} elements are {:.1f} GB", grouped(moments), grouped(elements),
-                  bytes / 1e9),
+        formatted("the result will be large, {} times {} normals, which are {:.1f} GB", grouped(moments),
+                  grouped(elements), bytes / 1e9),
         Tone::kWarning);
 }
 
@@ -231,14 +250,14 @@ Result<int> run(const SampleArguments& options) {
   if (const Status done = run.finish(); !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
-        formatted("{} of {} normals of {} are (0, 0, 0): there is no area to give them one", written.value().zeros,
+        formatted("{} of {} normals of {} are (0, 0, 0), since the faces around have no area", written.value().zeros,
                   written.value().normals, options.elements.kind()),
         Tone::kWarning);
   if (request.sample.stepping && !options.common.quiet) {
     const Drift& drift = written.value().drift;
-    say_text(formatted("{} played step by step drifts by up to {} degrees from random access: {} {} at {}\n",
-                       options.scheme, with_digits(drift.largest * kDegreesPerRadian, 3),
-                       one_element(request.sample.elements.kind), grouped(drift.output), with_digits(drift.time, 6)));
+    say_text(formatted("{} played step by step drifts by up to {} degrees, at {} {} and time {}\n", options.scheme,
+                       with_digits(drift.largest * kDegreesPerRadian, 3), one_element(request.sample.elements.kind),
+                       grouped(drift.output), with_digits(drift.time, 6)));
   }
   say_written(options.common, counted(written.value().normals, "normal", "normals"));
   return kExitDone;

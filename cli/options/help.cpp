@@ -3,6 +3,7 @@
 #include "cli/options/help.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <utility>
 #include <variant>
@@ -17,7 +18,12 @@ namespace {
 
 constexpr std::size_t kNameColumn = 2, kTextColumn = 27;
 
-constexpr std::string_view kAbout = "Normals of triangle meshes that deform: exact at every instant.";
+constexpr std::string_view kAbout = "Computes, checks and corrects normals of triangle meshes that deform.";
+
+constexpr std::array<std::pair<const char*, const char*>, 3> kOptionsOfProgram = {
+    {{"-h, --help", "explain the program, or the command before it"},
+     {"--help-all", "explain all options of the command before it"},
+     {"-V, --version", "print the version"}}};
 
 struct Paragraph {
   std::string text;
@@ -110,7 +116,16 @@ std::string spelled(const Option& option) {
   return takes_several(option) && names_of(option).empty() ? text + "..." : text;
 }
 
-std::string meaning(const Option& option) { return option.help + (option.rules.required ? " (required)" : ""); }
+// Returns the first line of a help.
+std::string brief(const Option& option) { return option.help.substr(0, option.help.find('\n')); }
+
+// Returns the first line of a help, and if all of it is asked for the sentences after that line.
+std::string meaning(const Option& option, bool all) {
+  std::string text = brief(option) + (option.rules.required ? " (required)" : "");
+  if (const std::size_t end = option.help.find('\n'); all && end != std::string::npos)
+    text += ". " + option.help.substr(end + 1);
+  return text;
+}
 
 template <class Visit>
 void visit_options(const Command& command, bool named, const Visit& visit) {
@@ -147,7 +162,7 @@ std::string lines_for_manual(const std::string& text) {
 }
 
 std::string words_of(const Command& command) {
-  std::string words = "--help";
+  std::string words = "--help --help-all";
   visit_options(command, true, [&](const Option& option) { words += ' ' + names_of(option).back(); });
   return words;
 }
@@ -163,14 +178,6 @@ std::string quoted_for_shell(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + '\'';
-}
-
-// Returns the first sentence of an option's help in one line.
-std::string brief(const Option& option) {
-  std::string text = option.help.substr(0, option.help.find("\n "));
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  for (const char* end : {"; ", ": ", " ("}) text = text.substr(0, text.find(end));
-  return text;
 }
 
 std::string bash_completions(const std::vector<Command>& commands) {
@@ -256,26 +263,30 @@ std::string help_of_program(const std::vector<Command>& commands, std::size_t co
   std::string text =
       flowing(std::string(kAbout), 0, columns) + "\n\nUsage: chronormal COMMAND [OPTIONS]\n\nCommands:\n";
   for (const Command& command : commands) text += row(command.name, command.summary, columns);
-  text += "\nOptions:\n" + row("-h, --help", "explain the program; after a command, explain that", columns) +
-          row("-V, --version", "print the version", columns);
-  return with_headings(text) + "\n" + flowing("chronormal help COMMAND explains a command.", 0, columns) + "\n";
+  text += "\nOptions:\n";
+  for (const auto& [names, meaning] : kOptionsOfProgram) text += row(names, meaning, columns);
+  return with_headings(text) + "\n" + flowing("chronormal COMMAND --help explains a command.", 0, columns) + "\n";
 }
 
-std::string help_of_command(const Command& command, std::size_t columns) {
+std::string help_of_command(const Command& command, bool all, std::size_t columns) {
   std::string text =
       flowing(command.summary, 0, columns) + "\n\n" + broken({"Usage: " + usage_of(command), 7}, 0, columns) + "\n\n";
-  const auto add_row = [&](const Option& option) { text += row(spelled(option), meaning(option), columns); };
+  const auto add_row = [&](const Option& option) { text += row(spelled(option), meaning(option, all), columns); };
+  // The heading is printed only if an option follows. The first table chooses the input.
+  const auto add_rows = [&](std::string heading, bool of_input, bool rare) {
+    visit_options(command, true, [&](const Option& option) {
+      const std::vector<Option>& input = command.tables.front();
+      const bool chooses_input = &option >= input.data() && &option < input.data() + input.size();
+      if (option.rules.rare != rare || (chooses_input != of_input && !rare)) return;
+      text += std::exchange(heading, "");
+      add_row(option);
+    });
+  };
   visit_options(command, false, add_row);
-  text += "\nOptions:\n";
-  for (auto table = command.tables.begin() + 1; table != command.tables.end(); ++table)
-    std::for_each(table->begin(), table->end(), add_row);
-  text += row("-h, --help", "print this", columns);
-  std::string heading = "\nOptions for what is read:\n";  // printed only if there are such options
-  for (const Option& option : command.tables.front()) {
-    if (names_of(option).empty()) continue;
-    text += std::exchange(heading, "");
-    add_row(option);
-  }
+  add_rows("\nOptions:\n", false, false);
+  text += row("-h, --help", "print this", columns) + row("--help-all", "print more about all options", columns);
+  add_rows("\nOptions for the input:\n", true, false);
+  if (all) add_rows("\nOptions that few need:\n", false, true);
   if (!command.footer.empty()) text += formatted("\n{}\n", flowing(command.footer, 0, columns));
   return with_headings(text);
 }
@@ -293,14 +304,14 @@ std::string manual_page(const std::vector<Command>& commands) {
         formatted(".SH {}\n.B {}\n.PP\n{}", title, for_manual(usage_of(command)), lines_for_manual(command.summary));
     for (const bool named : {false, true}) {
       visit_options(command, named, [&](const Option& option) {
-        page += formatted(".TP\n.B {}\n{}", for_manual(spelled(option)), lines_for_manual(meaning(option)));
+        page += formatted(".TP\n.B {}\n{}", for_manual(spelled(option)), lines_for_manual(meaning(option, true)));
       });
     }
     if (!command.footer.empty()) page += formatted(".PP\n{}", lines_for_manual(command.footer));
   }
-  page += formatted(".SH OPTIONS\n.TP\n.B {}\n{}.TP\n.B {}\n{}", for_manual("-h, --help"),
-                    lines_for_manual("explain the program; after a command, explain that"), for_manual("-V, --version"),
-                    lines_for_manual("print the version"));
+  page += ".SH OPTIONS\n";
+  for (const auto& [names, text] : kOptionsOfProgram)
+    page += formatted(".TP\n.B {}\n{}", for_manual(names), lines_for_manual(text));
   return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 usage, 3 input invalid, 4 a tolerance was exceeded\n";
 }
 
@@ -309,7 +320,7 @@ Result<std::string> completions(const std::vector<Command>& commands, std::strin
   if (shell == "zsh") return zsh_completions(commands);
   if (shell == "fish") return fish_completions(commands);
   return Error{ErrorCode::kUsage, "--completions",
-               formatted("there are none for '{}'; there are bash, zsh and fish", printable(shell))};
+               formatted("there are no completions for '{}'; choose bash, zsh or fish", printable(shell))};
 }
 
 }  // namespace chronormal::cli

@@ -13,9 +13,10 @@
 
 namespace chronormal::cli {
 
-/// Return the help of the program and of one command, with lines of at most this many columns if words allow it.
+/// Return the help of the program and of one command, with lines of at most this many columns if words allow it. Unless
+/// all is asked for, the help of a command has a line for each option that is not rare.
 [[nodiscard]] std::string help_of_program(const std::vector<Command>& commands, std::size_t columns);
-[[nodiscard]] std::string help_of_command(const Command& command, std::size_t columns);
+[[nodiscard]] std::string help_of_command(const Command& command, bool all, std::size_t columns);
 
 /// Returns the manual page for man(1).
 [[nodiscard]] std::string manual_page(const std::vector<Command>& commands);

@@ -48,7 +48,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
 // Appends the times of A:STEP:B. The last one is B itself if the steps lead there.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
   const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
-  if (ends.size() != 3) return wrong("a range is FIRST:STEP:LAST");
+  if (ends.size() != 3) return wrong("a range must be FIRST:STEP:LAST");
   double numbers[3] = {};
   for (std::size_t i = 0; i < 3; ++i) {
     const Result<double> number = parse_number("--times", ends[i]);
@@ -56,10 +56,11 @@ Status append_range(const std::vector<std::string_view>& ends, std::string_view 
     numbers[i] = number.value();
   }
   const auto [first, step, last] = numbers;
-  if (!(step > 0) || !(first <= last)) return wrong("the step must be positive, and the range ascend");
+  if (!(step > 0) || !(first <= last))
+    return wrong("the step must be greater than 0, and the last time not before the first");
   const double steps = (last - first) / step;
   if (!(steps + static_cast<double>(times.size()) < static_cast<double>(kMostTimes)))
-    return wrong("these are more than 1,000,000 times");
+    return wrong("the list has more than 1,000,000 times; take a larger step");
   const double rounded = std::round(steps);
   const bool reaches = std::fabs(steps - rounded) <= 1e-9 * std::fmax(1, steps);
   const auto count = static_cast<std::size_t>(reaches ? rounded : std::floor(steps));
@@ -80,7 +81,7 @@ Result<std::vector<double>> parse_times(const std::string& list) {
     if (!time) return time.error();
     times.push_back(time.value());
   }
-  if (times.size() > kMostTimes) return misuse("--times", "these are more than 1,000,000 times");
+  if (times.size() > kMostTimes) return misuse("--times", "the list has more than 1,000,000 times; take a larger step");
   return times;
 }
 
@@ -117,9 +118,9 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
     const bool is_quoted = rest.starts_with('"');
     if (is_quoted) {
       name = take_quoted(rest);
-      if (!name) return misuse("--weights", formatted("the quotes in '{}' do not end", list));
+      if (!name) return misuse("--weights", formatted("a closing quote is missing in '{}'", list));
       rest = trimmed(rest);
-      if (!rest.starts_with('=')) return misuse("--weights", formatted("there is no =WEIGHT behind '{}'", *name));
+      if (!rest.starts_with('=')) return misuse("--weights", formatted("=WEIGHT is missing after '{}'", *name));
     }
     more = rest.find(',') != std::string_view::npos;
     std::string_view part = take_part(rest);
@@ -129,16 +130,16 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
       part.remove_prefix(equals + 1);
     }
     const Result<double> weight = parse_number("--weights", part);
-    if (!weight) return misuse("--weights", weight.error().message + (name ? "" : ", and not NAME=WEIGHT either"));
+    if (!weight) return misuse("--weights", weight.error().message + (name ? "" : " or NAME=WEIGHT"));
     if (name)
       pose.named.emplace_back(*name, weight.value());
     else
       pose.numbers.push_back(weight.value());
   }
   if (!pose.numbers.empty() && !pose.named.empty())
-    return misuse("--weights", formatted("'{}' mixes numbers alone with NAME=WEIGHT: give a number for each target, or "
-                                         "names alone",
-                                         list));
+    return misuse(
+        "--weights",
+        formatted("'{}' mixes numbers with NAME=WEIGHT; give a number for each target, or NAME=WEIGHT for each", list));
   return pose;
 }
 
@@ -152,7 +153,7 @@ Result<Stepping> parse_step(const std::string& text) {
   };
   if (parts.size() > 2 || !read(parts[0], stepping.steps) || stepping.steps == 0 ||
       (parts.size() == 2 && !read(parts[1], stepping.anchor_interval)))
-    return misuse("--step", formatted("'{}' is neither N nor N:M, whole numbers up to 1,000,000, N at least 1", text));
+    return misuse("--step", formatted("'{}' must be N or N:M, whole numbers up to 1,000,000, with N at least 1", text));
   return stepping;
 }
 
@@ -173,7 +174,7 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
     if (!target) return misuse("--weights", target.error().message);
     std::optional<double>& own = given[target.value()];
     if (own)
-      return misuse("--weights", formatted("target {} is given two weights", target_label(names, target.value())));
+      return misuse("--weights", formatted("target {} has two weights; give one", target_label(names, target.value())));
     own = weight;
   }
   std::vector<double> weights;
@@ -186,24 +187,26 @@ Result<std::vector<double>> weights_of(const AskedMoments::Pose& pose, const Tar
 Status check_kind(const Motion& motion, const AskedMoments& asked) {
   const bool has_times = asked.at_keys || !asked.times.empty(), has_weights = !asked.poses.empty();
   if (motion.segments.empty()) {
-    if (has_weights) return misuse("--weights", "the mesh has no targets");
+    if (has_weights) return misuse("--weights", "the mesh has no targets; leave --weights out");
     for (const double time : asked.times) {
-      if (time != 0) return misuse("--times", "the mesh does not move: leave it out, or give 0");
+      if (time != 0) return misuse("--times", "the mesh does not move; leave --times out");
     }
-    if (asked.times.size() > 1) return misuse("--times", "the mesh does not move: one time is enough");
+    if (asked.times.size() > 1) return misuse("--times", "the mesh does not move; leave --times out");
     return Success{};
   }
   if (motion.kind == MotionKind::kTargets) {
     const std::size_t count = motion.segments.size();
     const std::string how = formatted("give --weights, {} number{} for each pose, or NAME=WEIGHT for some targets",
                                       count, count == 1 ? "" : "s");
-    if (has_times) return misuse("--times", "blend shapes have no times: " + how);
-    if (!has_weights) return misuse("--weights", "the input is blend shapes: " + how);
+    if (has_times) return misuse("--times", "blend shapes have no times; " + how);
+    if (!has_weights) return misuse("--weights", "the input is blend shapes, which need weights; " + how);
     return Success{};
   }
   if (has_weights)
-    return misuse("--weights", "only blend shapes have weights; this motion has --times from " + range_of(motion));
-  if (!has_times) return misuse("--times", "say at which times: the motion goes from " + range_of(motion));
+    return misuse("--weights", "weights are only for blend shapes; give --times, from " + range_of(motion));
+  if (!has_times)
+    return misuse("--times",
+                  "the times are missing; give --times within the motion, which goes from " + range_of(motion));
   return Success{};
 }
 
@@ -211,16 +214,16 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
 
 std::vector<Option> MomentArguments::table() {
   return {{"--times LIST", &times,
-           "in seconds of the motion: 0,0.5,1 or FIRST:STEP:LAST; keys for the times of its\n"
-           "keyframes; none where a mesh does not move"},
+           "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
+           "keyframes. A mesh that does not move needs no times"},
           {"--weights LIST", &weights,
-           "a pose of blend shapes: W1,W2,... with a weight for each target, or\n"
-           "NAME=W,... for those that are not 0; repeat it for more poses"},
+           "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
+           "target needs a weight. Repeat the option for more poses"},
           {"--step N",
            &step,
-           "with --scheme: every segment in N equal steps, each made from the one before by\n"
-           "additions, and anew every 64; N:M for every M, N:0 for never. Says how far it drifts",
-           {.excludes = "--times"}}};
+           "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step is made from the one before by "
+           "additions, and anew every 64 steps; N:M for every M, N:0 for never. The largest drift is printed",
+           {.excludes = "--times", .rare = true}}};
 }
 
 std::size_t AskedMoments::count() const noexcept {
@@ -230,14 +233,16 @@ std::size_t AskedMoments::count() const noexcept {
 Result<AskedMoments> understand(const MomentArguments& arguments) {
   AskedMoments asked;
   if (!arguments.step.empty()) {
-    if (!arguments.weights.empty()) return misuse("--step", "it goes through all targets: leave out --weights");
+    if (!arguments.weights.empty()) return misuse("--step", "--step goes through all targets; leave --weights out");
     const Result<Stepping> stepping = parse_step(arguments.step);
     if (!stepping) return stepping.error();
     asked.stepping = stepping.value();
     return asked;
   }
   if (!arguments.times.empty() && !arguments.weights.empty())
-    return misuse("--weights", "a motion has times, or targets with weights, not both");
+    return misuse(
+        "--weights",
+        "--times and --weights cannot be used together; give --weights for blend shapes, --times for other motions");
   asked.at_keys = arguments.times == "keys";
   if (!arguments.times.empty() && !asked.at_keys) {
     Result<std::vector<double>> times = parse_times(arguments.times);
@@ -258,8 +263,9 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
   const Motion& motion = stream.value()->motion();
   if (asked.stepping) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
-    if (segments == 0) return misuse("--step", "the mesh does not move: there is nothing to step through");
-    if (steps >= kMostTimes / segments) return misuse("--step", "these are more than 1,000,000 moments");
+    if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps");
+    if (steps >= kMostTimes / segments)
+      return misuse("--step", "the steps are more than 1,000,000 moments; take fewer steps");
     return step_moments(motion, steps);
   }
   if (const Status status = check_kind(motion, asked); !status) return status.error();

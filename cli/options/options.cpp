@@ -121,11 +121,11 @@ bool is_known(const std::vector<Command>& commands, std::string_view first) {
     list += (list.empty() ? "" : ", ") + command.name;
   }
   if (first.empty())
-    say("", "name a command: " + list, Tone::kError);
+    say("", "the command is missing; choose one of " + list, Tone::kError);
   else if (const std::string nearest = suggestion(first, names); !nearest.empty())
-    say("", formatted("there is no command '{}'{} There are {}", first, nearest, list), Tone::kError);
+    say("", formatted("there is no command '{}'{} Choose one of {}", first, nearest, list), Tone::kError);
   else
-    say("", formatted("there is no command '{}'; there are {}", first, list), Tone::kError);
+    say("", formatted("there is no command '{}'; choose one of {}", first, list), Tone::kError);
   say_where_help_is("");
   return false;
 }
@@ -150,7 +150,7 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
 // most similar option of the command.
 std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
   for (const RefusedOption& refused : command.refused)
-    if (refused.name == name) return " here: " + refused.reason;
+    if (refused.name == name) return " here; " + refused.reason;
   std::string others;
   for (const Command& other : commands)
     if (is_in(names_of_options(other), name)) others += (others.empty() ? "" : ", ") + other.name;
@@ -166,7 +166,7 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);
   const std::vector<std::string> with_value = names_of_options(command, true);
-  names.insert(names.end(), {"-h", "--help"});
+  names.insert(names.end(), {"-h", "--help", "--help-all"});
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     const std::string_view word = arguments[i];
     if (word == "--") break;
@@ -188,6 +188,7 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
   CLI::App program("", "chronormal");
   const std::string version = formatted("chronormal {}{}\n", kVersion, has_mpi() ? " with MPI" : "");
   program.set_version_flag("-V,--version", version);
+  program.set_help_all_flag("--help-all");
   program.require_subcommand(1);
   for (const Command& command : commands) add_command(command, program);
 
@@ -204,24 +205,31 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
   const auto command_of = [&](std::string_view name) {
     return std::find_if(commands.begin(), commands.end(), [&](const Command& command) { return command.name == name; });
   };
-  if (first == "help") return print_or_report(help_of_command(*command_of(asked), columns_of_output()));
+  if (first == "help") return print_or_report(help_of_command(*command_of(asked), false, columns_of_output()));
   if (const auto named = command_of(first); named != commands.end()) {
     const std::span<char* const> rest(arguments + 2, static_cast<std::size_t>(argument_count) - 2);
     if (const auto unknown = find_unknown_option(*named, commands, rest)) return report(named->name, *unknown);
   }
+  const auto print_help = [&](bool all) {
+    const auto parsed = program.get_subcommands();
+    return print_or_report(parsed.empty()
+                               ? help_of_program(commands, columns_of_output())
+                               : help_of_command(*command_of(parsed.front()->get_name()), all, columns_of_output()));
+  };
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::CallForVersion&) {
     return print_or_report(version);
+  } catch (const CLI::CallForAllHelp&) {
+    return print_help(true);
   } catch (const CLI::Success&) {  // --help
-    const auto parsed = program.get_subcommands();
-    return print_or_report(parsed.empty()
-                               ? help_of_program(commands, columns_of_output())
-                               : help_of_command(*command_of(parsed.front()->get_name()), columns_of_output()));
+    return print_help(false);
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
     const std::string name = parsed.empty() ? "" : parsed.front()->get_name();
-    say(name, parsed.empty() ? formatted("there is no option '{}' before a command", first) : error.what(),
+    say(name,
+        parsed.empty() ? formatted("option '{}' stands before the command; put it after the command", first)
+                       : error.what(),
         Tone::kError);
     say_where_help_is(name);
     return kExitUsage;
@@ -230,7 +238,8 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
                                    [&](const Command& command) { return program.got_subcommand(command.name); });
   running = chosen->name;
   if (has_ranks() && !chosen->shares)
-    return Error{ErrorCode::kUsage, "mpirun", "it divides compare, audit and sample: run this on one rank"};
+    return Error{ErrorCode::kUsage, "mpirun",
+                 "only compare, audit and sample can run on several MPI processes; run this command without mpirun"};
   return chosen->run();
 }
 
@@ -238,9 +247,9 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
 
 Check check_whole(std::size_t least, std::size_t most) {
   const std::string range = most == static_cast<std::size_t>(-1)
-                                ? formatted("of {} or more", grouped(least))
+                                ? formatted("of at least {}", grouped(least))
                                 : formatted("from {} to {}", grouped(least), grouped(most));
-  return [least, most, message = "it must be a whole number " + range](const std::string& value) {
+  return [least, most, message = "the value must be a whole number " + range](const std::string& value) {
     std::size_t number = 0;
     const char* const last = value.data() + value.size();
     const auto [end, code] = from_chars(value.data(), last, number);

@@ -29,11 +29,12 @@ struct Option {
     bool required = false;
     std::string needs = {}, excludes = {};  ///< an earlier option in the table: "--blend"
     Check check = {};
+    bool rare = false;  ///< few need it: only --help-all has it
   };
 
   std::string spelling;  ///< the spelling in the help: "-o,--output OUT", "--force", "INPUT"
   Target target;
-  std::string help;
+  std::string help;  ///< a line for --help, and after it sentences for --help-all
   Rules rules = {};
 };
 
@@ -59,7 +60,7 @@ struct Command {
 /// Returns a check that the value is not empty, with the message for an empty value.
 [[nodiscard]] Check check_given(std::string message);
 
-/// Parses the command line and runs the command that it names, or prints help, the version, --manual-page or
+/// Parses the command line and runs the command that it names, or prints help (--help, --help-all), the version, --manual-page or
 /// --completions SHELL (cli/options/help.h). Errors go to stderr as "chronormal COMMAND: place: message". Returns the
 /// exit code.
 [[nodiscard]] int run_program(const std::vector<Command>& commands, int argument_count, char** arguments);

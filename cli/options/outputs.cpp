@@ -34,10 +34,11 @@ Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<N
     const auto key = key_of_file(output.path);
     if (!key) continue;
     if (const auto found = files_read.find(*key); found != files_read.end())
-      return misuse(output.option, formatted("it must be another file than {} {}, which would be lost",
+      return misuse(output.option, formatted("this file would overwrite {} {}; choose another file",
                                              found->second->option, printable(found->second->path)));
     if (const auto [found, is_new] = written.emplace(*key, &output); !is_new)
-      return misuse(output.option, formatted("it must be another file than {}", found->second->option));
+      return misuse(output.option,
+                    formatted("this file is the same as {}; choose another file", found->second->option));
   }
   return Success{};
 }

@@ -67,20 +67,20 @@ std::string quoted_value(const Json& run, const std::string& name) {
 
 // Returns the first difference between two runs in words, or an empty text if there is none.
 std::string difference(const Json& old, const Json& now) {
-  if (!old.is_object()) return "it describes no run";
+  if (!old.is_object()) return "it does not describe a run";
   std::vector<std::string> names;
   for (const auto& item : now.items()) names.push_back(item.key());
   for (const auto& item : old.items()) names.push_back(item.key());
   for (const std::string& name : names) {
     const std::string before = quoted_value(old, name), after = quoted_value(now, name);
-    if (before != after) return formatted("{} was {} then, and is {} now", name, before, after);
+    if (before != after) return formatted("{} was {} then and is {} now", name, before, after);
   }
   return "";
 }
 
 Error of_another_run(const std::string& path, const std::string& what) {
-  return misuse(path, formatted("this is the journal of another run: {}; repeat that run, or remove the journal to "
-                                "begin anew",
+  return misuse(path, formatted("this journal belongs to another run ({}); repeat that run, or remove the journal to "
+                                "start from the beginning",
                                 what));
 }
 
@@ -91,7 +91,7 @@ std::string as_file(std::string_view text) { return plain(text); }
 CommandRun::CommandRun(std::string command, const CommonOptions& common, std::optional<Shard> shard,
                        std::optional<Journal> journal)
     : command_(std::move(command)), common_(common), shard_(shard), journal_(std::move(journal)) {
-  if (journal_) say_at_end("chronormal: what is done is kept beside the output; repeat the command to go on\n");
+  if (journal_) say_at_end("chronormal: the finished part is kept beside the output; repeat the command to go on\n");
 }
 
 CommandRun::~CommandRun() {
@@ -99,7 +99,8 @@ CommandRun::~CommandRun() {
   say_at_end(nullptr);
   if (is_finished_) return;
   if (journal_->is_empty() && journal_->remove()) return;
-  say(command_, formatted("what is done is kept in {}; repeat the command to go on", journal_->path()), Tone::kWarning);
+  say(command_, formatted("the finished part is kept in {}; repeat the command to go on", journal_->path()),
+      Tone::kWarning);
 }
 
 Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCallback progress,
@@ -110,18 +111,19 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   run.progress = watching_ranks(std::move(progress));
   if (!journal_) return Success{};
   if (input.document() != nullptr || motion.kind != MotionKind::kSequence)
-    return misuse("--resume", "it goes on with sequences of keyframes, which this input is not");
+    return misuse("--resume",
+                  "--resume is only for sequences of keyframes, and the input is not one; leave --resume out");
   run.journal = &*journal_;
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
-    say(command_, formatted("goes on: the journal has {} {} of an earlier run", grouped(done), things), Tone::kWarning);
+    say(command_, formatted("going on after {} {} of an earlier run", grouped(done), things), Tone::kWarning);
   return Success{};
 }
 
 std::vector<Part> CommandRun::gather(const std::string& own) {
   std::vector<Part> parts;
   for (std::string& text : gather_texts(own))
-    parts.push_back({formatted("what rank {} has found", parts.size()), std::move(text)});
+    parts.push_back({formatted("the result of MPI process {}", parts.size()), std::move(text)});
   return parts;
 }
 
@@ -144,9 +146,11 @@ Status CommandRun::finish() {
 
 std::vector<Option> RunArguments::options(const std::string& of_what) {
   return {{"--shard I/N", &shard, of_what},
-          {"--resume", &resume,
-           "keep what is done in OUT.journal, and go on from there where an earlier run of this\n"
-           "command was interrupted: the same bytes as without a break"}};
+          {"--resume",
+           &resume,
+           "go on where an interrupted run of this command ended\nWhat is done is kept in OUT.journal. The result has "
+           "the same bytes as without a break",
+           {.rare = true}}};
 }
 
 Result<std::optional<Shard>> RunArguments::read_shard() const {
@@ -160,19 +164,18 @@ Result<std::optional<Shard>> RunArguments::read_shard() const {
   };
   const bool is_share = slash != std::string_view::npos && is_number(words.substr(0, slash), index) &&
                         is_number(words.substr(slash + 1), count) && index >= 1 && index <= count;
-  if (!is_share) return misuse("--shard", formatted("'{}': it must be 1/8, 2/8, ... for one of 8 shares", *shard));
+  if (!is_share) return misuse("--shard", formatted("'{}' must be a share such as 1/8, the first of 8", *shard));
   return std::optional(Shard{index - 1, count});
 }
 
 Status RunArguments::check(const std::string& other) const {
   const std::string option = shard ? "--shard" : resume ? "--resume" : other;
   if (const std::size_t copies = count_of_copies(); copies > 1 && !shard)
-    return misuse("mpirun",
-                  formatted("{} copies of this program were started, which was built without MPI: each of them would "
-                            "do all of the work. Build it with -DCHRONORMAL_MPI=ON, or give each copy its --shard",
-                            copies));
+    return misuse("mpirun", formatted("mpirun has started {} copies of a program without MPI, and each would do all of "
+                                      "the work; build it with -DCHRONORMAL_MPI=ON, or give each copy its own --shard",
+                                      copies));
   if (has_ranks() && !option.empty())
-    return misuse(option, "mpirun divides one motion and adds up its shares: leave out one of the two");
+    return misuse(option, "this option cannot be used with mpirun; leave out one of the two");
   const Result<std::optional<Shard>> read = read_shard();
   return read ? Status(Success{}) : Status(read.error());
 }
@@ -181,7 +184,8 @@ std::optional<Shard> RunArguments::share() const { return has_ranks() ? own_shar
 
 Status RunArguments::check_output(const CommonOptions& common) const {
   if (!resume) return chronormal::check_output(common.output, common.force);
-  if (is_stream(common.output)) return misuse("--resume", "it keeps its journal beside a file: add --output FILE");
+  if (is_stream(common.output))
+    return misuse("--resume", "--resume needs an output file, beside which it keeps its journal; add --output FILE");
   std::error_code error;
   const bool goes_on = std::filesystem::exists(journal_name(common.output), error);
   return chronormal::check_output(common.output, common.force || goes_on);
@@ -194,7 +198,8 @@ Result<std::unique_ptr<CommandRun>> RunArguments::begin(const std::string& comma
     return std::make_unique<CommandRun>(command, common, read_shard().value(), std::move(journal));
   };
   if (!resume) return begun({});
-  if (!input.base.empty()) return misuse("--resume", "it goes on with sequences: targets of a base are judged at once");
+  if (!input.base.empty())
+    return misuse("--resume", "--resume is only for sequences of keyframes; leave --resume out with --base");
   const Result<Json> run = describe(command, tables, input);
   if (!run) return run.error();
   const std::string text = run.value().dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -53,10 +53,11 @@ std::string change(double before, double after) { return four_decimals(before) +
 // Returns "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and the number of normals that cannot be lit.
 std::string change_words(const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
-  std::string text =
-      formatted("worst {}, mean {} degrees", change(before.worst, after.worst), change(before.mean(), after.mean()));
+  std::string text = formatted("on average {}, at worst {} degrees", change(before.mean(), after.mean()),
+                               change(before.worst, after.worst));
   if (before.unlit + after.unlit > 0)
-    text += formatted(", {} -> {} that cannot be lit", grouped(before.unlit), counted(after.unlit, "pair", "pairs"));
+    text += formatted(", {} -> {} that are zero, infinite or NaN", grouped(before.unlit),
+                      counted(after.unlit, "normal", "normals"));
   return text;
 }
 
@@ -73,8 +74,8 @@ std::string weighting_lines(const GltfBake& bake) {
     }
     if (count == 0 || info.weighting == Weighting::kArea) continue;
     if (count > kMostNamed) names += formatted(" and {} more", count - kMostNamed);
-    text +=
-        formatted("{}: for {}-weighted normals, which are fitted (by area they would be exact)\n", names, info.name);
+    text += formatted("{}: normals are {}-weighted, which can only be approximated (area can be exact)\n", names,
+                      info.name);
   }
   return text;
 }
@@ -161,8 +162,8 @@ std::string torn(double edges) {
 
 // Returns words for the poses that a table of viewers covers.
 std::string poses_words(bool of_animations) {
-  return of_animations ? "in what the file plays (targets alone, which --animations-only gives up, are not in it)"
-                       : "in what the file plays, and for each target alone";
+  return of_animations ? "in the animations of the file (not with single sliders, which --animations-only gives up)"
+                       : "in the animations of the file, and with each slider alone";
 }
 
 std::string viewers_table(const GltfBake& bake, const BakeReport& report, bool of_animations) {
@@ -228,7 +229,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
                   rounded_change(row.before.mean, row.after.mean), rounded_change(row.before.worst, row.after.worst));
   };
   add_others(others, "in ");
-  add_others(left_out, "no better in ");
+  add_others(left_out, "not better in ");
   return text;
 }
 
@@ -242,8 +243,8 @@ std::string left_over(const GltfBake& bake) {
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
   return formatted(
-      "what it plays is still up to {:.3g} degrees off in places: --tolerance {} takes as many bytes as that needs\n",
-      worst, kHarmlessTolerance);
+      "errors of up to {:.3g} degrees remain in places; add --tolerance {} to correct them in a larger file\n", worst,
+      kHarmlessTolerance);
 }
 
 // Returns a text about the number of corrections that bake left out, and the reason.
@@ -252,9 +253,9 @@ std::string left_text(const GltfBake& bake) {
   for (const BakedMesh& mesh : bake.meshes) left_out += mesh.left_out;
   std::string text;
   if (left_out > 0)
-    text +=
-        counted(left_out, "correction that would gain least is left out: one of these viewers has no room for more\n",
-                "corrections that would gain least are left out: one of these viewers has no room for more\n");
+    text += counted(
+        left_out, "correction that would gain least is left out, since one of these viewers has no room for more\n",
+        "corrections that would gain least are left out, since one of these viewers has no room for more\n");
   return text;
 }
 
@@ -308,15 +309,14 @@ std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& a
   std::string text;
   const auto add = [&](const std::string& words) { text.append(text.empty() ? "" : ", and ").append(words); };
   if (respects.mean)
-    add(formatted("on average (normals are off by {} degrees, before by {})", four_decimals(after.mean()),
-                  four_decimals(before.mean())));
+    add(formatted("on average ({} degrees, before {})", four_decimals(after.mean()), four_decimals(before.mean())));
   if (respects.worst)
-    add(formatted("where a normal is farthest off (by {} degrees, before by {})", four_decimals(after.worst),
+    add(formatted("in its worst error ({} degrees, before {})", four_decimals(after.worst),
                   four_decimals(before.worst)));
   if (respects.torn)
-    add(formatted("in how many edges are torn ({}, before {})", torn(after.torn_edges()), torn(before.torn_edges())));
+    add(formatted("in its torn edges ({}, before {})", torn(after.torn_edges()), torn(before.torn_edges())));
   if (respects.unlit)
-    add(formatted("in how many cannot be lit ({}, before {})", counted(after.unlit, "pair", "pairs"),
+    add(formatted("in its normals that are zero, infinite or NaN ({}, before {})", grouped(after.unlit),
                   grouped(before.unlit)));
   return text;
 }
@@ -324,24 +324,22 @@ std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& a
 std::string lines_after(const BakeReport& report) {
   std::string text;
   if (report.drivers_file)
-    text += formatted("what drives the extra targets is in {} too\n", printable(*report.drivers_file));
+    text += formatted("{} says how to drive the correction targets\n", printable(*report.drivers_file));
   if (!report.audit) return text;
-  text += formatted("by audit: {}\n", change_words(*report.audit));
+  text += formatted("all errors before -> after: {}\n", change_words(*report.audit));
   double skinning = 0;
   for (const AuditFinding& finding : report.audit->after.findings)
     if (finding.kind == AuditFinding::Kind::kSkinned) skinning = std::max(skinning, finding.degrees);
   if (skinning > kAuditFault)
-    text += formatted(
-        "behind a skin a right normal is not that of the skinned surface: skinning turns it by up to {:.2f} degrees,\n"
-        "which no deltas can mend\n",
-        skinning);
+    text +=
+        formatted("skinning turns even true normals by up to {:.2f} degrees, which no file can correct\n", skinning);
   return text;
 }
 
 // Returns a text about the distance of normals that are right for straight pieces from those of the original curves.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
-  return formatted(" for the straight pieces, within {:g} degrees of the curves", bake.cut->path.tolerance);
+  return formatted(" of the straight pieces, which are within {:g} degrees of the curves", bake.cut->path.tolerance);
 }
 
 }  // namespace
@@ -349,10 +347,10 @@ std::string beside_curves(const SequenceBake& bake) {
 std::string worse_text(const BeforeAndAfter& audit, bool of_animations) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   const WorseRespects worse = find_worse(after, before), better = find_worse(before, after);
-  std::string text = "by audit the result is ";
+  std::string text = "the result is ";
   if (better.any()) text += "better than the input " + respects_text(better, audit) + ", but ";
   text += (better.any() ? "worse " : "worse than the input ") + respects_text(worse, audit);
-  if (of_animations) text += "; this counts targets alone as well, which --animations-only gives up";
+  if (of_animations) text += "; these errors include single sliders, which --animations-only gives up";
   return text;
 }
 
@@ -366,24 +364,18 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     bool any_baked = false;
     for (const BakedMesh& mesh : bake.meshes) any_baked |= mesh.already_baked;
     if (any_baked) {
-      return text +
-             "nothing to bake: it was baked before; the output is as the input. To bake it in another way, start from "
-             "the original\n";
+      return text + "nothing was changed, since this file was baked before. To get closer, bake the ORIGINAL file\n";
     }
-    if (bake.meshes.empty())
-      return text + "nothing to bake: no morph target moves a vertex of a face; the output is as the input\n";
-    return text +
-           (are_all_within(bake)
-                ? "nothing to bake: its normals are within the tolerance; the output is as the input\n"
-                : "nothing to bake: no other normals are better as a whole in any of these viewers; the output is as "
-                  "the input\n");
+    if (bake.meshes.empty()) return text + "nothing was changed, since no morph target moves a face\n";
+    return text + (are_all_within(bake) ? "nothing was changed, since all normals are within the tolerance\n"
+                                        : "nothing was changed, since nothing better was found for these viewers\n");
   }
   text += verdict(bake, report);
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
   table.add_column("encoding", "", Table::Align::kLeft);
   table.add_column("normals", "", Table::Align::kRight);
-  table.add_column("extra targets", "", Table::Align::kRight);
+  table.add_column("correction", "targets", Table::Align::kRight);
   table.add_column("deltas", "bytes", Table::Align::kRight);
   if (report.audit) {
     table.add_column("before", "degrees", Table::Align::kRight);
@@ -394,26 +386,26 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   for (const BakedMesh& mesh : bake.meshes) add_row(mesh, report, table);
   text.append("\n").append(table.text()).append("\n");
   text += formatted("{} and {} were added", counted(bake.added_targets, "target", "targets"),
-                    counted(bake.added_bytes, "byte of arrays", "bytes of arrays"));
+                    counted(bake.added_bytes, "byte of data", "bytes of data"));
   if (bake.left_out_bytes > 0)
-    text += formatted("; {} that nothing refers to any more are left out",
-                      counted(bake.left_out_bytes, "byte of arrays", "bytes of arrays"));
+    text += formatted("; {} that are no longer used were left out",
+                      counted(bake.left_out_bytes, "byte of data", "bytes of data"));
   if (bake.converted_tracks > 0)
-    text += formatted("; {} now", counted(bake.converted_tracks, "weight track is a cubic spline",
-                                          "weight tracks are cubic splines"));
+    text += formatted("; {} now", counted(bake.converted_tracks, "animation of weights is a cubic spline",
+                                          "animations of weights are cubic splines"));
   text += '\n';
   text += weighting_lines(bake);
   std::size_t fitted = 0;
   for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
   if (fitted > 0)
-    text += counted(fitted, "normal that several targets move at once has deltas",
-                    "normals that several targets move at once have deltas") +
-            " fitted to the weights of the file\n";
+    text += counted(fitted, "normal that several targets move at once was fitted",
+                    "normals that several targets move at once were fitted") +
+            " to the weights of the file\n";
   std::size_t tangents = 0;
   for (const BakedMesh& mesh : bake.meshes) tangents += mesh.new_tangents;
   if (tangents > 0)
-    text += counted(tangents, "target has new tangents: its", "targets have new tangents: their") +
-            " stored ones leaned on the right normals\n";
+    text += counted(tangents, "target has new tangents, since its", "targets have new tangents, since their") +
+            " old ones did not fit the new normals\n";
   return text + left_text(bake) + viewers_text(bake, report) + left_over(bake) + lines_after(report);
 }
 
@@ -432,30 +424,33 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
       table.add_row({mesh_name(mesh), name_of(choice), grouped(choice.targets), grouped(choice.bytes),
                      four_decimals(choice.played.mean), four_decimals(choice.played.worst),
                      is_smallest     ? "recommended"
-                     : choice.chosen ? "the nearest"
+                     : choice.chosen ? "closest"
                                      : ""});
     }
   }
-  return formatted("{}: nothing is written\n\n", printable(report.input)) + table.text() +
-         plan_of_viewers(bake, false) + plan_of_viewers(bake, true);
+  return formatted("{}: candidates for --for, --encode and --tolerance; nothing is written\n\n",
+                   printable(report.input)) +
+         table.text() + plan_of_viewers(bake, false) + plan_of_viewers(bake, true);
 }
 
 std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report) {
   std::string text = headline(report);
   text += formatted("{}, {}: {} and {}, {}\n", counted(bake.keyframes, "keyframe", "keyframes"),
                     counted(bake.vertices, "vertex", "vertices"), counted(bake.targets, "target", "targets"),
-                    counted(bake.extra_targets, "extra one", "extra ones"), counted(bake.bytes, "byte", "bytes"));
+                    counted(bake.extra_targets, "correction target", "correction targets"),
+                    counted(bake.bytes, "byte", "bytes"));
   if (bake.weighting != Weighting::kArea)
-    text += formatted("weighted by {}, as the stored normals are\n", weighting_name(bake.weighting));
-  if (bake.has_offsets) text += "what the stored normals of keyframe 0 add to that is kept throughout\n";
+    text += formatted("normals are {}-weighted, like the stored normals\n", weighting_name(bake.weighting));
+  if (bake.has_offsets)
+    text += "where the stored normals of keyframe 0 differ from the surface, that difference is kept\n";
   if (bake.keys) {
-    text += formatted("{}, {} of them between keyframes; {} left out; {} would do if all segments were cut alike\n",
+    text += formatted("{}, {} of them between keyframes; {} left out; {} if all segments were cut alike\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
                       counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
-    text += formatted("keys: at most {} degrees from the right normals{} at every instant, certified\n",
-                      four_decimals(bake.largest_error), bake.cut ? " of the straight pieces" : "");
+    text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
+                      four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
     if (bake.cut)
-      text += formatted("and at most {} from those of the curves, wherever the faces around agree\n",
+      text += formatted("and at most {} from the curves, except where faces almost vanish\n",
                         four_decimals(bake.largest_error + bake.cut->path.tolerance));
   } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0) {
     bool are_all_known = bake.without_normals == 0;
@@ -463,14 +458,14 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
       const Audit& after = report.audit->after;
       are_all_known = after.is_judged() && after.error.cancelled == 0 && after.error.unlit == 0;
     }
-    text += are_all_known ? "exact at every instant" + beside_curves(bake) + '\n'
-                          : "exact wherever there is a right normal: around some vertices the normals of faces cancel, "
-                            "or no face\nhas an area\n";
+    text += are_all_known
+                ? "exact at every instant" + beside_curves(bake) + '\n'
+                : "exact, except around some vertices where the normals of faces cancel or no face has an area\n";
   } else
     text +=
-        formatted("{}: at most {} degrees from the right normals, {}\n",
+        formatted("{}: the error is at most {} degrees, {}\n",
                   encoding == BakeEncoding::kExact ? "fitted" : name_of(encoding), four_decimals(bake.largest_error),
-                  encoding == BakeEncoding::kHarmless ? "at 40 instants of each segment" : "as far as can be proven");
+                  encoding == BakeEncoding::kHarmless ? "measured at 40 moments of each segment" : "which is proven");
   return text + lines_after(report);
 }
 

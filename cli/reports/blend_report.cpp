@@ -39,11 +39,9 @@ std::string headline(const NamedBlendComparison& input, const BlendSubject& subj
                                          ? ""
                                          : " of " + std::string(element_kind_name(subject.kind)));
   if (input.animation.empty())
-    text += formatted(", {} for each number of active targets\n",
-                      counted(rows, "random weight vector", "random weight vectors"));
+    text += formatted(", {} for each number of active targets\n", counted(rows, "random pose", "random poses"));
   else
-    text += formatted(", {} of animation {}\n", counted(rows, "weight vector", "weight vectors"),
-                      printable(input.animation, kShownName));
+    text += formatted(", {} of animation {}\n", counted(rows, "pose", "poses"), printable(input.animation, kShownName));
   return text;
 }
 
@@ -100,10 +98,10 @@ std::string notes(const BlendSubject& subject) {
     for (const BlendError& error : errors.deltas) {
       const std::string pairs = formatted(", {} active: ", grouped(errors.active));
       if (error.quality.missing > 0)
-        text += formatted("{}{}{} without a direction count as 180 degrees\n", name_of(error.deltas), pairs,
+        text += formatted("{}{}{} without a direction, counted as 180 degrees\n", name_of(error.deltas), pairs,
                           counted(error.quality.missing, "normal", "normals"));
       if (error.quality.degenerate > 0 && error.deltas == BlendDeltas::kExact)
-        text += formatted("degenerate{}{} left out: the geometry has none\n", pairs,
+        text += formatted("no normal{}{} left out, since the faces there have no area\n", pairs,
                           counted(error.quality.degenerate, "normal", "normals"));
     }
   }
@@ -113,9 +111,9 @@ std::string notes(const BlendSubject& subject) {
 std::string notes(const BlendComparison& comparison) {
   std::string text;
   if (comparison.still > 0)
-    text += formatted("{} left out: no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
+    text += formatted("{} left out, since no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
   if (comparison.flat > 0)
-    text += formatted("{} left out: without stored normals (flat in viewers; --elements vertices makes smooth ones)\n",
+    text += formatted("{} left out, since no normals are stored; add --elements vertices to compare smooth ones\n",
                       counted(comparison.flat, "mesh", "meshes"));
   return text;
 }

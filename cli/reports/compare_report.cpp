@@ -44,7 +44,7 @@ std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
 std::string sample_pairs(std::size_t count, const std::string& word) {
-  return formatted("{} ({}, sample) {}", grouped(count), word, count == 1 ? "pair" : "pairs");
+  return formatted("{} {}", grouped(count), count == 1 ? "sample" : "samples");
 }
 
 // Returns facts that the table does not show, one line each: parts that were treated differently, and parts that were
@@ -68,21 +68,24 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     const auto add = [&](std::size_t count, const std::string& what) {
       if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
     };
-    add(row.flagged, share(row.flagged) + " evaluated in double");
-    add(row.fallbacks, share(row.fallbacks) + " with a stated fallback");
+    add(row.flagged, share(row.flagged) + " computed in double precision");
+    add(row.fallbacks, share(row.fallbacks) + " where the scheme is undefined and another is used");
     if (row.certified)
-      add(row.certified->unbounded, share(row.certified->unbounded) + " without a bound: a normal vanishes on the way");
-    add(row.quality.missing, sample_pairs(row.quality.missing, word) + " without a normal of the scheme left out");
+      add(row.certified->unbounded,
+          share(row.certified->unbounded) + " without a bound, since a normal vanishes on the way");
+    add(row.quality.missing,
+        sample_pairs(row.quality.missing, word) + " left out, since the scheme has no normal there");
   }
   if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
   if (degenerate > 0)
-    text += formatted("{}degenerate: {} without an exact normal left out\n", prefix, sample_pairs(degenerate, word));
+    text += formatted("{}no normal: {} left out, since the faces there have no area\n", prefix,
+                      sample_pairs(degenerate, word));
   if (comparison.tolerance && comparison.cheapest) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
-    text += formatted("{}cheapest within {:g} degrees at every time: {}, at most {}\n", prefix, *comparison.tolerance,
-                      row.scheme, rounded_up(in_degrees(row.certified->upper)));
+    text += formatted("{}the cheapest scheme that is always within {:g} degrees is {}, with an error of at most {}\n",
+                      prefix, *comparison.tolerance, row.scheme, rounded_up(in_degrees(row.certified->upper)));
   } else if (comparison.tolerance) {
-    text += formatted("{}none of them is within {:g} degrees at every time\n", prefix, *comparison.tolerance);
+    text += formatted("{}no scheme is always within {:g} degrees\n", prefix, *comparison.tolerance);
   }
   return text;
 }

@@ -53,7 +53,7 @@ std::string figure_table(const std::string& input, const FaceFigure& figure) {
   }
   text += table.text();
   if (figure.matrix) {
-    text += "\nM, which takes the face and its unit normal from t = 0 to t = 1:\n";
+    text += "\nThe matrix M, which moves the face and its unit normal from t = 0 to t = 1:\n";
     for (const auto& row : *figure.matrix)
       text +=
           formatted("       {} {} {} {}\n", component(row[0]), component(row[1]), component(row[2]), component(row[3]));

@@ -95,12 +95,12 @@ std::string facts_of(const Inspected& input) {
                        : formatted("up to {:.1f} degrees ({} in {})", found.turn.value * kDegreesPerRadian,
                                    face_label(input, found.turn.element), segment_label(input, found.turn.segment)));
     const std::size_t pairs = found.faces * found.segments.size();
-    add("memory", formatted("{} for keyframes, {} for exact normals of faces ({:.1f} bytes a face and segment)",
+    add("memory", formatted("{} for keyframes, {} for exact normals of faces ({:.1f} bytes for each face and segment)",
                             size_in_bytes(found.keyframe_bytes), size_in_bytes(found.normal_bytes),
                             static_cast<double>(found.normal_bytes) / static_cast<double>(pairs)));
     if (found.flagged > 0)
-      add("in double",
-          formatted("{} of {} normals, which float would get wrong", grouped(found.flagged), grouped(pairs)));
+      add("in double", formatted("{} of {} normals, for which float32 is not precise enough", grouped(found.flagged),
+                                 grouped(pairs)));
   } else {
     add("memory", size_in_bytes(found.keyframe_bytes) + " for positions");
   }
@@ -191,7 +191,7 @@ std::string track_table(const InspectedGltf& gltf) {
                                              [](const GltfAnimation& animation) { return animation.tracks.empty(); }));
   std::string rest;
   if (silent > 0)
-    rest = formatted("{}{} without a track of weights: {} what morphs\n", tracks.empty() ? "\n" : "",
+    rest = formatted("{}{} without weights, so {} any morph target\n", tracks.empty() ? "\n" : "",
                      counted(silent, "animation", "animations"), silent == 1 ? "it does not move" : "they do not move");
   if (tracks.empty()) return rest;
   Table table;
@@ -262,8 +262,7 @@ std::string inspect_text(const Inspected& input) {
     text += fact("file", gltf_contents(*input.gltf));
     if (const std::string list = extension_list(*input.gltf->document); !list.empty()) text += fact("extensions", list);
     if (const std::size_t still = count_left_out(*input.gltf); still > 0)
-      text +=
-          fact("still", counted(still, "primitive", "primitives") + " that do not move here: not part of what follows");
+      text += fact("still", counted(still, "primitive", "primitives") + " that do not move, which are left out below");
   }
   if (input.inspection) text += facts_of(input);
   if (input.gltf && !input.gltf->inspection.primitives.empty()) text += primitive_table(*input.gltf);
@@ -274,8 +273,8 @@ std::string inspect_text(const Inspected& input) {
   const std::vector<std::string> notes = input.opened.notes();
   if (!notes.empty()) text += '\n' + heading("How it was read:") + '\n';
   for (const std::string& note : notes) text += "  " + printable(note) + '\n';
-  if (troubles.empty()) return text + (notes.empty() ? "\nnothing that will trouble you\n" : "");
-  text += '\n' + heading("What will trouble you:") + '\n';
+  if (troubles.empty()) return text + (notes.empty() ? "\nno problems found\n" : "");
+  text += '\n' + heading("What can make normals wrong:") + '\n';
   for (const Trouble& trouble : troubles) {
     text += "  " + trouble.what;
     if (!trouble.where.empty()) text += formatted(" ({}{})", trouble.count > 1 ? "first: " : "", trouble.where);

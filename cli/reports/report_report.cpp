@@ -27,7 +27,7 @@ std::string parts_table(const Report& report) {
 }
 
 std::string places_table(const Report& report) {
-  if (report.worst.empty()) return formatted("no normal is off by more than {} degrees\n", kLeastPlace);
+  if (report.worst.empty()) return formatted("no error is larger than {} degrees\n", kLeastPlace);
   Table table;
   table.add_column("worst place", "", Align::kLeft);
   table.add_column("at", "", Align::kLeft);
@@ -45,8 +45,9 @@ std::string report_text(const Report& report, const std::string& output, std::si
   std::string text = formatted("{} -> {}, {}\n\n", heading(printable(report.input)), heading(printable(output)),
                                counted(bytes, "byte", "bytes"));
   text += parts_table(report) + '\n' + places_table(report);
-  if (!report.plan_message.empty()) text += formatted("\nno plan of bake: {}\n", printable(report.plan_message));
-  if (!report.thinned.empty()) text += "\nleft out, so that the page stays small:\n";
+  if (!report.plan_message.empty())
+    text += formatted("\nbake could not be planned: {}\n", printable(report.plan_message));
+  if (!report.thinned.empty()) text += "\nleft out to keep the page small:\n";
   for (const std::string& sentence : report.thinned) text += formatted("  {}\n", sentence);
   return text;
 }

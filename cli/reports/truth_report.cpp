@@ -31,25 +31,24 @@ std::string remarks(const TruthComparison& c) {
   const TruthRow* const curved = find_row(c, "catmull-rom", "exact");
   if (linear != nullptr && exact != nullptr && exact->quality.mean() > kAsGood * linear->quality.mean())
     text += formatted(
-        "\nThe exact normals of straight motion (polynomial) are {} to this motion than linear: {} and {}\n"
-        "degrees in the mean, since its vertices did not move straight between the keyframes that were kept.\n",
-        exact->quality.mean() < linear->quality.mean() ? "hardly nearer" : "no nearer", mean_of(*exact),
+        "\nThe exact normals of straight motion (polynomial) are {} to this motion than linear, with {} and {} "
+        "degrees\non average, since its vertices did not move straight between the keyframes that were kept.\n",
+        exact->quality.mean() < linear->quality.mean() ? "hardly closer" : "not closer", mean_of(*exact),
         mean_of(*linear));
   if (is_too_sparse(c.bend))
     text += formatted(
-        "\nThe keyframes are too far apart for a curve through them: its paths bend by {:.2f} of their length, and\n"
-        "above {:.2f} nothing tells what happened between. More keyframes help; no scheme does.\n",
+        "\nThe keyframes are too far apart for curves through them, which bend by {:.2f} of their length (at most "
+        "{:.2f} is\nreliable). More keyframes help; no scheme does.\n",
         up_to_hundredths(c.bend), kTooSparse);
   if (curved == nullptr)
     text += find_row(c, "hermite", "exact") == nullptr
-                ? "\nTwo keyframes have no curve through them: with three, curved paths take part.\n"
-                : "\nTwo keyframes have no curve through them without their velocities: with three, catmull-rom takes "
-                  "part.\n";
+                ? "\nCurved paths are not compared, since they need at least three keyframes.\n"
+                : "\nThe path catmull-rom is not compared, since it needs at least three keyframes.\n";
   std::size_t degenerate = 0;
   for (const TruthRow& row : c.rows) degenerate = std::max(degenerate, row.quality.degenerate);
   if (degenerate > 0)
-    text += formatted("\ndegenerate: {} ({}, keyframe) {} without an exact normal left out\n", grouped(degenerate),
-                      one_element(c.kind), degenerate == 1 ? "pair" : "pairs");
+    text += formatted("\nno normal: {} left out, since the faces there have no area\n",
+                      counted(degenerate, "sample", "samples"));
   return text;
 }
 
@@ -58,7 +57,7 @@ std::string remarks(const TruthComparison& c) {
 std::string truth_table(const NamedTruthComparison& input) {
   const TruthComparison& c = input.comparison;
   std::string text =
-      formatted("{}: {}, {}; {} kept, {} left out, which these are held against\n", heading(printable(input.name)),
+      formatted("{}: {}, {}; {} kept and compared with the {} that were left out\n", heading(printable(input.name)),
                 counted(c.vertices, "vertex", "vertices"), counted(c.faces, "face", "faces"),
                 counted(c.kept, "keyframe", "keyframes"), grouped(c.left_out));
   if (c.kind != ElementKind::kFaces)

@@ -25,11 +25,11 @@ struct Ending {
 };
 
 constexpr Ending kEndings[] = {
-    {SIGHUP, "ended, since its terminal is gone (SIGHUP)"},
+    {SIGHUP, "stopped, since its terminal was closed (SIGHUP)"},
     {SIGINT, "interrupted (SIGINT)"},
-    {SIGQUIT, "ended (SIGQUIT)"},
-    {SIGTERM, "ended (SIGTERM)"},
-    {SIGXCPU, "ended, since it took more time than allowed (SIGXCPU)"},
+    {SIGQUIT, "stopped (SIGQUIT)"},
+    {SIGTERM, "stopped (SIGTERM)"},
+    {SIGXCPU, "stopped, since it used more time than allowed (SIGXCPU)"},
 };
 
 volatile std::sig_atomic_t stderr_is_terminal = 0;
@@ -64,7 +64,7 @@ extern "C" void end_by_lost_reader(int signal) {
 
 extern "C" void end_by_lost_input(int /*signal*/) {
   remove_temporaries();
-  end_line_and_say("an input became shorter while it was read, or can not be read any more");
+  end_line_and_say("an input was shortened by another program, or can no longer be read");
   ::_exit(kExitFailed);
 }
 

@@ -72,9 +72,8 @@ TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
   const std::string last =
       "\nchronormal bake hinge.glb -o baked.glb writes the fewest bytes that are within 0.5 degrees in all viewers, "
       "nowhere worse "
-      "than before, and says what is left of 90.00 degrees; for viewers that play targets as glTF says, --encode exact "
-      "leaves about 0.01 degrees or "
-      "less\n";
+      "than before, and says what is left of 90.00 degrees; for viewers that add up targets as glTF says, --encode "
+      "exact comes within about 0.01 degrees\n";
   ASSERT_GT(text.size(), last.size());
   EXPECT_EQ(text.substr(text.size() - last.size()), last);
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
@@ -282,7 +281,8 @@ TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_no_gate_alon
   test::ShadedMesh mesh = test::hinge();
   mesh.targets.clear();
   folder_.write("still.glb", mesh.file().glb());
-  EXPECT_EQ(text_of("still.glb"), "still.glb: nothing to judge: no target and no animation moves stored normals\n");
+  EXPECT_EQ(text_of("still.glb"),
+            "still.glb: nothing to judge, since no target and no animation moves stored normals\n");
   const ProcessResult gate = run("still.glb --tolerance 180 --json"),
                       several = run("still.glb still.glb --tolerance 1");
   EXPECT_EQ(gate.exit_code, 4);
@@ -529,7 +529,7 @@ TEST_F(AuditCli, several_gltf_files_are_a_row_each) {
   ASSERT_NE(m10, std::string::npos) << all.out;
   EXPECT_LT(n, m9);
   EXPECT_LT(m9, m10);
-  expect_words(all.out, {"nothing moves\n", "not judged\n", "wrong: bake it\n"});
+  expect_words(all.out, {"nothing moves\n", "not judged\n", "wrong, bake it\n"});
   const Json json = Json::parse(run("'models/m*.glb' hinge.glb --json").out);
   EXPECT_EQ(json["command"], "audit");
   EXPECT_EQ(json["schema"], 2);

@@ -55,8 +55,8 @@ TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   const ProcessResult result = run("moving.glb -o out.glb");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   expect_words(result.out, {"moving.glb -> out.glb\n", "hills  smallest", " targets and ", "bytes of arrays were added",
-                            "in what the file plays, and for each target alone", "three.js", "Filament", "on average ",
-                            "torn edges", "by audit: worst "});
+                            "in the animations of the file, and with each slider alone", "three.js", "Filament",
+                            "on average ", "torn edges", "by audit: worst "});
   EXPECT_EQ(result.out.find("cubic spline"), std::string::npos);
   const ProcessResult exact = run("moving.glb -o exact.glb --encode exact");
   expect_words(exact.out, {"hills  exact", "3 targets and ", "1 weight track is a cubic spline now"});
@@ -221,7 +221,7 @@ TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
     const ProcessResult result = run("huge.glb -o out.glb --force --json --encode exact");
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const Json audit = Json::parse(result.out)["audit"];
-    const bool says_so = result.err.find("by audit the result is ") != std::string::npos;
+    const bool says_so = result.err.find("the result is ") != std::string::npos;
     EXPECT_EQ(audit["worse"], says_so);
     if (audit["worst_degrees_after"] > audit["worst_degrees_before"]) {
       EXPECT_TRUE(says_so);
@@ -259,13 +259,13 @@ TEST_F(BakeCli, a_result_that_is_better_in_one_respect_and_worse_in_another_is_t
     ++mixed;
     EXPECT_EQ(audit["worse"], true);
     expect_words(result.err,
-                 {"by audit the result is better than the input on average (normals are off by " +
-                      figure("mean_degrees_after") + " degrees, before by " + figure("mean_degrees_before") + ")",
+                 {"the result is better than the input on average (normals are off by " + figure("mean_degrees_after") +
+                      " degrees, before by " + figure("mean_degrees_before") + ")",
                   ", but worse where a normal is farthest off (by " + figure("worst_degrees_after") +
                       " degrees, before by " + figure("worst_degrees_before") +
-                      "); this counts targets alone as well, which --animations-only gives up\n"});
+                      "); these errors include single sliders, which --animations-only gives up\n"});
     // The tables of viewers name the poses that they cover.
-    const std::string both = "in what the file plays, and for each target alone:",
+    const std::string both = "in the animations of the file, and with each slider alone:",
                       tracks = "in what the file plays (targets alone, which --animations-only gives up, are";
     const std::string text = run("talk.glb -o out.glb --force --animations-only --for three").out;
     expect_words(text, {tracks});
@@ -383,7 +383,7 @@ TEST_F(BakeCli, errors_have_their_exit_codes_and_leave_nothing_behind) {
   for (const char* const option : {"--plan", "--max-targets 5", "--animations-only"})
     expect_error(std::string("f_0.obj f_1.obj -o out.glb ") + option, 2, "it is for glTF files");
   expect_error("f_0.obj f_1.obj -o out.obj", 2, ".glb");
-  expect_error("f_0.obj f_1.obj -o out.gltf", 2, "a sequence is written as .glb");
+  expect_error("f_0.obj f_1.obj -o out.gltf", 2, "a sequence can only be written as .glb; choose such a name");
   expect_error("--base f_0.obj f_1.obj -o out.glb", 2, "--base");
   expect_error("f_0.obj f_1.obj -o out.glb --smooth", 2, "--smooth");
   expect_error("f_0.obj f_1.obj -o out.glb --recompute-base", 2, "--recompute-base");

@@ -241,9 +241,10 @@ TEST_F(HostileCli, messages_say_what_is_the_matter) {
   for (const char* const samples : {"-5", "1", "1e3", "x", "1000002", "''"}) {
     for (const char* const command : {"audit", "compare"})
       expect(run(std::string(command) + " a.obj b.obj --samples " + samples), 2,
-             {"--samples: it must be a whole number from 2 to 1,000,00"});
+             {"--samples: the value must be a whole number from 2 to 1,000,00"});
   }
-  expect(run("inspect a.obj --max-expansion -1"), 2, {"--max-expansion: it must be a whole number of 0 or more"});
+  expect(run("inspect a.obj --max-expansion -1"), 2,
+         {"--max-expansion: the value must be a whole number of 0 or more"});
 }
 
 TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {

@@ -246,16 +246,16 @@ TEST_F(Paths, certificates_hold_what_samples_find) {
 TEST_F(Paths, audit_advises_a_bake_of_the_same_keyframes_and_paths) {
   write_turn(0.6);
   const ProcessResult advised = run("audit 'f*.obj' --path catmull-rom:30 --fps 24 --from 1 --to 4 --every 1");
-  EXPECT_NE(
-      advised.out.find("chronormal bake 'f*.obj' --fps 24 --from 1 --to 4 --path catmull-rom:30 -o baked.glb makes a "
-                       "glTF file that is right at every instant"),
-      std::string::npos)
+  EXPECT_NE(advised.out.find("chronormal bake 'f*.obj' --fps 24 --from 1 --to 4 --path catmull-rom:30 -o baked.glb "
+                             "makes a glTF file with true normals at every instant"),
+            std::string::npos)
       << advised.out;
   EXPECT_EQ(run("bake 'f*.obj' --fps 24 --from 1 --to 4 --path catmull-rom -o baked.glb").exit_code, 0);
-  EXPECT_NE(run("audit 'f*.obj' --every 2")
-                .out.find("chronormal bake 'f*.obj' --every 2 -o baked.glb makes a glTF file "
-                          "that is right at every instant"),
-            std::string::npos);
+  EXPECT_NE(
+      run("audit 'f*.obj' --every 2")
+          .out.find(
+              "chronormal bake 'f*.obj' --every 2 -o baked.glb makes a glTF file with true normals at every instant"),
+      std::string::npos);
 }
 
 TEST_F(Paths, refuse_what_has_no_such_path) {

@@ -155,7 +155,8 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   expect_error("a.obj b.obj -o n.npy --times=-1", 2, "from 0 to 1");
   expect_error("a.obj b.obj -o n.npy --times 1 --fps 30", 2, "from 0 to 0.0333333");
   expect_error("a.obj b.obj -o n.npy", 2, "0 to 1");
-  expect_error("a.obj b.obj -o n.npy --times 0:1:999998,0,0", 2, "--times: these are more than 1,000,000 times");
+  expect_error("a.obj b.obj -o n.npy --times 0:1:999998,0,0", 2,
+               "--times: the list has more than 1,000,000 times; take a larger step");
 }
 
 TEST_F(SampleCli, weights_are_for_blend_shapes) {
@@ -202,7 +203,7 @@ TEST_F(SampleCli, weights_are_given_by_the_names_of_targets) {
   refused("2=1", "there is no target '2'; the targets are 0 (jawOpen)");
   refused("jawOpen=1,0=2", "target 0 (jawOpen) is given two weights");
   refused("jawOpen=1,2", "'jawOpen=1,2' mixes numbers alone with NAME=WEIGHT");
-  refused("jawOpen", "'jawOpen' is not a number, and not NAME=WEIGHT either");
+  refused("jawOpen", "'jawOpen' is not a number or NAME=WEIGHT");
   refused("jawOpen=", "'' is not a number");
   refused("'\"jawOpen=1'", "the quotes in '\"jawOpen=1' do not end");
   refused("'\"jawOpen\",1'", "there is no =WEIGHT behind 'jawOpen'");

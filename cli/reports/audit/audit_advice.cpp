@@ -88,22 +88,21 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
 
 // Predicts the result of `chronormal bake` on this file, as far as the audit can know it.
 std::string outcome(const Audited& input) {
-  if (input.document() == nullptr) return "makes a glTF file that is right at every instant";
+  if (input.document() == nullptr) return "makes a glTF file with true normals at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);
   const auto driven = static_cast<std::size_t>(std::count_if(
       wrong.begin(), wrong.end(), [&](const AuditSubject* subject) { return is_driven(input, *subject); }));
   const bool by_area = std::all_of(wrong.begin(), wrong.end(),
                                    [](const AuditSubject* subject) { return subject->weighting == Weighting::kArea; });
   const MotionError& error = input.audit.error;
-  const std::string now = error.unlit > 0 ? formatted("{} that cannot be lit", pairs(error.unlit))
+  const std::string now = error.unlit > 0 ? formatted("{} that are zero, infinite or NaN", pairs(error.unlit))
                                           : formatted("{} degrees", degrees(error.worst));
   std::string text = formatted(
-      "writes the fewest bytes that are within {:g} degrees in all viewers, nowhere worse than before, and says what "
-      "is "
-      "left of {}",
+      "corrects these normals, to within {:g} degrees if it can, in all viewers and nowhere worse than before, and "
+      "prints\nwhat remains of {}",
       kHarmlessTolerance, now);
   if (driven == wrong.size() && by_area && error.unlit == 0)
-    text += "; for viewers that play targets as glTF says, --encode exact leaves about 0.01 degrees or less";
+    text += "; for viewers that add up targets as glTF says, --encode exact comes within about 0.01 degrees";
   return text;
 }
 
@@ -117,25 +116,19 @@ std::string original_words(const Audited& input) {
     any_harmless = any_harmless || encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kSmallest;
     any_driven = any_driven || is_driven(input, *subject);
   }
-  const std::string baked = "what is off was baked before, and bake changes it no more: ";
+  const std::string baked = "the wrong meshes were baked before, and bake does not change them again; ";
   if (any_harmless && any_driven)
-    return baked +
-           "this is what all viewers of that bake show alike within its tolerance; bake the original with a smaller "
-           "--tolerance, with --for and those viewers that count, or with --encode exact where these play targets as "
-           "glTF "
-           "says";
-  if (any_harmless)
-    return baked + "what viewers show alike of each target is all that there is where no animation moves them";
+    return baked + "to get closer, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
+  if (any_harmless) return baked + "nothing better is possible for targets that no animation moves";
   if (!all_single && all_fitted)
-    return formatted("what is off is what a fit of {} normals leaves, and bake comes no nearer",
+    return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
   if (!all_single)
-    return baked +
-           "positions, normals or weights were changed after that, or --weighting was another; start again from the "
-           "file before its bake";
+    return baked + "they were changed after that, or --weighting was another; bake the ORIGINAL file again";
   if (any_driven)
-    return baked + "one delta for each target cannot be right throughout; bake the original with --encode exact";
-  return baked + "one delta for each target is all that there is where no animation moves them";
+    return baked +
+           "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
+  return baked + "nothing better is possible for targets that no animation moves";
 }
 
 }  // namespace
@@ -144,26 +137,25 @@ std::string advice(const Audited& input) {
   if (input.audit.subjects.empty()) return "";
   switch (remedy_of(input)) {
     case Remedy::kNone:
-      return formatted("\nnothing to do: no normal is off by more than {:g} {}\n", limit_of(input),
+      return formatted("\nnothing to do, since no error is larger than {:g} {}\n", limit_of(input),
                        limit_of(input) == 1 ? "degree" : "degrees");
     case Remedy::kUnknown:
-      return input.audit.error.cancelled > 0
-                 ? "\nnobody knows what is right where normals cancel: give each side of a sheet vertices of its own\n"
-                 : "\nnothing is known to be right: no face that moves has an area\n";
+      return input.audit.error.cancelled > 0 ? "\nnormals of faces cancel, so no vertex normal is right there; give "
+                                               "each side of a sheet its own vertices\n"
+                                             : "\nnothing could be judged, since no face that moves has an area\n";
     case Remedy::kTangents:
-      return "\nthe normals are right, and bake writes no tangents: export them for all targets, or for none, so that "
-             "viewers compute them\n";
+      return "\nthe normals are right but the tangents are not, which bake does not correct; export tangents for all "
+             "targets, or for\nnone, so that viewers compute them\n";
     case Remedy::kViewers:
-      return formatted("\nright where a viewer adds up targets as stored, which these do not: {}\n",
+      return formatted("\nthe normals are right in viewers that add up targets as glTF says, which these do not: {}\n",
                        wrong_viewers(input));
     case Remedy::kRule:
-      return formatted(
-          "\nviewers do not show a glTF file by the rule {}: without --rule, audit says what bake can do\n",
-          audit_rule_name(input.audit.rule));
+      return formatted("\nviewers do not show a glTF file by the rule {}; leave --rule out to see what bake can do\n",
+                       audit_rule_name(input.audit.rule));
     case Remedy::kOriginal:
       return '\n' + original_words(input) + '\n';
     case Remedy::kTargets:
-      return "\nto have right normals at every instant: put the targets into a glTF file, and bake that\n";
+      return "\nto correct them, write the targets as a .glb with chronormal convert, and bake that file\n";
     case Remedy::kBake:
       return formatted("\nchronormal bake {} -o baked.glb {}\n", input.bake, outcome(input));
   }
@@ -179,16 +171,16 @@ std::string verdict(const Audited& input) {
     case Remedy::kUnknown:
       return "unknown";
     case Remedy::kTangents:
-      return "wrong tangents";
+      return "tangents wrong";
     case Remedy::kViewers:
-      return "wrong in viewers";
+      return "wrong in some viewers";
     case Remedy::kRule:
     case Remedy::kTargets:
       return "wrong";
     case Remedy::kOriginal:
       return "wrong, baked before";
     case Remedy::kBake:
-      return "wrong: bake it";
+      return "wrong, bake it";
   }
   return "";
 }

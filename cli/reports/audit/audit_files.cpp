@@ -24,7 +24,8 @@ std::string headline(const std::vector<AuditedFile>& files) {
   std::string text = counted(files.size(), "file", "files");
   if (judged < files.size()) text += formatted(", {} judged", judged);
   if (worst != nullptr)
-    text += formatted(": worst {} degrees, in {}", judged_degrees(worst->error->worst), printable(worst->name));
+    text += formatted("; the worst error is {} degrees, in {}", judged_degrees(worst->error->worst),
+                      printable(worst->name));
   return text + '\n';
 }
 
@@ -43,7 +44,7 @@ AuditedFile::AuditedFile(std::string file, const Error& why)
 std::string audit_files_text(const std::vector<AuditedFile>& files) {
   Table table;
   table.add_column("file", "", Table::Align::kLeft);
-  for (const char* const title : {"worst", "99 %", "mean"}) table.add_column(title, "degrees", Table::Align::kRight);
+  for (const char* const title : {"worst", "99 %", "average"}) table.add_column(title, "degrees", Table::Align::kRight);
   table.add_column("faults", "", Table::Align::kRight);
   table.add_column("verdict", "", Table::Align::kLeft);
   for (const AuditedFile& file : files) {
@@ -56,7 +57,7 @@ std::string audit_files_text(const std::vector<AuditedFile>& files) {
     cells.push_back(file.verdict);
     table.add_row(std::move(cells));
   }
-  return headline(files) + '\n' + table.text() + "\nchronormal audit FILE says where, and what to do about it\n";
+  return headline(files) + '\n' + table.text() + "\nchronormal audit FILE tells where, and what to do about it\n";
 }
 
 std::string audit_files_json(std::vector<AuditedFile> files, const AuditLimits& limits) {

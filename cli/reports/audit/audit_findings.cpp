@@ -84,61 +84,63 @@ std::string group_words(const Audited& input, const Group& group) {
   const std::string who = subject_of(input, group), worst = degrees(found.degrees);
   switch (found.kind) {
     case Kind::kUnlit:
-      return formatted("{}: {} cannot be lit: what is shown is zero, infinite or no number", who, pairs(group.count));
+      return formatted("{}: {} would be zero, infinite or NaN in a viewer", who, pairs(group.count));
     case Kind::kMissingNormals:
-      return formatted("{} {} positions and no normals{}: {}", who, is_one ? "moves" : "move",
+      return formatted("{} {} positions without normals{}; {}", who, is_one ? "moves" : "move",
                        is_one ? " (" + counted(found.count, "primitive", "primitives") + ")" : "",
-                       found.is_fault() ? "off by up to " + worst + " degrees" : "none has to turn");
+                       found.is_fault() ? "errors of up to " + worst + " degrees" : "but no normal has to turn");
     case Kind::kWrongAtKeys:
-      return formatted("{}: {} contradict the geometry at {}, by up to {} degrees", who,
-                       input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals",
-                       found.target ? "weight 1" : "keyframes", worst);
+      return formatted("{}: {} have errors of up to {} degrees at {}", who,
+                       input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals", worst,
+                       found.target ? "weight 1" : "keyframes");
     case Kind::kWrongBetween:
-      return formatted("{}: right at {}, and off by up to {} degrees on the way", who,
+      return formatted("{}: right at {}, with errors of up to {} degrees in between", who,
                        found.target ? "weights 0 and 1" : "keyframes", worst);
     case Kind::kWrongTogether: {
       const double alone = worst_alone(input.audit, found);
       return alone > kAuditFault
-                 ? formatted("{}: targets together are off by up to {} degrees, alone by up to {}", who, worst,
-                             degrees(alone))
-                 : formatted("{}: each target alone is right, together they are off by up to {} degrees", who, worst);
+                 ? formatted("{}: errors of up to {} degrees where targets mix, and of up to {} for a target alone",
+                             who, worst, degrees(alone))
+                 : formatted(
+                       "{}: each target alone is right, but where targets mix there are errors of up to {} degrees",
+                       who, worst);
     }
     case Kind::kWrongPose:
-      return found.node ? formatted("{}: the pose in which the file opens is off by up to {} degrees",
+      return found.node ? formatted("{}: errors of up to {} degrees in the pose in which the file opens",
                                     of_mesh(input, found), worst)
-                        : formatted("{}: the poses are off by up to {} degrees", of_mesh(input, found), worst);
+                        : formatted("{}: errors of up to {} degrees in the poses", of_mesh(input, found), worst);
     case Kind::kStaleKeys:
-      return formatted(
-          "{}: the stored normals do not turn as the surface does ({}), so that the rule of the base counts there", who,
-          counted(group.count, "vertex", "vertices"));
+      return formatted("{}: stored normals do not turn with the surface ({}), so the rule of the base decides there",
+                       who, counted(group.count, "vertex", "vertices"));
     case Kind::kUnknownRule:
       return formatted(
-          "{}: its normals follow no rule that is known, so that areas weigh its faces; other rules differ by {} "
-          "degrees in the median",
+          "{}: its normals follow no known weighting, so area is used; others differ by {} degrees at the median",
           of_mesh(input, found), degrees(found.degrees));
     case Kind::kStaleTangents:
-      return formatted("{}: {} up to {} degrees from perpendicular to the right normal", who,
+      return formatted("{}: {} up to {} degrees away from a right angle to the true normal", who,
                        counted(group.count, "tangent is", "tangents are"), worst);
     case Kind::kFlat:
-      return formatted("{}: {} no normals, and {} shown flat, which is right", who,
+      return formatted("{}: {} no normals, and {} rendered flat, which is right", who,
                        counted(found.count, "primitive has", "primitives have"), found.count == 1 ? "is" : "are");
     case Kind::kSkinned:
-      return formatted(
-          "{}: {} a skin, through which normals are judged; skinning itself turns right ones by up to {} degrees",
-          of_mesh(input, found), counted(found.count, "node has", "nodes have"), worst);
+      return formatted("{}: {} a skin, which was applied; skinning itself turns even true normals by up to {} degrees",
+                       of_mesh(input, found), counted(found.count, "node has", "nodes have"), worst);
     case Kind::kUnreadSkin:
-      return formatted("{}: {} a skin that cannot be read, so that normals are judged without it: {}",
-                       of_mesh(input, found), counted(found.count, "node has", "nodes have"), found.reason->text());
+      return formatted("{}: {} a skin that cannot be read, so it was not applied ({})", of_mesh(input, found),
+                       counted(found.count, "node has", "nodes have"), found.reason->text());
     case Kind::kBaked:
-      return formatted("{}: baked by chronormal, with {}", who, counted(found.count, "extra target", "extra targets"));
+      return formatted("{}: baked by chronormal, with {}", who,
+                       counted(found.count, "correction target", "correction targets"));
     case Kind::kEmptied:
-      return formatted("{}: {} of an earlier bake lost normals to a program that made its own: bake it again", who,
-                       counted(found.count, "extra target", "extra targets"));
+      return formatted(
+          "{}: {} of an earlier bake lost normals, since another program has replaced them; bake the ORIGINAL file "
+          "again",
+          who, counted(found.count, "correction target", "correction targets"));
     case Kind::kSequenceTargets:
-      return formatted("{}: {} baked keyframes: only animations were judged", who,
-                       counted(found.count, "target is one of its", "targets are"));
+      return formatted("{}: {} keyframes of a baked sequence, so only animations were judged", who,
+                       counted(found.count, "target is one of the", "targets are"));
     case Kind::kBeyondViewer:
-      return formatted("{}: {} more than {} takes: {}", who, counted(found.count, "target", "targets"),
+      return formatted("{}: {} too many for {}; {}", who, counted(found.count, "target", "targets"),
                        found.viewer->title, found.viewer->beyond);
   }
   return "";
@@ -158,7 +160,7 @@ std::string lines_of(const Audited& input, bool faults) {
   }
   if (groups.size() > kMostAuditRows)
     text += formatted("  ... and {} more{} (--json has all)\n", grouped(groups.size() - kMostAuditRows),
-                      faults ? ", none of them worse" : "");
+                      faults ? ", with smaller errors" : "");
   if (text.empty()) return text;
   return (faults ? "\nFaults:\n" : "\nNotes:\n") + text;
 }

@@ -53,48 +53,48 @@ std::string torn(const MotionError& error) {
 std::string weighting_words(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.weighting == Weighting::kArea) return "";
-  if (!audit.weighting) return "  the right normals are weighted as the base normals of each mesh are: see below\n";
+  if (!audit.weighting) return "  true normals are weighted like the base normals of each mesh (see below)\n";
   const bool is_detected = !audit.offsets.empty() && audit.offsets.front().is_detected;
-  return formatted("  the right normals are {}-weighted, as {}\n", weighting_name(*audit.weighting),
+  return formatted("  true normals are {}-weighted, as {}\n", weighting_name(*audit.weighting),
                    is_detected ? "the base normals of the file are" : "--weighting says");
 }
 
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = heading(printable(input.name())) + ": ";
-  if (audit.subjects.empty()) return text + "nothing to judge: no target and no animation moves stored normals\n";
-  text += formatted("wrong by {} degrees on average, by {} at worst", degrees(audit.error.mean()),
+  if (audit.subjects.empty()) return text + "nothing to judge, since no target and no animation moves stored normals\n";
+  text += formatted("errors of {} degrees on average, {} at worst", degrees(audit.error.mean()),
                     judged_degrees(audit.error.worst));
   if (audit.error.samples > 0)
     text += audit.error.most_torn == 0 ? ", no torn edges" : formatted(", {} torn edges on average", torn(audit.error));
-  if (input.limits.any()) text += ": " + limits_words(input);
+  if (input.limits.any()) text += "; " + limits_words(input);
   text += formatted("\n  99 % of the normals are within {} degrees, 99.9 % within {}\n",
                     degrees(audit.error.percentile(kMost)), degrees(audit.error.percentile(kNearlyAll)));
   if (audit.worst) text += "  the worst is at " + worst_label(input) + '\n';
   const char* source =
-      audit.stored ? "the stored normals" : "normals that a viewer computes at keyframes, where none are stored";
-  if (audit.rule == AuditRule::kFlat) source = "the faces";
-  text += formatted("  shown by the rule {}, from {}; {} judged in {}\n", audit_rule_name(audit.rule), source,
-                    pairs(audit.error.judged), counted(audit.subjects.size(), "motion", "motions"));
+      audit.stored ? "stored normals" : "normals that a viewer computes at keyframes, since none are stored";
+  if (audit.rule == AuditRule::kFlat) source = "the normals of faces";
+  text += formatted("  checked {} in {}, by the rule {} from {}\n", pairs(audit.error.judged),
+                    counted(audit.subjects.size(), "motion", "motions"), audit_rule_name(audit.rule), source);
   text += weighting_words(input);
   if (audit.still > 0)
-    text += formatted("  {} nothing that could be judged\n",
+    text += formatted("  {} nothing that can be judged\n",
                       counted(audit.still, "target or track moves", "targets or tracks move"));
   if (audit.error.no_normal > 0)
-    text += formatted("  {} without a right direction: the normal of the geometry all but vanishes there\n",
-                      pairs(audit.error.no_normal));
+    text +=
+        formatted("  {} cannot be judged, since the faces there have almost no area\n", pairs(audit.error.no_normal));
   if (audit.error.cancelled > 0)
     text += formatted(
-        "  {} of these have faces with an area, whose normals cancel, as those of two sides do that share vertices: "
-        "the "
-        "first is at\n  {}; nobody knows what is right there, and no --tolerance allows it\n",
+        "  {} of these cannot be judged because normals of faces cancel, as of two sides that share vertices. No "
+        "--tolerance\n  allows it. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
-    text += formatted("  {} of these have one all the same, and are off by up to {} degrees: --tolerance counts them\n",
-                      grouped(audit.error.faint), degrees(audit.error.faint_worst));
+    text +=
+        formatted("  {} of these still have a direction, with errors of up to {} degrees, which --tolerance counts\n",
+                  grouped(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
-    text += formatted("  {} cannot be lit, which counts as 180 degrees: the first is at {}\n", pairs(audit.error.unlit),
-                      unlit_label(input));
+    text += formatted("  {} would be zero, infinite or NaN in a viewer, and count as 180 degrees. The first is at {}\n",
+                      pairs(audit.error.unlit), unlit_label(input));
   return text;
 }
 
@@ -147,7 +147,7 @@ std::string viewer_table(const Audited& input) {
   for (const char* const title : {"average", "99 %", "99.9 %", "worst"})
     table.add_column(title, "degrees", Align::kRight);
   table.add_column("torn", "edges", Align::kRight);
-  table.add_column("unlit", "pairs", Align::kRight);
+  table.add_column("unlit", "samples", Align::kRight);
   table.add_column("displaced", "% of size", Align::kRight);
   table.add_column("", "", Align::kLeft);
   const auto add_row = [&](std::string_view title, const MotionError& error, const std::string& displaced,
@@ -175,7 +175,7 @@ std::string bin_words(std::size_t bin) {
 std::string histogram(const MotionError& error) {
   Table table;
   table.add_column("error", "degrees", Align::kRight);
-  table.add_column("pairs", "", Align::kRight);
+  table.add_column("samples", "", Align::kRight);
   table.add_column("share", "%", Align::kRight);
   table.add_column("", "", Align::kLeft);
   const std::size_t most = *std::max_element(error.histogram.begin(), error.histogram.end());
@@ -194,13 +194,13 @@ std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
   const std::string mesh = offset.mesh ? mesh_label(*input.document(), *offset.mesh) : "keyframe 0";
   const std::string_view weighting = weighting_name(offset.weighting);
   std::string text =
-      formatted("  {}: mean {}, worst {} degrees from {}-weighted normals{}", mesh, degrees(offset.mean()),
+      formatted("  {}: {} degrees on average, {} at worst, from {}-weighted normals{}", mesh, degrees(offset.mean()),
                 degrees(offset.worst), weighting, offset.of_polygons ? " of polygons" : "");
   if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
   if (offset.is_detected && offset.weighting != Weighting::kArea)
-    text += formatted(", which they follow; by area the mean would be {}", degrees(offset.area_mean));
+    text += formatted(", which they follow; by area it would be {}", degrees(offset.area_mean));
   else if (!offset.is_detected && offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
-    text += formatted("; --weighting {} is closer: mean {}, worst {}", weighting_name(offset.closest),
+    text += formatted("; --weighting {} is closer, {} on average, {} at worst", weighting_name(offset.closest),
                       degrees(offset.closest_mean), degrees(offset.closest_worst));
   return text + '\n';
 }
@@ -216,7 +216,8 @@ std::string offset_lines(const Audited& input) {
       ++more;
   }
   if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
-  return text.empty() ? text : "\nAuthored offset, which is no fault:\n" + text;
+  return text.empty() ? text
+                      : "\nDifference of your normals at rest from smooth ones, which is normal and no error:\n" + text;
 }
 
 // Names the place of the first sample of a count.

@@ -162,13 +162,6 @@ std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& el
   return result;
 }
 
-// Returns "2nd", "3rd", "4th", "11th".
-std::string ordinal(std::size_t n) {
-  const bool is_teen = n % 100 >= 11 && n % 100 <= 13;
-  const char* const ending = is_teen ? "th" : n % 10 == 1 ? "st" : n % 10 == 2 ? "nd" : n % 10 == 3 ? "rd" : "th";
-  return std::to_string(n) + ending;
-}
-
 Status check(const Motion& motion, const TruthOptions& options) {
   const auto refuse = [](const std::string& message) { return Error{ErrorCode::kUsage, "", message}; };
   if (options.every < 2) return refuse("no keyframe would be left out to compare with; give --truth 2 or more");
