@@ -103,7 +103,7 @@ def bake_in_place(path: Path) -> tuple[str, str]:
         return "WARNING", f"Normals were not corrected; the plain file stands. {error}"
     if not outcome.wrote:
         why = " ".join(outcome.said) or f"the program ended with exit code {outcome.code}"
-        return "WARNING", f"Normals were not corrected; the plain file stands: {why}"
+        return "WARNING", f"Normals were not corrected; the plain file stands. {why}"
     level = "INFO" if outcome.code == 0 else "WARNING"
     return level, " ".join([verdict(outcome.report), *(said + "." for said in outcome.said)])
 
@@ -112,9 +112,9 @@ def verdict(report: dict[str, Any]) -> str:
     """Turns the report of `chronormal bake --json` into a sentence."""
     meshes = report.get("meshes", [])
     if meshes and all(mesh["already_baked"] for mesh in meshes):
-        return "Normals were left alone: this file was baked before."
+        return "Nothing was changed, since this file was baked before."
     if not report.get("changed"):
-        return "Normals are right as they are: nothing was changed." if meshes else "The file has no shape keys: nothing was changed."
+        return "Normals are right already, so nothing was changed." if meshes else "The file has no shape keys, so nothing was changed."
     audit = report.get("audit")
     corrections = sum(len(mesh["extra_targets"]) for mesh in meshes)
     targets = f"{corrections} correction target" + ("" if corrections == 1 else "s")
@@ -142,7 +142,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "None chosen: right in the first four, worse in none")
+        _hint(column, "None chosen means right in the first four, and worse in none")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")

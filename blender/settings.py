@@ -32,8 +32,8 @@ class Preferences(bpy.types.AddonPreferences):
     )
     viewers: bpy.props.EnumProperty(
         name="Viewers",
-        description="The viewers that the file is made for. With none, it is made for those that add up deltas, and gets "
-                    "worse in no other",
+        description="The viewers that the file is made for. With none, it is made for three.js, Babylon.js, PlayCanvas and Bevy, "
+                    "and gets worse in no other",
         items=[(name, title, what, 1 << n) for n, (name, title, what) in enumerate(VIEWERS)],
         options={"ENUM_FLAG"},
         default=set(),
@@ -45,12 +45,12 @@ class Preferences(bpy.types.AddonPreferences):
     )
     most_targets: bpy.props.IntProperty(
         name="Most targets",
-        description="The most morph targets that a mesh may have, its shape keys among them. 0: as many as the viewers bear",
+        description="The most morph targets that a mesh may have, shape keys included. At 0 it may have as many as the viewers can show",
         min=0, soft_max=64, default=0,
     )
     most_kilobytes: bpy.props.IntProperty(
         name="Most KB",
-        description="The most kilobytes that the normals of a mesh's shape keys may take. 0: no limit",
+        description="The most kilobytes that the normals of a mesh's shape keys may take. At 0 there is no limit",
         min=0, soft_max=100_000, default=0,
     )
 

@@ -52,7 +52,7 @@ class Subject:
         if not exported_keys(o.data):
             raise Refused("This object has no shape keys that would be exported.")
         if not o.data.shape_keys.use_relative:
-            raise Refused("Absolute shape keys are not exported to glTF: make them relative.")
+            raise Refused("Absolute shape keys are not exported to glTF. Make them relative.")
         self.original = o
 
     def __enter__(self) -> "Subject":
@@ -154,7 +154,7 @@ class Subject:
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")
         counts = numpy.searchsorted(of_file[order], of_corners, side="right") - begins
         if (counts == 0).any():
-            raise Refused("The exported file has other places than the mesh, so that they cannot be compared.")
+            raise Refused("The exported file has vertices at other places than the mesh, so they cannot be compared.")
         first = numpy.concatenate([[0], numpy.cumsum(counts)])
         corner = numpy.repeat(numpy.arange(len(of_corners)), counts)
         vertex = order[numpy.arange(first[-1]) - numpy.repeat(first[:-1] - begins, counts)]

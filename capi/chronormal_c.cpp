@@ -68,8 +68,9 @@ Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, co
   if (count == 0) return VectorView<T>{};
   if (data == nullptr) return Error{ErrorCode::kUsage, place, "the pointer is NULL"};
   if (stride == 0) stride = kPacked;
-  if (stride % sizeof(float) != 0) return Error{ErrorCode::kUsage, place, "the stride is not a multiple of 4 bytes"};
-  if (stride < kPacked) return Error{ErrorCode::kUsage, place, "the stride is less than the 12 bytes of a vector"};
+  if (stride % sizeof(float) != 0) return Error{ErrorCode::kUsage, place, "the stride must be a multiple of 4 bytes"};
+  if (stride < kPacked)
+    return Error{ErrorCode::kUsage, place, "the stride must be at least 12 bytes, the size of a vector"};
   return VectorView<T>{data, data + 1, data + 2, count, stride / sizeof(float)};
 }
 
@@ -83,11 +84,11 @@ Result<VectorView<float>> view_of(const chronormal_result& result, std::size_t c
 
 Result<Topology> topology_of(const chronormal_mesh* mesh) {
   if (mesh == nullptr) return Error{ErrorCode::kUsage, "mesh", "the pointer is NULL"};
-  if (mesh->face_count == 0) return invalid_input("mesh", "there are no faces");
+  if (mesh->face_count == 0) return invalid_input("mesh", "the mesh has no faces");
   if (mesh->corners == nullptr) return Error{ErrorCode::kUsage, "mesh.corners", "the pointer is NULL"};
   if (mesh->offsets == nullptr) {
     if (mesh->face_count > std::numeric_limits<std::size_t>::max() / (3 * sizeof(std::uint32_t)))
-      return invalid_input("mesh.face_count", "there are more faces than memory can hold");
+      return invalid_input("mesh.face_count", "the number of faces is larger than memory can hold");
     return Topology::triangles(mesh->vertex_count, {mesh->corners, mesh->corners + 3 * mesh->face_count});
   }
   const std::span<const std::uint32_t> offsets(mesh->offsets, mesh->face_count + 1);
@@ -101,13 +102,16 @@ template <class Struct>
 Status check_size(const Struct& given, const char* name) {
   const std::string place = std::string(name) + ".size";
   if (given.size < sizeof(Struct))
-    return Error{ErrorCode::kUsage, place,
-                 std::string("it is not sizeof(chronormal_") + name + "); chronormal_" + name + "_init() sets it"};
+    return Error{
+        ErrorCode::kUsage, place,
+        std::string("the size must be sizeof(chronormal_") + name + "); call chronormal_" + name + "_init() to set it"};
   constexpr std::size_t kMost = 4096;
-  if (given.size > kMost) return Error{ErrorCode::kUsage, place, "it is no size of a structure"};
+  if (given.size > kMost)
+    return Error{ErrorCode::kUsage, place, "the size is not that of a structure; it was perhaps never set"};
   const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
   if (std::any_of(bytes + sizeof(Struct), bytes + given.size, [](unsigned char byte) { return byte != 0; }))
-    return Error{ErrorCode::kUsage, place, "a field is set that only a newer library knows"};
+    return Error{ErrorCode::kUsage, place,
+                 "a field is set that this version of the library does not know; use a newer library"};
   return Success{};
 }
 
@@ -117,9 +121,9 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   if (given == nullptr) return options;
   if (const Status status = check_size(*given, "options"); !status) return status.error();
   if (given->elements < CHRONORMAL_FACES || given->elements > CHRONORMAL_CORNERS)
-    return Error{ErrorCode::kUsage, "options.elements", "it must be faces (0), vertices (1) or corners (2)"};
+    return Error{ErrorCode::kUsage, "options.elements", "elements must be faces (0), vertices (1) or corners (2)"};
   if (!std::isfinite(given->tolerance) || given->tolerance <= 0)
-    return Error{ErrorCode::kUsage, "options.tolerance", "it must be a positive number of radians"};
+    return Error{ErrorCode::kUsage, "options.tolerance", "the tolerance must be an angle in radians, greater than 0"};
   if (given->weighting != nullptr) {
     const Result<Weighting> weighting = make_weighting(given->weighting);
     if (!weighting) return weighting.error();
@@ -141,17 +145,18 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
   if (const Status status = check_size(*given, "output"); !status) return status.error();
   const IndexRange range{given->first, given->count};
   if (range.first > size || (range.count != CHRONORMAL_ALL && range.count > size - range.first))
-    return Error{ErrorCode::kUsage, "output.count", "there are fewer normals"};
+    return Error{ErrorCode::kUsage, "output.count", "the range goes beyond the last normal"};
   if (given->format == CHRONORMAL_FLOAT32) {
     const auto view = view_of(static_cast<float*>(given->data), given->stride, size, "output");
     if (!view) return view.error();
     return write(view.value(), range);
   }
   if (given->format != CHRONORMAL_OCTAHEDRAL && given->format != CHRONORMAL_RGB10A2)
-    return Error{ErrorCode::kUsage, "output.format", "it must be float32 (0), octahedral (1) or 10-10-10-2 (2)"};
+    return Error{ErrorCode::kUsage, "output.format",
+                 "the format must be float32 (0), octahedral (1) or 10-10-10-2 (2)"};
   if (given->data == nullptr && size > 0) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
   if (given->stride != 0 && given->stride != sizeof(std::uint32_t))
-    return Error{ErrorCode::kUsage, "output.stride", "normals of 4 bytes lie one after the other: it must be 0 or 4"};
+    return Error{ErrorCode::kUsage, "output.stride", "the stride of normals of 4 bytes must be 0 or 4"};
   if (given->format == CHRONORMAL_OCTAHEDRAL)
     return write(std::span(static_cast<Octahedral*>(given->data), size), range);
   return write(std::span(static_cast<Rgb10A2*>(given->data), size), range);
@@ -256,7 +261,7 @@ chronormal_status chronormal_curves_write(const chronormal_curves* curves, const
     };
     // Checks all arguments before any output is written.
     for (std::size_t k = 0; k < count; ++k) {
-      if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t lies between 0 and 1, the two ends");
+      if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t must be from 0 to 1");
       if (const auto checked = write(k, false); !checked) return fail(checked.error());
     }
     std::size_t all = 0;
@@ -295,8 +300,9 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
     const Result<MeshNormalsOptions> chosen = options_of(options);
     if (!chosen) return fail(chosen.error());
     if (chosen.value().weighting != Weighting::kArea)
-      return misuse("options.weighting", "blend shapes have area alone");
-    if (chosen.value().tolerance != kExactTolerance) return misuse("options.tolerance", "blend shapes have 1e-6 alone");
+      return misuse("options.weighting", "normals of blend shapes can only be weighted by area");
+    if (chosen.value().tolerance != kExactTolerance)
+      return misuse("options.tolerance", "the tolerance of blend shapes must be 1e-6");
     Result<Topology> topology = topology_of(mesh);
     if (!topology) return fail(topology.error());
     const auto packed = [](VectorView<const float> view) {
@@ -349,7 +355,7 @@ chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const do
   return guarded([&] {
     const std::span<const double> all(weights, blend->targets);
     if (!std::all_of(all.begin(), all.end(), [](double weight) { return std::isfinite(weight); }))
-      return misuse("weights", "a weight is not finite");
+      return misuse("weights", "a weight is NaN or infinite");
     blend->blend.set_weights(all, blend->threads);
     return CHRONORMAL_DONE;
   });

@@ -97,7 +97,7 @@ function same(a, b) {
  */
 export function chronormal({ onReport, ...options } = {}) {
   for (const name of ['name', 'resources', 'plan']) {
-    if (Object.hasOwn(options, name)) throw new TypeError(`${name}: it is an option of bake(), and not of a transform`);
+    if (Object.hasOwn(options, name)) throw new TypeError(`${name}: this option is only for bake(), not for a transform`);
   }
   const transform = async (document) => {
     const { io, bytes } = await bytesOf(document);
@@ -112,13 +112,13 @@ export function chronormal({ onReport, ...options } = {}) {
 // The options of the program that the command below has. Each entry gives the name, its spelling, its help, and a
 // function that turns its text into a value.
 const OPTIONS = [
-  ['for', '--for <VIEWERS>', 'the viewers that count, with commas between them, or all'],
-  ['tolerance', '--tolerance <DEGREES>', 'how far off normals may be', Number],
+  ['for', '--for <VIEWERS>', 'the viewers that the result is made for, such as three,godot, or all'],
+  ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed', Number],
   ['encode', '--encode <HOW>', 'smallest, harmless, exact or endpoint'],
-  ['weighting', '--weighting <RULE>', 'how faces count in the normal of a vertex'],
-  ['maxTargets', '--max-targets <N>', 'the most targets that a mesh may have', Number],
-  ['maxBytes', '--max-bytes <N>', 'the most bytes that may be added', Number],
-  ['animationsOnly', '--animations-only', 'fit normals to the animations of the file alone'],
+  ['weighting', '--weighting <RULE>', 'how much each face counts in a vertex normal'],
+  ['maxTargets', '--max-targets <N>', 'at most N morph targets for each mesh', Number],
+  ['maxBytes', '--max-bytes <N>', 'at most N bytes of normals for each mesh', Number],
+  ['animationsOnly', '--animations-only', 'make only the animations right, not single sliders'],
 ];
 
 /**
@@ -127,8 +127,8 @@ const OPTIONS = [
  */
 export function command({ program, io, Session }) {
   const made = program
-    .command('chronormal', 'Write right normals for morph targets')
-    .help('Writes normals that are right while morph targets move. `npx chronormal bake --help` explains the options.')
+    .command('chronormal', 'Correct the normals of morph targets')
+    .help('Corrects normals while morph targets move. `npx chronormal bake --help` explains the options.')
     .argument('<input>', 'Path to read glTF 2.0 (.glb, .gltf) model')
     .argument('<output>', 'Path to write output');
   for (const [, written, said] of OPTIONS) made.option(written, said);

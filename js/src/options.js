@@ -71,8 +71,8 @@ function distance(a, b) {
 
 function refuseName(name, command, known) {
   const far = (other) => distance(name.toLowerCase(), other.toLowerCase()), [nearest] = Object.keys(known).sort((a, b) => far(a) - far(b));
-  const hint = far(nearest) <= Math.max(1, name.length / 3) ? `did you mean ${nearest}?` : `there are ${Object.keys(known).sort().join(', ')}`;
-  throw new ChronormalError(USAGE, `there is no option ${JSON.stringify(name)} of ${command}(); ${hint}`);
+  const hint = far(nearest) <= Math.max(1, name.length / 3) ? `did you mean ${nearest}?` : `choose one of ${Object.keys(known).sort().join(', ')}`;
+  throw new ChronormalError(USAGE, `${command}() has no option ${JSON.stringify(name)}; ${hint}`);
 }
 
 /**
@@ -81,13 +81,13 @@ function refuseName(name, command, known) {
  * @throws {TypeError} if a value is of another kind
  */
 export function flagsOf(command, options) {
-  if (!isObject(options)) throw new TypeError('options: it has to be an object');
+  if (!isObject(options)) throw new TypeError('options: the value must be an object');
   const known = { ...CALL, ...OPTIONS[command] }, flags = [];
   for (const [name, value] of Object.entries(options)) {
     if (!Object.hasOwn(known, name)) refuseName(name, command, known);
     if (value === undefined) continue;
     const [isRight, what] = known[name];
-    if (!isRight(value)) throw new TypeError(`${name}: it has to be ${what}`);
+    if (!isRight(value)) throw new TypeError(`${name}: the value must be ${what}`);
     if (Object.hasOwn(CALL, name) || value === false) continue;
     // Each array in an array repeats the option, as --weights for several poses.
     for (const each of isPoses(value) ? value : [value]) {

@@ -19,7 +19,7 @@ async function compileWith(platform) {
   if (!WebAssembly.validate(new Uint8Array(NEEDED))) throw new Error(TOO_OLD);
   const url = new URL('./program.wasm', import.meta.url), bytes = await platform.read(url);
   if (!WebAssembly.validate(bytes.subarray(0, 8))) {
-    throw new Error(`${url} is no wasm module; program.wasm of the package has to be beside the script (README)`);
+    throw new Error(`${url} is not a WebAssembly module; put program.wasm of the package beside the script (README)`);
   }
   return WebAssembly.compile(bytes);
 }

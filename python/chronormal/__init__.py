@@ -46,9 +46,8 @@ def _vectors(array, place):
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"{place}: the type is {array.dtype}, and must be float32 or other real numbers")
-    # Numbers that are too large become infinite. The library then refuses them and names the place.
-    with _np.errstate(over="ignore"):
+        raise ValueError(f"{place}: the type must be float32 or other real numbers, but is {array.dtype}")
+    with _np.errstate(over="ignore"):  # too large numbers become infinite, which the library refuses with the place
         return _np.ascontiguousarray(array, dtype=_np.float32)
 
 
@@ -58,11 +57,11 @@ def _indices(array, place):
     if array.size == 0 and array.dtype.kind == "f":  # numpy makes floats of an empty list
         array = array.astype(_np.uint32)
     if array.dtype.kind not in "iu":
-        raise ValueError(f"{place}: the type is {array.dtype}, and must be int32, int64 or uint32")
+        raise ValueError(f"{place}: the type must be int32, int64 or uint32, but is {array.dtype}")
     if array.size > 0 and (array.min() < 0 or array.max() > 0xFFFFFFFF):
         where = _np.argwhere((array < 0) | (array > 0xFFFFFFFF))[0]
         position = ", ".join(str(i) for i in where)
-        raise ValueError(f"{place}[{position}]: {array[tuple(where)]} is no index")
+        raise ValueError(f"{place}[{position}]: {array[tuple(where)]} cannot be an index")
     return _np.ascontiguousarray(array, dtype=_np.uint32).reshape(-1)
 
 
@@ -88,7 +87,7 @@ def _polygons(faces):
     if _are_offsets(faces):
         offsets = _indices(faces[0], "offsets")
         if offsets.size == 0:
-            raise ValueError("offsets: there must be one more than there are faces")
+            raise ValueError("offsets: there must be one more offset than faces")
         return offsets, _indices(faces[1], "corners")
     if not isinstance(faces, _np.ndarray):
         faces = list(faces)
@@ -98,24 +97,24 @@ def _polygons(faces):
             return _np.cumsum([0] + sizes, dtype=_np.uint32), corners
         faces = _np.asarray(faces) if faces else _np.empty((0, 3), _np.uint32)
     if faces.ndim != 2:
-        raise ValueError(f"faces: the shape is {faces.shape} and must be (F, k)")
+        raise ValueError(f"faces: the shape must be (F, k), but is {faces.shape}")
     count, size = faces.shape
     corners = _indices(faces, "faces")
     if size == 3:
         return _np.empty(0, _np.uint32), corners
     if size < 3:
-        raise ValueError(f"faces: the shape is {faces.shape}, and a face has 3 corners or more")
+        raise ValueError(f"faces: the shape is {faces.shape}, but a face must have at least 3 corners")
     return _np.arange(0, (count + 1) * size, size, dtype=_np.uint32), corners
 
 
 def _text(value, place):
     """Return a string that can be passed to the library."""
     if not isinstance(value, str):
-        raise TypeError(f"{place}: it must be a string, not {type(value).__name__}")
+        raise TypeError(f"{place}: the value must be a string, not {type(value).__name__}")
     try:
         value.encode()
     except UnicodeEncodeError:
-        raise ValueError(f"{place}: {value!r} is no text in UTF-8") from None
+        raise ValueError(f"{place}: {value!r} cannot be written as UTF-8") from None
     return value
 
 
@@ -124,11 +123,11 @@ def _file(name, place):
     try:
         name = _os.fsencode(name)
     except UnicodeEncodeError:
-        raise ValueError(f"{place}: {name!r} is no name of a file") from None
+        raise ValueError(f"{place}: {name!r} cannot be the name of a file") from None
     except TypeError:
-        raise TypeError(f"{place}: it must be the name of a file, not {type(name).__name__}") from None
+        raise TypeError(f"{place}: the value must be the name of a file, not {type(name).__name__}") from None
     if b"\0" in name:
-        raise ValueError(f"{place}: {_os.fsdecode(name)!r} is no name of a file")
+        raise ValueError(f"{place}: {_os.fsdecode(name)!r} cannot be the name of a file")
     return name
 
 
@@ -136,16 +135,16 @@ def _float(value, place):
     try:
         return float(value)
     except OverflowError:
-        raise ValueError(f"{place}: it is too large for a float") from None
+        raise ValueError(f"{place}: the number is too large for a float") from None
     except TypeError:
-        raise TypeError(f"{place}: it must be a number, not {type(value).__name__}") from None
+        raise TypeError(f"{place}: the value must be a number, not {type(value).__name__}") from None
 
 
 def _floats(array, place):
     """Return a C-contiguous array of float64."""
     array = _np.asarray(array)
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"{place}: the type is {array.dtype}, and must be float64 or other real numbers")
+        raise ValueError(f"{place}: the type must be float64 or other real numbers, but is {array.dtype}")
     return _np.ascontiguousarray(array, dtype=_np.float64)
 
 
@@ -160,7 +159,7 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
         for name, given in {"base": base is not None, "fps": fps != 1, "animation": animation is not None,
                             "world": world, "path": path != "linear", "loop": loop, "strict": strict}.items():
             if given:
-                raise ValueError(f"{name}: it says how files are read, and this is a Motion"
+                raise ValueError(f"{name}: this option is only for reading files, and the source is a Motion"
                                  + ("; cut() makes straight pieces" if name == "path" else ""))
     elif isinstance(source, (bytes, bytearray, memoryview)):
         data = bytes(source)
@@ -170,7 +169,7 @@ def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False
         try:
             files = list(source)
         except TypeError:
-            raise TypeError(f"source: it must be files, bytes or a Motion, not {type(source).__name__}") from None
+            raise TypeError(f"source: the value must be files, bytes or a Motion, not {type(source).__name__}") from None
         files = [_file(file, f"source[{i}]") for i, file in enumerate(files)]
     return {"files": files, "bytes": data, "motion": motion,
             "samples": [_text(sample, "sample")] if sample is not None else [],
@@ -352,7 +351,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
     source     as for read(), or a Motion; sample, base, fps, animation, world, path, loop, strict: as for read()
     """
     if access not in ("random", "sequential"):
-        raise ValueError("access: it must be random or sequential")
+        raise ValueError("access: the value must be random or sequential")
     opened = _source(source, sample, base, fps, animation, world, path, loop=loop, strict=strict)
     if face is not None:
         for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
@@ -415,7 +414,7 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
     opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
     if scheme is None:
         if elements != "vertices":
-            raise ValueError("elements: an audit judges vertices")
+            raise ValueError("elements: an audit can only judge vertices")
         _, tables = _chronormal.audit(opened, rule or "", weighting or "", "", samples, None, weld, True)
     else:
         _, tables = _chronormal.compare(opened, [scheme], 21 if samples is None else samples, False, elements, 180.0,
@@ -427,7 +426,7 @@ def _keyframes(positions, faces, times):
     """Return the arrays about which the extension answers a query: positions (T, V, 3), offsets and corners, times."""
     positions = _vectors(positions, "positions")
     if positions.ndim != 3 or positions.shape[2] != 3:
-        raise ValueError(f"positions: the shape is {positions.shape} and must be (T, V, 3)")
+        raise ValueError(f"positions: the shape must be (T, V, 3), but is {positions.shape}")
     times = _np.arange(len(positions), dtype=_np.float64) if times is None else _floats(times, "times")
     return positions, *_polygons(faces), times
 
@@ -467,13 +466,13 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
     """
     if (direction is None) == (eye is None):
-        raise ValueError("direction: say who looks, by a direction or an eye")
+        raise ValueError("direction: the viewer is missing; give either direction or eye")
     if eye_to is not None and eye is None:
-        raise ValueError("eye_to: there must be an eye that moves there")
+        raise ValueError("eye_to: eye is missing, the place from which the viewer moves")
     first = _floats(eye, "eye") if direction is None else _floats(direction, "direction")
     last = first if eye_to is None else _floats(eye_to, "eye_to")
     if first.shape != (3,) or last.shape != (3,):
-        raise ValueError("direction: a place or a direction is an array of 3 numbers")
+        raise ValueError("direction: direction, eye and eye_to must be arrays of 3 numbers")
     return _chronormal.query_facing(*_keyframes(positions, faces, times), start, end, eye is not None, first, last,
                                     silhouettes, elements, crease, weld)
 

@@ -21,7 +21,8 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   options.kind = value_or_raise(make_element_kind(elements));
   options.weld = weld;
   if (crease) {
-    require(options.kind == ElementKind::kCorners, "crease", "hard edges are for corners: say elements=\"corners\"");
+    require(options.kind == ElementKind::kCorners, "crease",
+            "only corners can have hard edges; add elements=\"corners\"");
     options.crease_angle = *crease;
   }
   return options;
@@ -35,19 +36,19 @@ struct Numbers {
       one = PyFloat_AsDouble(given.ptr());
       if (PyErr_Occurred() == nullptr) return;
       PyErr_Clear();
-      refuse(place, "it is too large for a float");
+      refuse(place, "the number is too large for a float");
     }
     many = Array<double>::ensure(given);
     if (!*many) {
       PyErr_Clear();
-      refuse(place, "it must be a number, or numbers in a row");
+      refuse(place, "the value must be a number, or a one-dimensional array of numbers");
     }
     if (many->ndim() == 0) {
       is_one = true;
       one = *many->data();
       return;
     }
-    if (many->ndim() != 1) refuse(place, "the shape is " + shape_text(*many) + " and must be (T,)");
+    if (many->ndim() != 1) refuse(place, "the shape must be (T,), but is " + shape_text(*many));
   }
 
   // Copies the numbers if they share memory with an array `out` that will be written.
@@ -60,7 +61,7 @@ struct Numbers {
     for (std::size_t i = 0; i < count(); ++i) {
       if (const double t = data()[i]; t >= 0 && t <= 1) continue;
       refuse(is_one ? place : place + ("[" + std::to_string(i) + "]"),
-             "it must lie between 0 and 1, the two ends, and is " + py::str(py::float_(data()[i])).cast<std::string>());
+             "the value must be from 0 to 1, but is " + py::str(py::float_(data()[i])).cast<std::string>());
     }
   }
 

@@ -71,8 +71,7 @@ inline std::string shape_text(const py::array& array) {
 // Makes a view of an (n, 3) array of float32.
 template <int kFlags>
 VectorView<const float> vectors_of(const py::array_t<float, kFlags>& array, const std::string& place) {
-  if (array.ndim() != 2 || array.shape(1) != 3)
-    refuse(place, "the shape is " + shape_text(array) + " and must be (n, 3)");
+  if (array.ndim() != 2 || array.shape(1) != 3) refuse(place, "the shape must be (n, 3), but is " + shape_text(array));
   return VectorView<const float>::packed(array.data(), static_cast<std::size_t>(array.shape(0)));
 }
 
@@ -117,7 +116,7 @@ template <class Class>
 void refuse_to_be_pickled(Class& made) {
   const auto refuse = [](const py::object& self, const py::args&) -> py::object {
     throw py::type_error("cannot pickle '" + py::type::of(self).attr("__qualname__").cast<std::string>() +
-                         "' object: make it again from what it was made of");
+                         "' object; make the object again from its inputs");
   };
   made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
 }
@@ -126,7 +125,7 @@ void refuse_to_be_pickled(Class& made) {
 class ChosenThreads {
  public:
   explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {
-    require(count >= 0, "threads", "it must be 0 (all cores) or more");
+    require(count >= 0, "threads", "the number of threads must be at least 0 (0 for all cores)");
     if (count > 1) limit_.emplace(static_cast<std::size_t>(count));
   }
   [[nodiscard]] Threads threads() const noexcept { return threads_; }
@@ -149,7 +148,9 @@ struct ZeroedObject {
   static void operator delete(void* memory) noexcept { ::operator delete(memory); }
 };
 
-inline void require_made(bool is_made) { require(is_made, "self", "it was never made: its __init__() has not run"); }
+inline void require_made(bool is_made) {
+  require(is_made, "self", "the object is not ready, since its __init__() has not run");
+}
 
 void add_certificates(py::module_& module);
 void add_curves(py::module_& module);

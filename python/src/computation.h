@@ -19,7 +19,8 @@ class Turns {
   // Raises an exception in a signal handler that runs during a computation of the same thread, since waiting for the
   // thread's own turn would never end.
   Turns& required_of_others() {
-    require(owner_ != std::this_thread::get_id(), "self", "a handler of signals cannot use what it interrupts");
+    require(owner_ != std::this_thread::get_id(), "self",
+            "the object is in use by the computation that this signal handler interrupts");
     return *this;
   }
   void lock();

@@ -28,7 +28,8 @@ class Curves : public ZeroedObject {
     MeshNormalsOptions options;
     options.elements = element_options(elements, crease, weld);
     options.weighting = value_or_raise(make_weighting(weighting));
-    require(std::isfinite(tolerance) && tolerance > 0, "tolerance", "it must be a positive number of radians");
+    require(std::isfinite(tolerance) && tolerance > 0, "tolerance",
+            "the tolerance must be an angle in radians, greater than 0");
     options.tolerance = tolerance;
     const ChosenThreads chosen(threads);
     options.threads = chosen.threads();
@@ -148,8 +149,8 @@ class Blend : public ZeroedObject {
       const std::size_t count = vectors_of(deltas, place).count;
       if (vertices.size() == 0 && count > 0) {
         if (!(count == view.count))
-          refuse(place,
-                 "there are " + std::to_string(count) + " deltas for " + std::to_string(view.count) + " vertices");
+          refuse(place, "the target has " + std::to_string(count) + " deltas, but the mesh has " +
+                            std::to_string(view.count) + " vertices");
         set.targets.push_back(BlendTarget::from_dense({deltas.data(), 3 * count}));
         continue;
       }
@@ -179,7 +180,8 @@ class Blend : public ZeroedObject {
     const Array<double> kept = kept_from(weights, out);
     const double* const values = kept.data();
     for (std::size_t i = 0; i < rows * targets_; ++i)
-      if (!std::isfinite(values[i])) refuse("weights", "weight " + std::to_string(i % targets_) + " is not finite");
+      if (!std::isfinite(values[i]))
+        refuse("weights", "weight " + std::to_string(i % targets_) + " is NaN or infinite");
     const Computation computing(turns_);
     for (std::size_t r = 0; r < rows; ++r) {
       check_interruption();
@@ -220,7 +222,7 @@ Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, 
 }
 
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size) {
-  constexpr const char* kWanted = "it must be a C-contiguous array of float32";
+  constexpr const char* kWanted = "out must be a C-contiguous array of float32";
   const auto n = static_cast<py::ssize_t>(size);
   if (out.is_none()) {
     if (rows) return py::array_t<float>({static_cast<py::ssize_t>(*rows), n, py::ssize_t{3}});
@@ -240,7 +242,7 @@ py::array result_array(const py::object& out, std::optional<std::size_t> rows, s
     refuse("out", "the shape is " + shape_text(array) + " and must be (" + (rows ? std::to_string(*rows) + ", " : "") +
                       std::to_string(n) + ", 3)");
   }
-  require(array.writeable(), "out", "it is read-only");
+  require(array.writeable(), "out", "the array is read-only");
   return array;
 }
 

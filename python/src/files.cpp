@@ -31,7 +31,9 @@ InputOptions options_of(const py::dict& source) {
     options.files = {kBytes};
     options.resolve = [view](const std::string& name) -> Result<std::string_view> {
       if (name == kBytes) return view;
-      return Error{ErrorCode::kFailed, name, "it lies beside the file, of which only the bytes are here"};
+      return Error{
+          ErrorCode::kFailed, name,
+          "the file refers to another file, which cannot be found from bytes; give the name of the file instead"};
     };
   }
   return options;
@@ -152,16 +154,18 @@ class ReadMotion : public ZeroedObject {
     options.elements.crease_angle = crease;
     options.elements.weld = weld;
     options.weighting = value_or_raise(make_weighting(weighting));
-    require(!times || !weights, "weights", "a motion has times or weights, and not both");
-    require(times || weights || motion().segments.empty(), "times", "say at which times, or at which weights");
+    require(!times || !weights, "weights",
+            "times and weights cannot be given together; give weights for blend shapes, times for other motions");
+    require(times || weights || motion().segments.empty(), "times",
+            "times are missing; give times, or weights for blend shapes");
     std::vector<double> at;
     std::size_t rows = 1, width = 0;
     if (times) {
-      if (times->ndim() != 1) refuse("times", "the shape is " + shape_text(*times) + " and must be (T,)");
+      if (times->ndim() != 1) refuse("times", "the shape must be (T,), but is " + shape_text(*times));
       at = vector_of(*times);
       rows = at.size();
     } else if (weights) {
-      if (weights->ndim() != 2) refuse("weights", "the shape is " + shape_text(*weights) + " and must be (T, K)");
+      if (weights->ndim() != 2) refuse("weights", "the shape must be (T, K), but is " + shape_text(*weights));
       at = vector_of(*weights);
       rows = static_cast<std::size_t>(weights->shape(0));
       width = static_cast<std::size_t>(weights->shape(1));
@@ -232,7 +236,8 @@ py::tuple ReadMotion::state() const {
 }
 
 ReadMotion::ReadMotion(const py::tuple& state) {
-  require(state.size() == 10 && state[0].cast<int>() == kStateVersion, "state", "it is that of another version");
+  require(state.size() == 10 && state[0].cast<int>() == kStateVersion, "state",
+          "another version of chronormal has made this pickle");
   name_ = bytes_of_text(state[1]);
   Motion m;
   const auto offsets = state[3].cast<std::vector<std::uint32_t>>();
@@ -240,7 +245,7 @@ ReadMotion::ReadMotion(const py::tuple& state) {
       Topology::polygons(state[2].cast<std::size_t>(), offsets, state[4].cast<std::vector<std::uint32_t>>()));
   for (const py::handle each : state[5].cast<py::list>()) {
     const auto parts = each.cast<py::tuple>();
-    require(parts.size() == 6, "state", "a keyframe has six parts");
+    require(parts.size() == 6, "state", "the pickle is damaged, since a keyframe must have six parts");
     const auto read = [&](std::size_t i, auto& values) {
       const auto bytes = parts[i].cast<std::string_view>();
       values.resize(bytes.size() / sizeof(values[0]));
@@ -255,7 +260,8 @@ ReadMotion::ReadMotion(const py::tuple& state) {
     read(5, keyframe.residuals);
   }
   for (const auto& [from, to] : state[6].cast<std::vector<std::pair<std::size_t, std::size_t>>>()) {
-    require(from < m.keyframes.size() && to < m.keyframes.size(), "state", "a segment has no such keyframe");
+    require(from < m.keyframes.size() && to < m.keyframes.size(), "state",
+            "the pickle is damaged, since a segment refers to a keyframe that does not exist");
     m.segments.push_back({from, to});
   }
   m.body_of_vertex = state[7].cast<std::vector<std::uint32_t>>();
@@ -289,7 +295,7 @@ Opened open(const py::dict& source, KeepShading shading) {
   Opened opened;
   if (const py::object motion = source["motion"]; !motion.is_none()) {
     opened.made = &motion.cast<const ReadMotion&>();
-    require(!opened.made->motion().segments.empty(), "source", "a mesh that does not move has nothing to judge");
+    require(!opened.made->motion().segments.empty(), "source", "the mesh does not move, so there is nothing to judge");
     opened.kept = motion;
   } else {
     opened.input.emplace(open_files(source, false, shading));
@@ -325,7 +331,7 @@ py::tuple audit_source(const py::dict& source, const std::string& rule, const st
   if (!rule.empty()) options.rule = value_or_raise(make_audit_rule(rule));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
   if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
-  require(!tolerance || *tolerance >= 0, "tolerance", "it must be an angle in degrees, 0 or more");
+  require(!tolerance || *tolerance >= 0, "tolerance", "the tolerance must be an angle in degrees, at least 0");
   options.samples = samples;
   options.weld = weld;
   options.keep_errors = keep_errors;
@@ -381,7 +387,7 @@ std::string figure_of_face(const py::dict& source, const std::vector<std::string
 }
 
 std::string inspect_source(const py::dict& source) {
-  require(source["motion"].is_none(), "source", "inspect() looks at what files hold: give files or bytes");
+  require(source["motion"].is_none(), "source", "inspect() needs files or bytes, not a Motion");
   Input input = open_files(source, true, KeepShading::kNone);
   const std::string animation = source["animation"].cast<std::string>();
   return inspect_json(without_gil([&] { return inspect_input(std::move(input), animation); }));
@@ -402,9 +408,12 @@ std::string bake_sequence_of(Opened& input, BakeOptions options, std::string& js
     const Result<const Motion*> motion = input.motion();
     if (!motion) return motion.error();
     if (motion.value()->kind == MotionKind::kTargets)
-      return invalid_input(input.name(), "these are targets and no sequence: put them into a glTF file, and bake that");
+      return invalid_input(input.name(),
+                           "the input is targets, not a sequence; write a glTF file of them first, and bake that file");
     if (motion.value()->segments.size() + 1 != motion.value()->keyframes.size())
-      return invalid_input(input.name(), "its weights jump: it is no sequence of keyframes that follow each other");
+      return invalid_input(
+          input.name(),
+          "the weights of this animation jump, so it cannot be baked as a sequence; bake the glTF file itself");
     const Result<const StoredNormals*> stored = input.normals();
     if (!stored) return stored.error();
     if (!stored.value()->of_keyframes.empty()) {
@@ -426,11 +435,12 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   BakeOptions options;
   if (!encode.empty()) {
     options.encoding = find_bake_encoding(encode);
-    require(options.encoding.has_value(), "encode", "it must be smallest, harmless, exact, endpoint or keys");
+    require(options.encoding.has_value(), "encode", "the encoding must be smallest, harmless, exact, endpoint or keys");
   }
   if (!viewers.empty()) options.viewers = value_or_raise(find_viewers(viewers));
   if (!weighting.empty()) options.weighting = value_or_raise(make_weighting(weighting));
-  require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance", "it must be an angle from 0 to 90 degrees");
+  require(!tolerance || (*tolerance >= 0 && *tolerance <= 90), "tolerance",
+          "the tolerance must be an angle from 0 to 90 degrees");
   options.tolerance = tolerance;
   options.smooth = smooth;
   options.recompute_base = recompute_base;
@@ -438,8 +448,9 @@ py::tuple bake_source(const py::dict& source, const std::string& encode, const s
   const bool is_document = input.document() != nullptr;
   if (!is_document) {
     require(options.encoding != BakeEncoding::kHarmless && options.encoding != BakeEncoding::kSmallest, "encode",
-            "a sequence is written exact, endpoint or keys");
-    require(!smooth && !recompute_base, "smooth, recompute_base", "they are for glTF files");
+            "the encoding of a sequence must be exact, endpoint or keys");
+    require(!smooth && !recompute_base, "smooth, recompute_base",
+            "these options are only for glTF files, and the input is a sequence; leave them out");
   }
   std::string json;
   const std::string glb = is_document ? bake_document(input, options, json) : bake_sequence_of(input, options, json);

@@ -61,7 +61,7 @@ py::dict ask_facing(const Positions& positions, const Indices& offsets, const In
 PointPaths paths_of(const Array<double>& points) {
   const bool moves = points.ndim() == 3 && points.shape(1) == 2 && points.shape(2) == 3;
   if (!moves && !(points.ndim() == 2 && points.shape(1) == 3))
-    refuse("points", "the shape is " + shape_text(points) + " and must be (P, 3) or (P, 2, 3)");
+    refuse("points", "the shape must be (P, 3) or (P, 2, 3), but is " + shape_text(points));
   const auto count = static_cast<std::size_t>(points.shape(0));
   const std::size_t row = moves ? 6 : 3;
   PointPaths paths;
@@ -69,7 +69,7 @@ PointPaths paths_of(const Array<double>& points) {
     const double* const first = points.data() + row * i;
     for (std::size_t k = 0; k < row; ++k) {
       if (!std::isfinite(static_cast<float>(first[k])))
-        refuse("points[" + std::to_string(i) + "]", "a coordinate is not finite, or too large for float32");
+        refuse("points[" + std::to_string(i) + "]", "a coordinate is NaN, infinite or too large for float32");
     }
     paths.from.insert(paths.from.end(), first, first + 3);
     paths.to.insert(paths.to.end(), first + row - 3, first + row);
@@ -109,7 +109,7 @@ py::tuple cut(const Positions& positions, const Indices& offsets, const Indices&
     const std::size_t size = 3 * motion.topology.vertex_count();
     if (!(velocities->ndim() == 3 && velocities->size() == positions.size() &&
           velocities->shape(0) == positions.shape(0) && velocities->shape(2) == 3))
-      refuse("velocities", "the shape is " + shape_text(*velocities) + " and must be " + shape_text(positions));
+      refuse("velocities", "the shape must be " + shape_text(positions) + ", but is " + shape_text(*velocities));
     for (std::size_t k = 0; k < motion.keyframes.size(); ++k)
       motion.keyframes[k].velocities.assign(velocities->data() + k * size, velocities->data() + (k + 1) * size);
     if (const Status status = validate(motion); !status) raise(status.error());
@@ -132,7 +132,7 @@ Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offs
   const auto keyframes = static_cast<std::size_t>(positions.shape(0)),
              vertices = static_cast<std::size_t>(positions.shape(1));
   require(times.ndim() == 1 && static_cast<std::size_t>(times.size()) == keyframes, "times",
-          "there must be one for each keyframe");
+          "there must be one time for each keyframe");
   Motion motion;
   motion.topology = topology_of(vertices, offsets, corners);
   for (std::size_t k = 0; k < keyframes; ++k) {

@@ -156,7 +156,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
       ++read;
       assert.deepEqual(found, { ...expected, input: { ...expected.input, name: /^(-|\[.*\])$/s.test(name) ? `./${name}` : name } });
     } else {
-      assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: no file can have this name` });
+      assert.deepEqual(found, { name: 'ChronormalError', code: 2, message: `${said}: this cannot be the name of a file` });
     }
     if (i % 6 === 0) assert.deepEqual(await outcomeOf(inspect(tiny, { name })), found, said);
   }
@@ -168,7 +168,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   for (const worker of [true, false]) {
     assert.deepEqual(await outcomeOf(inspect(tiny, { resources: { '..': tiny }, worker })),
-      { name: 'ChronormalError', code: 2, message: '"..": no file can have this name' });
+      { name: 'ChronormalError', code: 2, message: '"..": this cannot be the name of a file' });
     await assert.rejects(inspect(tiny, { name: 5, worker }), { name: 'TypeError', message: /^name: / });
   }
 });

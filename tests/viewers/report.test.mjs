@@ -142,7 +142,7 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
   assert.ok(baked.surface.degrees[baked.worst] < 0.01, `${baked.surface.degrees[baked.worst]} degrees`);
 });
 
-const DAMAGED = /^the data of this page (are damaged|end too early|are no report|have version)/;
+const DAMAGED = /^The data of this page (are damaged|are cut off|are not a report|have version)/;
 
 // Returns the {begin, size, count} of the floating-point arrays of a container, in bytes.
 function arraysOf(bytes) {

@@ -33,7 +33,7 @@ export function makeBakePanel(input, { plan, bake }) {
   const planned = input.plan && choiceTable({ plan: input.plan.plan });
   if (planned) planned.open = true;
   return panel('Bake', true,
-    h('fieldset', {}, h('legend', {}, 'right in these viewers, worse in none'), boxes),
+    h('fieldset', {}, h('legend', {}, 'correct for these viewers, worse in none'), boxes),
     number('within', 'tolerance', '0.5', 'degrees'),
     isGltf && number('at most', 'maxTargets', 'any', 'targets'),
     number('at most', 'maxBytes', 'any', 'bytes more'),
@@ -47,6 +47,6 @@ function comparison({ came, baked }) {
   if (!baked) return null;
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });
   const bytes = Object.values(baked.files).reduce((sum, file) => sum + file.length, 0);
-  return [table('Before and after', ['', 'mean ', 'worst '], [row('as it came', came), row('baked', baked.report)]),
+  return [table('Before and after', ['', 'average ', 'worst '], [row('as it came', came), row('baked', baked.report)]),
     h('p', { className: 'note' }, `${baked.name}: ${bytes.toLocaleString('en')} bytes.`)];
 }

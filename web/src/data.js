@@ -3,7 +3,7 @@
 const MAGIC = 'CHRONRPT', VERSION = 1, HEADER = 16;
 const TYPES = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i16: Int16Array, u8: Uint8Array };
 
-const damaged = () => new Error('the data of this page are damaged: get or make the page again');
+const damaged = () => new Error('The data of this page are damaged. Download or make the page again.');
 
 const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(value.offset) && Number.isInteger(value.count);
 
@@ -12,19 +12,19 @@ const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(v
  * @returns {object} its JSON, in which each {offset, type, count} below "parts" is replaced by a typed array
  */
 export function readContainer(bytes) {
-  if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('the data of this page are no report');
+  if (bytes.length < HEADER || new TextDecoder().decode(bytes.subarray(0, 8)) !== MAGIC) throw new Error('The data of this page are not a report. Make the page again with chronormal report.');
   const buffer = bytes.byteOffset % 8 === 0 ? bytes.buffer : bytes.slice().buffer;
   const start = buffer === bytes.buffer ? bytes.byteOffset : 0;
   const view = new DataView(buffer, start, bytes.length);
   const version = view.getUint32(8, true), size = view.getUint32(12, true);
-  if (version !== VERSION) throw new Error(`the data of this page have version ${version}, and the page reads version ${VERSION}`);
+  if (version !== VERSION) throw new Error(`The data of this page have version ${version}, but the page reads version ${VERSION}. Make the page again.`);
   const first = Math.ceil((HEADER + size) / 8) * 8;
-  if (first > bytes.length) throw new Error('the data of this page end too early');
+  if (first > bytes.length) throw new Error('The data of this page are cut off. Download or make the page again.');
 
   const arrayOf = ({ offset, type, count }) => {
     const Type = TYPES[type];
     if (!Type || offset < 0 || offset % 8 !== 0 || count < 0) throw damaged();
-    if (first + offset + count * Type.BYTES_PER_ELEMENT > bytes.length) throw new Error('the data of this page end too early');
+    if (first + offset + count * Type.BYTES_PER_ELEMENT > bytes.length) throw new Error('The data of this page are cut off. Download or make the page again.');
     const array = new Type(buffer, start + first + offset, count);
     for (let i = 0; i < count; ++i) if (!Number.isFinite(array[i])) throw damaged();
     return array;

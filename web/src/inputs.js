@@ -34,25 +34,25 @@ const EXPORT = 'Export the model from your 3D program as glTF 2.0 (.glb), with i
 export function faultOf(name, size, bytes) {
   const megabytes = Math.round(size / 1e6).toLocaleString('en');
   if (size > MOST) {
-    return `“${name}” has ${megabytes} MB, and this page takes files of up to ${Math.round(MOST / 1e6)} MB, since the browser has to hold ` +
+    return `“${name}” has ${megabytes} MB, but this page can only take files of up to ${Math.round(MOST / 1e6)} MB, since the browser has to hold ` +
       'several copies in memory. Export the moving mesh alone, without its textures, or use the chronormal program on your computer, which has ' +
       'no such limit.';
   }
   if (size === 0) return `“${name}” is empty. ${EXPORT}`;
   if (!bytes) return undefined;
   const kind = KINDS.find(([magic]) => starts(bytes, magic));
-  if (kind) return `“${name}” is ${kind[1]}, and no 3D model that can be read here. ${EXPORT}`;
+  if (kind) return `“${name}” is ${kind[1]}, not a 3D model that can be read here. ${EXPORT}`;
   if (starts(bytes, 'PK') && !/\.npz$/i.test(name)) return `“${name}” is an archive (zip). Unpack it, and drop the model that is in it.`;
   if (starts(bytes, 'glTF') && bytes.length >= 12) {
     const said = new DataView(bytes.buffer, bytes.byteOffset).getUint32(8, true);
     if (said > size) {
       return `“${name}” is cut off: it should have ${said.toLocaleString('en')} bytes, and only ${size.toLocaleString('en')} are there. ` +
-        'Copy or download it once more; where that does not help, export it again.';
+        'Copy or download it again; if that does not help, export it again.';
     }
   }
   return undefined;
 }
 
 export const NOTHING_MOVES =
-  'There is nothing to mend in this file: it has no shape keys (morph targets) that move a mesh with normals. Motion by bones alone needs no new ' +
-  'normals. If the model should have some: in Blender, look at “Shape Keys” of the mesh, and tick “Shape Keys” below “Data” when you export glTF.';
+  'This file needs no correction, since it has no shape keys (morph targets) that move a mesh with normals. Motion by bones alone needs no new ' +
+  'normals. If the model should have shape keys, check “Shape Keys” of the mesh in Blender, and tick “Shape Keys” below “Data” when you export glTF.';

@@ -41,7 +41,7 @@ function say(text, details) {
 function remark(text, details) {
   say(text);
   message.classList.add('mild');
-  message.firstChild.append(h('details', {}, h('summary', {}, 'What the program says'), h('pre', {}, details)));
+  message.firstChild.append(h('details', {}, h('summary', {}, 'Message of the program'), h('pre', {}, details)));
 }
 
 /** Runs a step of several commands, with a progress bar and a button that stops it. Returns the result of the step, or
@@ -68,8 +68,8 @@ async function during(title, step) {
   }
 }
 
-const TOO_LARGE = 'The browser has not enough memory for this file. Close other pages, or use the chronormal program on your computer.';
-const UNUSABLE = 'The program cannot use this file. What it says names the place; most often a new export of the model mends it.';
+const TOO_LARGE = 'The browser does not have enough memory for this file. Close other pages, or use the chronormal program on your computer.';
+const UNUSABLE = 'This file cannot be used. The message below says where it is wrong; exporting the model again often helps.';
 
 function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);
@@ -90,7 +90,7 @@ async function read(file, bytes) {
     bytes[file.name] = new Uint8Array(await file.arrayBuffer());
     return undefined;
   } catch {
-    return `“${file.name}” could not be read. Is it still where it was, and is it a file and no folder?`;
+    return `“${file.name}” could not be read. Perhaps it was moved, or is a folder. Choose the file again.`;
   }
 }
 
@@ -106,7 +106,7 @@ async function load({ args, files }, bytes) {
 }
 
 async function add(list) {
-  if (abort) return say('The page is still at work: wait until it is done, or cancel it.');
+  if (abort) return say('The page is still working. Wait until it is done, or cancel.');
   say();
   const faults = [];
   for (const input of inputsOf(list)) {
@@ -118,7 +118,7 @@ async function add(list) {
 }
 
 async function open(input) {
-  const came = await during(`Looking at ${input.name}`, (call) => reportOf(call, input));
+  const came = await during(`Checking ${input.name}`, (call) => reportOf(call, input));
   if (!came) return;
   inputs.push({ ...input, came });
   chooser.append(h('option', { value: inputs.length - 1 }, input.name));
@@ -163,7 +163,7 @@ const flagsOf = ({ viewers, tolerance, maxTargets, maxBytes }) => [
 
 async function plan(input) {
   say();
-  const done = await during('Looking at what a bake would write', (call) => call(['bake', ...input.args, '--plan', '--json', ...flagsOf(input.options)], input.bytes));
+  const done = await during('Planning the bake', (call) => call(['bake', ...input.args, '--plan', '--json', ...flagsOf(input.options)], input.bytes));
   if (!done) return;
   input.plan = { plan: JSON.parse(done.stdout), said: done.stderr };
   show(input, 'came');
@@ -180,7 +180,7 @@ async function make(input) {
   if (!found) return;
   input.baked = found;
   show(input, 'baked');
-  const text = found.within ? 'The file is baked, and there is something to know about it.' : 'The file is baked, but nothing within these limits is as right as you asked for.';
+  const text = found.within ? 'The file is baked, with these notes.' : 'The file is baked, but your tolerance could not be reached within these limits.';
   if (found.warnings) remark(text, found.warnings);
 }
 
@@ -194,8 +194,8 @@ function save() {
 
 work.append(h('section', { className: 'welcome' },
   h('h2', {}, 'Are the normals of your model right while it moves?'),
-  h('p', {}, 'Drop a .glb here, or several. You see your model as it is shown beside as it should be, how many degrees it is off and where, ' +
-    'and take a baked file home, with nothing changed but its normals.'),
+  h('p', {}, 'Drop one or several .glb files here. You see your model as viewers show it beside correct shading, with the error in degrees, ' +
+    'and can download a corrected file, in which only the normals have changed.'),
   h('p', {}, h('button', { type: 'button', className: 'primary', onclick: () => picker.click() }, 'Choose files'), ' ',
     h('button', { type: 'button', className: 'plain', onclick: example }, 'Show me an example')),
   h('p', { className: 'note' }, 'GLB, VRM, glTF with its .bin; keyframes as OBJ or PLY; a mesh with a .pc2, .mdd, .npy or Maya cache.'),

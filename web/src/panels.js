@@ -13,12 +13,12 @@ const select = (label, options, value, onChoose) => {
 };
 
 const viewerTitle = (report, name) =>
-  name === 'specification' ? 'glTF to the letter' : report.audit?.viewers?.find((viewer) => viewer.name === name)?.title ?? name;
+  name === 'specification' ? 'the glTF specification' : report.audit?.viewers?.find((viewer) => viewer.name === name)?.title ?? name;
 
 /** Returns the label above the picture that says which viewer's normals it shows. */
 export const shownBy = (report, player) => {
-  if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As shown: normals interpolated between keyframes' : `As shown by ${player.scheme}`;
-  return player.viewer === 'specification' ? 'As shown' : `As shown: ${viewerTitle(report, player.viewer)}`;
+  if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As rendered, with normals interpolated between keyframes' : `As rendered by ${player.scheme}`;
+  return player.viewer === 'specification' ? 'As rendered' : `As rendered by ${viewerTitle(report, player.viewer)}`;
 };
 
 /** Makes the menus that choose the part, the motion, and for a glTF file the viewer. */
@@ -83,8 +83,8 @@ export function weightSliders(player) {
       });
       list.replaceChildren(...rows.map(({ row }) => row));
       note.textContent = extras === 0 ? '' : player.formulas.length === extras
-        ? `${plural(extras, 'extra target follows', 'extra targets follow')} from these weights, as the file says.`
-        : `Of ${plural(extras, 'extra target')}, ${count(extras - player.formulas.length)} follow the animations of the file alone, and rest here.`;
+        ? `${plural(extras, 'correction target follows', 'correction targets follow')} these weights, as the file says.`
+        : `${count(extras - player.formulas.length)} of ${plural(extras, 'correction target')} only follow the animations of the file, and stay at 0 here.`;
       box.hidden = own.length === 0;
     },
     follow() {
@@ -99,7 +99,7 @@ export function weightSliders(player) {
   };
 }
 
-const TORN = '99.9 % of all errors are below that column. Over a torn edge the error jumps by more than 10 degrees: a fold is seen that the surface does not have. They are counted at a moment, on average.';
+const TORN = '99.9 % of all errors are below the value in that column. Across a torn edge the error jumps by more than 10 degrees, so that a fold shows that the surface does not have. The column has their number on average.';
 
 // Returns the number of torn edges at a moment, on average, or an empty text if it is not known.
 const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
@@ -111,7 +111,7 @@ export function viewerTable({ audit }) {
     const { worst_degrees: worst, percentile_99_9_degrees: most, mean_degrees: mean } = error;
     return { cells: [title, degreesText(mean), degreesText(most), degreesText(worst), tornText(error)] };
   };
-  const rows = [row('glTF to the letter', audit), ...audit.viewers.map((viewer) => row(viewer.title, viewer))];
+  const rows = [row('the glTF specification', audit), ...audit.viewers.map((viewer) => row(viewer.title, viewer))];
   return panel('What viewers show', false, table('Errors in each viewer', ['viewer', 'average ', '99.9\u00a0% ', 'worst ', 'torn '], rows),
     h('p', { className: 'note' }, TORN));
 }
@@ -124,11 +124,11 @@ export function choiceTable({ plan, plan_message: message }) {
       className: chosen ? 'chosen' : '',
       cells: [chosen ? `✓ ${form}` : form, count(targets), count(bytes), degreesText(played?.mean_degrees), degreesText(played?.worst_degrees)],
     }));
-    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Candidates of a bake', ['candidate', 'targets ', 'bytes added ', 'mean ', 'worst '], rows)];
+    return [plan.meshes.length > 1 && h('h3', {}, name || `mesh ${mesh}`), table('Candidates of a bake', ['candidate', 'targets ', 'bytes added ', 'average ', 'worst '], rows)];
   });
   if (tables.length === 0) return null;
   return panel('What a bake would write', false, tables,
-    h('p', { className: 'note' }, 'Degrees along the animations of the file. The one with a mark is what bake writes.'));
+    h('p', { className: 'note' }, 'The errors are in degrees, along the animations of the file. Bake writes the candidate with the mark.'));
 }
 
 /** Makes a table of the errors of each scheme on this motion. A click on a scheme shows its normals. */
@@ -139,7 +139,7 @@ export function schemeTable(report, player) {
     const name = scheme in SCHEMES ? h('button', { type: 'button', className: 'link', onclick: () => player.chooseScheme(scheme) }, scheme) : scheme;
     return { cells: [name, degreesText(mean), degreesText(worst)] };
   });
-  return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'mean ', 'worst '], rows));
+  return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'average ', 'worst '], rows));
 }
 
 /** Makes a panel that lists the parts of the input that the report leaves out. */
@@ -152,9 +152,9 @@ export function verdict({ audit }) {
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
   if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets.';
   if (audit.cancelled > 0 && worst < 0.5) {
-    return `Normals of ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel at some moment, so that nothing is right there; all others are right within ${degreesText(worst)}.`;
+    return `Normals of ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel at some moment and cannot be right; all others are right within ${degreesText(worst)}.`;
   }
   if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
   const torn = tornText(audit);
-  return `Normals are wrong by ${degreesText(mean)} on average and by up to ${degreesText(worst)} while this moves${torn && torn !== '0' ? `, and ${torn} edges are torn` : ''}.`;
+  return `Normals have errors of ${degreesText(mean)} on average and of up to ${degreesText(worst)} while this moves${torn && torn !== '0' ? `, and ${torn} edges are torn` : ''}.`;
 }

@@ -16,7 +16,7 @@ addEventListener('keydown', (event) => {
 
 async function start() {
   const data = document.getElementById('chronormal-data');
-  if (!data) throw new Error('This is the empty page of a report. `chronormal report FILE -o REPORT.html` fills one in.');
+  if (!data) throw new Error('This page has no report in it. Make one with `chronormal report FILE -o REPORT.html`.');
   const report = readContainer(await unzipped(fromBase64(data.textContent)));
   data.remove();
   file.textContent = report.input;

@@ -63,7 +63,7 @@ export function makeViewer(root, report, compute) {
   root.classList.add('viewer');
   root.replaceChildren(
     h('section', { className: 'scene' },
-      h('div', { className: 'toolbar' }, modes, layouts, button('plain', 'The whole mesh (F)', () => view.frame(), 'Whole mesh'),
+      h('div', { className: 'toolbar' }, modes, layouts, button('plain', 'Show the whole mesh (F)', () => view.frame(), 'Whole mesh'),
         button('plain keys', 'Keys (?)', () => help.showModal(), '?')),
       stage, legend, h('div', { className: 'timeline' }, play, slider, moment),
       h('div', { className: 'here' }, now, h('span', { className: 'key', 'aria-hidden': true })), plotBox),
@@ -133,7 +133,7 @@ export function makeViewer(root, report, compute) {
       }
       moment.textContent = player.byHand || !motion ? 'by hand' : motion.seconds ? `${value.toFixed(2)} s` : `weight ${value.toFixed(2)}`;
       const { worst } = player, degrees = worst < 0 ? NaN : surface.degrees[worst];
-      now.textContent = worst < 0 ? 'Nothing is judged here' : `Worst at this moment: ${degreesText(degrees)} at ${labelOf(part, worst)}`;
+      now.textContent = worst < 0 ? 'Nothing can be judged here' : `Worst at this moment: ${degreesText(degrees)} at ${labelOf(part, worst)}`;
       now.disabled = worst < 0;
       now.dataset.degrees = degrees;
       now.dataset.vertex = worst;
@@ -199,8 +199,8 @@ function aboutOf(report) {
   lines.push(`${vertices.toLocaleString('en')} vertices and ${triangles.toLocaleString('en')} triangles are drawn here.`);
   const names = { area: 'the area of faces', angle: 'the angle of corners', 'area-angle': 'area times angle' };
   const weightings = [...new Set(report.parts.map(({ weighting }) => names[weighting] ?? weighting))].join(', or ');
-  const kept = report.parts.some(({ truth }) => truth) ? 'Polygons and bent normals of the author are kept' : 'What the author turned at rest is kept';
-  if (weightings) lines.push(`Right normals are the exact ones, weighted by ${weightings}. ${kept}.`);
-  lines.push(`Numbers are those of ${report.program}; nothing was loaded, and nothing is sent.`);
+  const kept = report.parts.some(({ truth }) => truth) ? 'Polygons and edited normals of the author are kept' : 'Normals that the author edited at rest are kept';
+  if (weightings) lines.push(`True normals are the exact ones, weighted by ${weightings}. ${kept}.`);
+  lines.push(`All numbers were computed by ${report.program}. This page loads and sends nothing.`);
   return panel('About', false, lines.map((line) => h('p', { className: 'note' }, line)));
 }
