@@ -107,8 +107,8 @@ TEST_F(BlendCli, table_has_a_line_for_each_number_and_kind_and_the_same_bytes_on
   const ProcessResult result = run("--sample bumps --blend 4 --seed 7");
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 5 + 5 * 3);
-  for (const char* const words : {"bumps: 3,136 vertices, 6,144 faces, 12 targets\n", "4 random weight vectors",
-                                  "end point", "least squares", "exact", "bump_", " and 9 more\n"})
+  for (const char* const words : {"bumps: 3,136 vertices, 6,144 faces, 12 targets\n", "4 random poses", "end point",
+                                  "least squares", "exact", "bump_", " and 9 more\n"})
     EXPECT_NE(result.out.find(words), std::string::npos) << words << result.out;
   EXPECT_EQ(run("--sample bumps --blend 4 --seed 7").out, result.out);
   EXPECT_NE(run("--sample bumps --blend 4 --seed 8").out, result.out);
@@ -177,7 +177,7 @@ TEST_F(BlendCli, wrong_usage_is_exit_2_and_says_what_to_do) {
   expect_misuse("--sample bumps --blend 3 --crease 30", {"--crease", "corners"});
   for (const char* const other : {"--schemes linear", "--samples 3", "--access random", "--each"})
     expect_misuse(std::string("sheet.glb --blend 3 ") + other, {"--blend"});
-  expect_misuse("--blend 3", {"nothing to read"});
+  expect_misuse("--blend 3", {"there is no input"});
 }
 
 TEST_F(BlendCli, wrong_input_is_exit_3) {

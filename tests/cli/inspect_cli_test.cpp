@@ -62,7 +62,7 @@ TEST_F(InspectCli, mesh_without_trouble_says_so) {
   const std::string text = text_of("a.obj");
   expect_words(text,
                {"a.obj: 3 vertices, 1 triangle, no motion\n", "1 piece, 3 edges; 3 open", "\nno problems found\n"});
-  EXPECT_EQ(text.find("What will trouble you"), std::string::npos);
+  EXPECT_EQ(text.find("What can make normals wrong"), std::string::npos);
   EXPECT_TRUE(json_of("a.obj")["trouble"].empty());
 }
 
@@ -73,7 +73,7 @@ TEST_F(InspectCli, trouble_says_what_where_and_what_it_means) {
        "    the normal flips to the opposite direction at that instant\n",
        "90 degrees"});
   expect_words(text_of("a.obj line.obj"), {"1 face has no area at a keyframe (face 0 at keyframe 1 (line.obj))\n"});
-  expect_words(text_of("line.obj"), {"1 face has no area (face 0)\n", "there is no normal to give"});
+  expect_words(text_of("line.obj"), {"1 face has no area (face 0)\n", "there is no normal, so the result is"});
   EXPECT_EQ(kinds_of(json_of("line.obj line.obj")), (std::vector<std::string>{"no_normal", "no_area_at_keyframe"}));
   EXPECT_EQ(kinds_of(json_of("a.obj over.obj")), (std::vector<std::string>{"turns_over", "turns_far"}));
 }
@@ -171,8 +171,8 @@ TEST_F(InspectCli, columns_are_aligned_below_their_titles_even_with_accents) {
 }
 
 TEST_F(InspectCli, errors_and_output_are_as_in_other_commands) {
-  expect_error("", 2, "nothing to read");
-  expect_error("a.obj --sample twist", 2, "several inputs");
+  expect_error("", 2, "there is no input");
+  expect_error("a.obj --sample twist", 2, "more than one input");
   expect_error("a.obj --nonsense", 2, "--nonsense");
   expect_error("missing.glb", 1, "missing.glb");
   folder_.write("bad.glb", "glTF but not really");

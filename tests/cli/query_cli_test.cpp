@@ -59,9 +59,8 @@ TEST_F(QueryCli, a_mesh_behind_a_skin_is_asked_before_it_is_skinned_and_that_is_
   EXPECT_EQ(free.exit_code, 0) << free.err;
   EXPECT_EQ(free.err.find("skin"), std::string::npos) << free.err;
   EXPECT_EQ(skinned.exit_code, 0) << skinned.err;
-  EXPECT_NE(skinned.err.find("mesh 0 is placed by a skin, which query does not follow"), std::string::npos)
-      << skinned.err;
-  expect_misuse("collapse skinned.glb --world", "leave out --world");
+  EXPECT_NE(skinned.err.find("mesh 0 has a skin, which query does not apply"), std::string::npos) << skinned.err;
+  expect_misuse("collapse skinned.glb --world", "leave --world out");
   EXPECT_EQ(run("collapse free.glb --world").exit_code, 0);
 }
 
@@ -157,11 +156,11 @@ TEST_F(QueryCli, people_get_a_table) {
 
 TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
   expect_misuse("", "QUESTION: name one: ");
-  expect_misuse("why a.obj b.obj", "there is no 'why'; there are ");
-  expect_misuse("collapse a.obj b.obj -o table.txt", "arrays are written as .npz");
+  expect_misuse("why a.obj b.obj", "there is no question 'why'; choose one of ");
+  expect_misuse("collapse a.obj b.obj -o table.txt", "must end in .npz");
   expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: it belongs to query facing");
-  expect_misuse("facing a.obj b.obj", "--direction: say who looks");
-  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: it must be X,Y,Z or");
+  expect_misuse("facing a.obj b.obj", "--direction: the viewer is missing");
+  expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: the value must be X,Y,Z or");
   expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
   expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: the direction must not be 0,0,0");
   expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");

@@ -106,8 +106,8 @@ TEST_F(ReportCli, broken_template_is_refused_before_anything_is_computed) {
 }
 
 TEST_F(ReportCli, misuse_is_said_before_anything_is_read) {
-  expect_error(run("missing.glb -o page.txt"), 2, "page.txt: the name must end in .html");
-  expect_error(run("missing.glb -o -"), 2, "the name must end in .html");
+  expect_error(run("missing.glb -o page.txt"), 2, "page.txt: the name of the output must end in .html");
+  expect_error(run("missing.glb -o -"), 2, "the name of the output must end in .html");
   expect_error(run("missing.glb -o a.bin --template page.html"), 2, "--template");
   expect_error(run("missing.glb -o a.bin --for unreal"), 2, "--for");
   expect_error(run("missing.glb -o a.bin --weighting weight"), 2, "--weighting");
@@ -120,7 +120,7 @@ TEST_F(ReportCli, a_file_without_targets_is_refused_with_what_to_do) {
   still.targets.clear();
   folder_.write("still.glb", still.file().glb());
   expect_error(run("still.glb -o still.bin"), 3,
-               "no morph target of it moves anything that has normals, so there is nothing to show");
+               "the file has no morph target that moves a surface with normals, so there is nothing to show");
 }
 
 TEST_F(ReportCli, keyframes_that_do_not_move_are_refused) {
@@ -133,7 +133,7 @@ TEST_F(ReportCli, a_mesh_whose_normals_stay_right_has_no_worst_places) {
   folder_.write("b.obj", "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 2 3\n");
   const ProcessResult result = run("a.obj b.obj -o slide.bin");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("no normal is off by more than 0.001 degrees\n"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("no error is larger than 0.001 degrees\n"), std::string::npos) << result.out;
   EXPECT_EQ(test::ReportFile(bytes("slide.bin")).json["worst"], Json::array());
 }
 

@@ -50,7 +50,7 @@ class Resume : public testing::Test {
     EXPECT_FALSE(exists("out"));
     const ProcessResult done = run(command + out);
     EXPECT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_NE(done.err.find("goes on: the journal has "), std::string::npos) << done.err;
+    EXPECT_NE(done.err.find("going on after "), std::string::npos) << done.err;
     EXPECT_TRUE(file("out") == file("whole"));
     EXPECT_FALSE(exists("out.journal") || exists("out.partial"));
     fs::remove(folder_ / "out");
@@ -94,7 +94,7 @@ TEST_F(Resume, a_journal_of_another_run_is_refused_with_what_differs) {
   const std::string journal = file("out.journal"), partial = file("out.partial");
   const ProcessResult weighted = run(command + " --weighting angle");
   EXPECT_EQ(weighted.exit_code, 2);
-  EXPECT_NE(weighted.err.find("--weighting was 'area' then, and is 'angle' now"), std::string::npos) << weighted.err;
+  EXPECT_NE(weighted.err.find("--weighting was 'area' then and is 'angle' now"), std::string::npos) << weighted.err;
   EXPECT_NE(run(command + " --length area").err.find("--length was 'unit'"), std::string::npos);
   EXPECT_NE(run("sample w_0.obj w_1.obj --times 0:0.125:1 --format npy --resume -o out").err.find("INPUT was"),
             std::string::npos);

@@ -61,7 +61,7 @@ TEST_F(Stability, no_command_and_no_option_vanishes) {
     are_commands = line == "Commands:" || (are_commands && !line.empty());
     if (!are_commands || !line.starts_with("  ") || line.starts_with("   ")) continue;
     const std::string command = word_at(line, 2);
-    std::istringstream options(run("help " + command).out);
+    std::istringstream options(run(command + " --help-all").out);
     for (std::string option; std::getline(options, option);)
       if (option.starts_with("  -")) found.insert(command + ' ' + word_at(option, option.find("--")));
   }

@@ -97,7 +97,7 @@ TEST_F(TargetsCli, wrong_usage_of_base_is_exit_2_and_says_what_to_do) {
   expect_error("convert --base base.obj -o out_%d.obj", 2, {"--base", "targets"});
   expect_error("compare --base base.obj targets --fps 30", 2, {"--fps"});
   expect_error("compare --base '' targets", 2, {"--base"});
-  expect_error("compare --base - -", 2, {"only once"});
+  expect_error("compare --base - -", 2, {"only be given once"});
 }
 
 TEST_F(TargetsCli, errors_in_targets_have_the_exit_code_and_the_file) {
@@ -164,7 +164,7 @@ TEST_F(TargetsCli, targets_become_morph_targets_of_a_glb_with_their_names) {
   EXPECT_EQ(run("bake face.glb baked.glb").exit_code, 0);
   EXPECT_EQ(run("audit baked.glb").exit_code, 0);
   EXPECT_EQ(run("convert --sample bumps -o bumps.vrm").exit_code, 0);
-  expect_error("convert base.obj smile.obj -o walk.glb", 2, {"walk.glb", "bake writes glTF"});
+  expect_error("convert base.obj smile.obj -o walk.glb", 2, {"walk.glb", "use bake for other glTF files"});
   expect_error("convert --base base.obj smile.obj -o face.gltf", 2, {"face.gltf", ".glb"});
   expect_error("convert --base base.obj smile.obj -o face.glb", 1, {"face.glb", "--force"});
 }

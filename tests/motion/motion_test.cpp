@@ -106,7 +106,7 @@ TEST(Validate, refuses_frames_of_another_size) {
 TEST(Validate, refuses_bodies_of_another_number_of_vertices) {
   Motion motion = two_frames();
   motion.body_of_vertex = {0, 0};
-  expect_invalid(motion, "", "there are 2 bodies for 3 vertices");
+  expect_invalid(motion, "", "the list of bodies has 2 entries, but the mesh has 3 vertices");
 }
 
 TEST(Validate, refuses_segments_that_lead_nowhere) {
@@ -189,14 +189,14 @@ TEST(Motion, kinds_make_segments_of_keyframes) {
 TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   Motion motion = three_keyframes();
   motion.segments = {{0, 1}, {0, 2}};
-  expect_invalid(motion, "segment 1", "joins the next two keyframes");
+  expect_invalid(motion, "segment 1", "from its keyframe to the next one");
   motion.kind = MotionKind::kTargets;
   EXPECT_TRUE(validate(motion).ok());
   motion.connect_as_sequence();
   motion.kind = MotionKind::kTargets;
-  expect_invalid(motion, "segment 1", "starts at keyframe 0");
+  expect_invalid(motion, "segment 1", "from keyframe 0 to a keyframe of its own");
   motion.segments = {{0, 1}};
-  expect_invalid(motion, "", "1 segments for 3 keyframes");
+  expect_invalid(motion, "", "1 segments, which does not fit its 3 keyframes");
   motion.kind = MotionKind::kAnimation;
   motion.segments = {{0, 2}};
   expect_invalid(motion, "segment 0", "neighbouring");

@@ -242,7 +242,7 @@ class RanksTest(unittest.TestCase):
         os.truncate("cut.pc2", 1000000)
         errors = run.communicate(timeout=60)[1]
         self.assertEqual(run.returncode, 1, errors)
-        self.assertRegex(errors, "rank [012]: cut.pc2: the file ends at byte")
+        self.assertRegex(errors, "rank [012]: cut.pc2: another program has shortened the file")
         self.assertEqual(errors.count("chronormal"), 1, errors)
         self.assert_nothing_is_left()
         os.remove("cut.pc2")

@@ -210,7 +210,7 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   const auto written = write_share(motion, of_vertices(), {{0, 1}, {}}, {folder / "n.npy"}, {1, 2}, peers);
   ASSERT_FALSE(written.ok());
   EXPECT_EQ(written.error().code, ErrorCode::kFailed);
-  EXPECT_NE(written.error().text().find("what the first process has begun"), std::string::npos);
+  EXPECT_NE(written.error().text().find("that the first process has begun"), std::string::npos);
   const auto stream = write_share(motion, of_vertices(), {{0, 1}, {}}, {"-"}, {1, 2}, peers);
   ASSERT_FALSE(stream.ok());
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);

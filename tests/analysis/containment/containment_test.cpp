@@ -406,7 +406,7 @@ TEST(Containment, a_mesh_that_is_not_closed_is_refused_with_its_edges_counted) {
             "the other by faces that are "
             "wound inconsistently");
   EXPECT_EQ(refusal({0, 1, 2, 1, 0, 3, 0, 1, 3}).substr(0, 47),
-            "face 0: the mesh is not closed, so points cannot be inside it; 2 edges are bou");
+            "face 0: the mesh is not closed, so points cannot be inside it; 2 edges have a face on one side");
 }
 
 TEST(Containment, results_are_the_same_on_any_number_of_threads) {

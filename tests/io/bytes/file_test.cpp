@@ -152,9 +152,8 @@ TEST(FileBytes, streams_are_read_up_to_a_limit) {
     writer.join();
     EXPECT_EQ(file.ok(), most == 100000);
     if (!file) {
-      EXPECT_EQ(file.error().text(), pipe +
-                                         ": there is no end within 99999 bytes, and no more are read of a stream: "
-                                         "write them to a file, and give that");
+      EXPECT_EQ(file.error().text(),
+                pipe + ": the stream is longer than 99999 bytes; save its data to a file, and name that file");
     }
   }
   const std::string mapped = folder.write("file", std::string(100000, 'x'));
@@ -330,8 +329,9 @@ TEST(WriteOutput, standard_output_and_its_other_names_are_streams) {
 TEST(WriteOutput, failure_leaves_no_temporary_and_the_old_file) {
   const TemporaryFolder folder;
   EXPECT_EQ(error_of(write_output(folder.path(), "x", true)), folder.path() + ": this is a folder; name a file");
-  EXPECT_NE(error_of(write_output(folder / "no/where", "x", false)).find("can not write in its folder"),
-            std::string::npos);
+  EXPECT_NE(
+      error_of(write_output(folder / "no/where", "x", false)).find("the folder of the output cannot be written to"),
+      std::string::npos);
   EXPECT_NE(error_of(write_output(folder / std::string(300, 'a'), "x", false)), "no error");
   EXPECT_TRUE(write_output(folder / std::string(255, 'a'), "x", false).ok());
   EXPECT_EQ(folder.entry_count(), 1U);

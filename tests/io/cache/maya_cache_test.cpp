@@ -45,13 +45,14 @@ TEST(ReadMayaPoints, reads_float_and_double_with_both_sizes_of_chunks) {
 
 TEST(ReadMayaPoints, a_channel_must_be_the_only_one_that_can_be_meant) {
   const std::string bytes = test::small_maya<float>(false);
-  EXPECT_EQ(
-      error_text(read_maya_points(bytes, "a.mc")),
-      "a.mc, channels: several channels could be meant; name one, as in cache.xml#'body': 'body' (3), 'other' (1)");
+  EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc")),
+            "a.mc, channels: several channels fit the mesh, 'body' (3), 'other' (1); name one of them, as in "
+            "cache.xml#'body'");
   EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 4, ""})),
-            "a.mc, channels: no channel has the 4 points that the mesh needs; there are 'body' (3), 'other' (1)");
+            "a.mc, channels: no channel has the 4 points of the mesh, only 'body' (3), 'other' (1); give the mesh that "
+            "the cache was made for");
   EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 3, "head"})),
-            "a.mc, channels: there is no channel 'head'; there are 'body' (3), 'other' (1)");
+            "a.mc, channels: the cache has no channel 'head'; choose one of 'body' (3), 'other' (1)");
   EXPECT_EQ(error_text(read_maya_points(test::MayaWriter(false).header(0), "a.mc")),
             "a.mc, channels: the cache has no points");
 }
@@ -69,11 +70,11 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
             "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", -1) + writer.chunk("FVCA", ""), writer.header(0)),
-      "a.mc, byte 84: the channel 'a' declares -1 points, but has 0 bytes for them");
+      "a.mc, byte 84: the channel 'a' should have -1 points, which do not fit its 0 bytes");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) + writer.chunk("DVCA", std::string(12, 'x')),
                  writer.header(0)),
-      "a.mc, byte 84: the channel 'a' declares 1 points, but has 12 bytes for them");
+      "a.mc, byte 84: the channel 'a' should have 1 points, which do not fit its 12 bytes");
   EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""), "a.mc, byte 20: the chunk 'TIME' must have 4 bytes");
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
@@ -115,12 +116,12 @@ TEST(ReadMayaDescription, errors_say_where_and_what) {
   EXPECT_NE(error_with("Autodesk_Cache_File", "x").find("c.xml, byte "), std::string::npos);
   EXPECT_EQ(error_text(read_maya_description("<a/>", "c.xml")),
             "c.xml, byte 0: this is not the description of a Maya cache, since it has no Autodesk_Cache_File");
-  EXPECT_NE(error_with("OneFile", "TwoFiles").find("the Type of cacheType is 'TwoFiles'"), std::string::npos);
-  EXPECT_NE(error_with("mcc", "abc").find("the Format of cacheType is 'abc'"), std::string::npos);
+  EXPECT_NE(error_with("OneFile", "TwoFiles").find("Type of cacheType is 'TwoFiles'"), std::string::npos);
+  EXPECT_NE(error_with("mcc", "abc").find("Format of cacheType is 'abc'"), std::string::npos);
   EXPECT_NE(error_with("\"250\"", "\"0\"").find("TimePerFrame must be greater than 0"), std::string::npos);
   EXPECT_NE(error_with("\"125\"", "\"4294967296\"").find("SamplingRate: '4294967296' is too large"), std::string::npos);
-  EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate above 0"), std::string::npos);
-  EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not after its EndTime"), std::string::npos);
+  EXPECT_NE(error_with("\"125\"", "\"-1\"").find("a SamplingRate greater than 0"), std::string::npos);
+  EXPECT_NE(error_with("\"375\"", "\"249\"").find("a StartTime not later than its EndTime"), std::string::npos);
   EXPECT_EQ(error_text(read_maya_description(std::string((std::size_t{1} << 24) + 1, ' '), "c.xml")),
             "c.xml, byte 16777216: the description of the Maya cache is larger than 16 MiB");
 }
@@ -161,7 +162,7 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
   const test::TemporaryFolder folder;
   folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcc", 125, -250, 0));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
-            "c.xml: this file is missing: cFrame0.mc (or another number) beside it");
+            "c.xml: the files of the cache are missing; they should be in the same folder, named like cFrame0.mc");
   folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
   folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
@@ -171,7 +172,7 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
   folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));
   folder.write("c.mc", test::small_maya<float>(false));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml", {1, 3, ""})),
-            "c.xml: it declares a sample at tick 500, which is not there");
+            "c.xml: the sample at tick 500 is missing in the cache");
 }
 
 TEST(ReadMayaCache, among_channels_of_the_same_size_the_interpretation_decides) {

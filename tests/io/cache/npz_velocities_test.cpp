@@ -49,7 +49,8 @@ TEST(NpzVelocities, of_another_shape_or_not_finite_are_refused_with_their_place)
     const Result<Motion> read = read_npz(write_npz(members), "walk.npz");
     return read ? std::string() : read.error().text();
   };
-  EXPECT_NE(refused(fewer).find("walk.npz, velocities: velocities must be as many as positions"), std::string::npos)
+  EXPECT_NE(refused(fewer).find("walk.npz, velocities: velocities must have the same shape as positions"),
+            std::string::npos)
       << refused(fewer);
   EXPECT_NE(refused(nan).find("walk.npz, velocities[0, 2, 1]"), std::string::npos) << refused(nan);
   EXPECT_EQ(refused(positions), "");

@@ -39,10 +39,11 @@ TEST(MotionFromCache, is_a_sequence_of_all_samples) {
 
 TEST(MotionFromCache, errors_name_counts_and_samples) {
   EXPECT_EQ(error_of(4, cache_at({0, 1})), "walk.pc2: it has 3 vertices, but the mesh body.obj has 4");
-  EXPECT_EQ(error_of(3, cache_at({0})), "walk.pc2: a motion needs two samples or more, but it has 1");
-  EXPECT_EQ(error_of(3, cache_at({0, 1, 1})), "walk.pc2, sample 2: its time, 1 s, is not after that of sample 1, 1 s");
+  EXPECT_EQ(error_of(3, cache_at({0})), "walk.pc2: a motion needs at least two samples, but the cache has 1");
+  EXPECT_EQ(error_of(3, cache_at({0, 1, 1})),
+            "walk.pc2, sample 2: the time of this sample, 1 s, is not later than 1 s, the time of sample 1");
   EXPECT_EQ(error_of(3, cache_at({0, -0.5})),
-            "walk.pc2, sample 1: its time, -0.5 s, is not after that of sample 0, 0 s");
+            "walk.pc2, sample 1: the time of this sample, -0.5 s, is not later than 0 s, the time of sample 0");
 }
 
 TEST(MotionFromCache, refuses_what_is_not_finite_with_the_sample) {

@@ -166,11 +166,11 @@ struct Case {
 TEST(GltfSkin, every_fault_is_told_with_its_place) {
   const std::string attributes = "a.gltf, /meshes/0/primitives/0/attributes";
   const std::vector<Case> cases = {
-      {"a.gltf, /nodes/0/skin: this is none of the 1 skins of the file",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = 1; }},
-      {"a.gltf, /nodes/0/skin: this is none of the 1 skins of the file",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = "first"; }},
-      {"a.gltf, /nodes/0/skin: this is none of the 0 skins of the file",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 0",
        [](Skinned& s) { s.builder.json["skins"] = Json::object(); }},
       {"a.gltf, /skins/0: the value must be an object, not a number",
        [](Skinned& s) { s.builder.json["skins"] = {5}; }},
@@ -180,7 +180,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) {
          s.builder.json["skins"][0]["joints"] = {1, 3};
        }},
-      {"a.gltf, /skins/0/inverseBindMatrices: there are 1 matrices for 2 joints",
+      {"a.gltf, /skins/0/inverseBindMatrices: the accessor has 1 matrices, but the skin has 2 joints",
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1);
        }},
@@ -203,7 +203,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        }},
       {attributes + ": there are JOINTS_0 and no WEIGHTS_0", [](Skinned& s) { s.attributes().erase("WEIGHTS_0"); }},
       {attributes + ": there are WEIGHTS_0 and no JOINTS_0", [](Skinned& s) { s.attributes().erase("JOINTS_0"); }},
-      {attributes + "/JOINTS_0: vertex 2 follows joint 2 of a skin that has 2",
+      {attributes + "/JOINTS_0: vertex 2 follows joint 2, but the skin has only 2 joints",
        [](Skinned& s) {
          s.joints(
              s.builder.add_accessor("VEC4", std::vector<std::uint8_t>{0, 1, 9, 9, 0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0}));
@@ -213,7 +213,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
       {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
       {attributes + "/WEIGHTS_0: accessor 4 has a componentType that is not allowed for this use",
        [](Skinned& s) { s.weights(4); }},
-      {attributes + "/WEIGHTS_0: there are 1 of these for 4 positions",
+      {attributes + "/WEIGHTS_0: the accessor has 1 elements, but the primitive has 4 positions",
        [](Skinned& s) {
          s.weights(s.builder.add_accessor("VEC4", std::vector<float>{1, 0, 0, 0}));
        }},

@@ -185,7 +185,7 @@ TEST_F(GltfUris, errors_say_what_is_wrong_with_them) {
   expect_error("none.bin", "this file is missing: " + asset_ + "/none.bin");
   expect_error("pipe.bin", asset_ + "/pipe.bin is not a regular file");
   expect_error("short.bin", "the file has 3 bytes, but byteLength is " + size);
-  expect_error(octets + good.substr(0, 8), "the data URI has fewer than the " + size + " bytes declared");
+  expect_error(octets + good.substr(0, 8), "the data URI has fewer than the " + size + " bytes of byteLength");
   expect_error(octets + "!" + good.substr(1), "the data URI is not valid base64");
   expect_error(octets + good.substr(0, good.size() - 1),
                "the data URI has " + std::to_string(builder_.buffer.size() - 1) + " bytes, but byteLength is " + size);

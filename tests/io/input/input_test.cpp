@@ -88,15 +88,15 @@ TEST_F(OpenInput, everything_else_is_a_sequence) {
   folder_.write("body2.obj", kObj);
   EXPECT_TRUE(read({"body.obj", "body2.obj"}).ok());
   EXPECT_TRUE(read({"body*.obj"}).ok());
-  expect_error({"body.obj"}, ErrorCode::kInvalidInput, "a sequence needs two frames or more");
-  expect_error({"none.obj", "body.obj"}, ErrorCode::kFailed, "o such file");
+  expect_error({"body.obj"}, ErrorCode::kInvalidInput, "a sequence needs at least two keyframes");
+  expect_error({"none.obj", "body.obj"}, ErrorCode::kFailed, "there is no file or folder");
 }
 
 TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
   expect_error({"walk.pc2"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"walk.pc2", "walk.mdd"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"body.obj", "walk.pc2", "body.obj"}, ErrorCode::kUsage, "give it together with one mesh");
-  expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "give it alone");
+  expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "give no other inputs");
   folder_.write("body2.obj", kObj);
   expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "stands for 2 files");
   EXPECT_EQ(read({"walk.npz"}, 0).error().code, ErrorCode::kUsage);
@@ -119,9 +119,10 @@ TEST_F(OpenInput, errors_name_the_file) {
   folder_.write("cut.mdd", test::small_mdd(0, 1).substr(0, 40));
   expect_error({"body.obj", "cut.mdd"}, ErrorCode::kInvalidInput, "cut.mdd, byte 8: ");
   folder_.write("twice.mdd", test::small_mdd(1, 1));
-  expect_error({"body.obj", "twice.mdd"}, ErrorCode::kInvalidInput, "twice.mdd, sample 1: its time, 1 s, is not after");
+  expect_error({"body.obj", "twice.mdd"}, ErrorCode::kInvalidInput,
+               "twice.mdd, sample 1: the time of this sample, 1 s, is not later");
   folder_.write("text", "hello");
-  expect_error({"text"}, ErrorCode::kInvalidInput, "text: neither the name nor the content");
+  expect_error({"text"}, ErrorCode::kInvalidInput, "text: the file is not");
   expect_error({"body.obj", "none.mdd"}, ErrorCode::kFailed, "none.mdd");
   expect_error({"none.npz"}, ErrorCode::kFailed, "none.npz");
 }
@@ -348,7 +349,7 @@ TEST_F(OpenInput, targets_have_every_name_that_a_mesh_gives_them) {
   EXPECT_EQ(find_target(names, "blink").value(), 1U);
   EXPECT_EQ(find_target(names, "0").value(), 0U);
   EXPECT_EQ(find_target(names, "smile").error().message,
-            "targets 0 and 1 all have the name 'smile': say which by its number");
+            "targets 0 and 1 all have the name 'smile'; give the number of one instead");
   EXPECT_EQ(target_label(names, 1), "1 (blink)");
   Result<Input> sequence = open_input(test::files({folder_ / "walk.npz"}));
   EXPECT_TRUE(target_names(sequence.value()).value().empty());

@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
         {"big float64, Fortran",
          npy(npy_header(">f8", "(2L, 3, 3,)", true), raw(test::turning_elements<double>(true), true), 3)}}},
       {"npz", {{"stored", test::small_npz(false)}, {"deflated", test::small_npz(true)}}},
-      {"md2", {{"two frames", test::small_md2()}}},
+      {"md2", {{"two keyframes", test::small_md2()}}},
       {"maya",
        {{"FOR4 float", test::small_maya<float>(false), false},
         {"FOR4 double", test::small_maya<double>(false), false},

@@ -78,7 +78,7 @@ TEST(Numbering, even_steps_of_whole_numbers_are_counted_and_uneven_ones_are_time
 TEST(Numbering, several_sequences_are_listed) {
   const std::string text = sorted({"walk_1.obj", "run_1.obj", "walk_2.obj", "run_2.obj", "walk_10.obj"}).front();
   EXPECT_EQ(text,
-            "walk: these are 2 sequences: walk_1.obj ... walk_10.obj (3 files), run_1.obj ... run_2.obj (2 files); "
+            "walk: the files are 2 sequences: walk_1.obj ... walk_10.obj (3 files), run_1.obj ... run_2.obj (2 files); "
             "choose one sequence with a pattern such as 'walk_*.obj'");
   EXPECT_NE(sorted({"take1_1.obj", "take1_2.obj", "take2_1.obj", "take2_2.obj"}).front().find("2 sequences"),
             std::string::npos);

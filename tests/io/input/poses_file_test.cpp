@@ -24,9 +24,10 @@ TEST(PosesFile, has_weights_by_name_or_in_order) {
 
 TEST(PosesFile, errors_say_where) {
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
-           {"{}", "p: it must be a list of one pose at least"},
-           {"[]", "p: it must be a list of one pose at least"},
-           {"[3]", "p, /0: a pose must be an object of weights by the names of targets, or a list of weights"},
+           {"{}", "p: the file must be a list of at least one pose, such as [{\"smile\": 1}]"},
+           {"[]", "p: the file must be a list of at least one pose, such as [{\"smile\": 1}]"},
+           {"[3]",
+            "p, /0: a pose must be weights by the names of targets, such as {\"smile\": 1}, or a list of weights"},
            {R"([{}, {"smile": "1"}])", "p, /1/smile: the value must be a number, not a string"},
            {"[[1, 1e999]]", "p, /0/1: the number is too large for a double"}}) {
     const auto poses = parse_poses(text, "p");

@@ -88,7 +88,8 @@ TEST(FindFrames, files_that_a_shell_lists_are_sorted_with_a_note) {
   ASSERT_TRUE(input.ok()) << input.error().text();
   EXPECT_EQ(input.value().name(), "f0.obj ... f11.obj");
   ASSERT_EQ(input.value().notes().size(), 2U);
-  EXPECT_NE(input.value().notes()[0].find("in that of their numbers"), std::string::npos) << input.value().notes()[0];
+  EXPECT_NE(input.value().notes()[0].find("in the order of their numbers"), std::string::npos)
+      << input.value().notes()[0];
   EXPECT_NE(input.value().notes()[1].find("not evenly spaced"), std::string::npos) << input.value().notes()[1];
   std::vector<double> times, heights;
   for (const Motion::Keyframe& keyframe : input.value().motion().value()->keyframes) {
@@ -186,7 +187,8 @@ TEST(FindFrames, folder_of_two_formats_is_an_error_that_says_what_to_do) {
   const Error error = error_of(find_frames(test::files(Names{folder.path()})));
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(error.place, folder.path());
-  EXPECT_NE(error.message.find("use a pattern such as '" + folder / "*."), std::string::npos) << error.message;
+  EXPECT_NE(error.message.find("choose one kind with a pattern such as '" + folder / "*."), std::string::npos)
+      << error.message;
 }
 
 TEST(ReadSequence, frames_become_keyframes_with_names_and_times) {
@@ -258,7 +260,7 @@ TEST(ReadSequence, fewer_than_two_frames_is_an_error_that_counts_them) {
   const Error one = error_of(read({folder.write("a.obj", obj(0))}));
   EXPECT_EQ(one.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(one.text(), folder / "a.obj" +
-                            ": a sequence needs two frames or more, but 1 was found; give several .obj or "
+                            ": a sequence needs at least two keyframes, but 1 was found; give several .obj or "
                             ".ply files, a quoted pattern or a folder");
   EXPECT_NE(error_of(read({})).text().find("but 0 were found"), std::string::npos);
 }

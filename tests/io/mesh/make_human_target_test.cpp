@@ -109,7 +109,7 @@ TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong
   EXPECT_EQ(second_line("1 1 -inf 1"), at + "y of vertex 1: '-inf' is NaN or infinite");
   EXPECT_EQ(second_line("1 1 1 1e39"), at + "z of vertex 1: '1e39' is too large");
   EXPECT_EQ(second_line("1 1 1 1 1"),
-            at + "after the delta of vertex 1 stands '1', but a line is one index and three numbers");
+            at + "the line has '1' after the delta of vertex 1, but must have only an index and three numbers");
   EXPECT_EQ(second_line("0 1 1 1"), at + "vertex 0 has two deltas in this file");
   EXPECT_EQ(error_text(gzip("0 0 0 0\n\nq")),
             "a.target, line 3: 'q' is not an index; a line must have an index and three numbers");
@@ -123,7 +123,8 @@ TEST(MakeHumanTarget, indices_are_those_of_the_base_and_do_not_wrap_around) {
     const std::string text = error_text(index + " 1 1 1\n");
     EXPECT_TRUE(text.starts_with("a.target, line 1: '" + index + "' is ")) << text;
   }
-  EXPECT_EQ(error_text("4 1 1 1"), "a.target, line 1: '4' is no vertex of the base, which has 4, counted from 0");
+  EXPECT_EQ(error_text("4 1 1 1"),
+            "a.target, line 1: '4' is not a vertex of the base, whose 4 vertices are counted from 0");
 }
 
 TEST(MakeHumanTarget, delta_must_not_take_a_coordinate_out_of_float32) {

@@ -153,17 +153,17 @@ TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
 TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   EXPECT_EQ(error_of(three + "f 1 2 3\nf 1 4 2\nf 1 2 3\n"),
-            "walk.obj, line 5: corner 1 of face 1 names vertex 4, but the file has 3 vertices");
+            "walk.obj, line 5: corner 1 of face 1 refers to vertex 4, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 -4\nv 0 0 0"),
-            "walk.obj, line 4: corner 2 of face 0 names vertex -4, but the file has 3 vertices so far");
+            "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
             "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1");
   // Faces with fewer than three corners are skipped (see below), so a file with no other faces has none.
   EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file has no faces (lines that begin with f)");
   EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
-            "walk.obj, line 4: corner 1 of face 0 names vertex 5, but the file has 3 vertices");
+            "walk.obj, line 4: corner 1 of face 0 refers to vertex 5, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 4294967298\n"),
-            "walk.obj, line 4: corner 2 of face 0 names vertex 4294967298, but the file has 3 vertices");
+            "walk.obj, line 4: corner 2 of face 0 refers to vertex 4294967298, but the file has 3 vertices");
   EXPECT_EQ(error_of(three + "f 1 2 99999999999999999999\n"),
             "walk.obj, line 4: corner 2 of face 0: '99999999999999999999' is a larger index than a mesh can have");
   for (const char* const word : {"1.5", "1/x", "1/2/3/4", "/1", "//", "1//1x", "a", "1/2.5", "-", "1-2"})
@@ -219,7 +219,7 @@ TEST(ReadObj, faces_of_fewer_than_three_corners_are_left_out_and_counted) {
   const MeshFrame mesh = read_good(text);
   EXPECT_EQ(mesh.topology, Topology::triangles(3, {0, 1, 2, 2, 1, 0}).value());
   ASSERT_EQ(mesh.notes.size(), 1U);
-  EXPECT_EQ(mesh.notes[0], "2 faces have fewer than three corners and cannot have a normal");
+  EXPECT_EQ(mesh.notes[0], "2 faces have fewer than three corners and are left out");
   const MeshFrame shading = shading_of("f 1//1 2\n" + text + "s 1\nf 1 2\nf 2 1 3\n");
   EXPECT_EQ(shading.normal_of_corner.size(), 27U);
   EXPECT_EQ(shading.normal_of_corner[2], 1);
@@ -285,7 +285,7 @@ TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted)
   const auto notes_of = [&](const std::string& rest) { return shading_of(three + rest).notes; };
   EXPECT_EQ(
       notes_of("vn 0 0 1\nf 1//1 2//2 3//1\nf 1 2 3\n"),
-      (std::vector<std::string>{"1 corner names a normal that the file does not have: taken as corners without one"}));
+      (std::vector<std::string>{"1 corner refers to a normal that the file does not have, and is read without one"}));
   for (const char* const corner :
        {"3//-1", "3//0", "3//4294967296", "3//99999999999999999999", "3//4294967295", "3//-9999999999"}) {
     const MeshFrame mesh = shading_of(three + "f 1 2 " + corner + "\nvn 0 0 1\n");
@@ -296,7 +296,7 @@ TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted)
   const MeshFrame grouped = shading_of(three + "s 2\nf 1 2 3\ns\nf 1 2 3\n");
   EXPECT_EQ(grouped.group_of_face, (Corners{1, 0}));
   EXPECT_EQ(grouped.notes,
-            (std::vector<std::string>{"1 line has an s without a smoothing group, which is read as s off"}));
+            (std::vector<std::string>{"1 line has an s without a smoothing group, and is read as s off"}));
 }
 
 TEST(ReadObjShading, damaged_bytes_give_an_error_or_what_belongs_to_the_mesh) {

@@ -186,9 +186,9 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
   EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is unknown");
   EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");
-  EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: this must read: property TYPE NAME"));
+  EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: the line must be: property TYPE NAME"));
   EXPECT_TRUE(with("element vertex 4\n", "").starts_with("walk.ply, line 3: a property must come after its element"));
-  EXPECT_TRUE(with("list uchar int", "list float int").starts_with("walk.ply, line 8: the length of a list can not"));
+  EXPECT_TRUE(with("list uchar int", "list float int").starts_with("walk.ply, line 8: the length of a list must be"));
   EXPECT_TRUE(with("list uchar int", "list uchar float").find("must be a list of integers") != std::string::npos);
   EXPECT_TRUE(with("list uchar int", "int").find("must be a list of integers") != std::string::npos);
 }
@@ -219,12 +219,14 @@ TEST(ReadPly, absurd_counts_are_refused_before_memory_is_taken) {
                                   "4611686018427387904", "9223372036854775808", "18446744073709551615"}) {
     for (const char* const encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
       const std::string vertices = error_of(test::ply_header(encoding, count, "1") + kRows);
-      EXPECT_NE(vertices.find(std::string("declares ") + count + " elements 'vertex', for which the file is too short"),
-                std::string::npos)
+      EXPECT_NE(
+          vertices.find(std::string("declares ") + count + " elements 'vertex' in its header; copy or export it again"),
+          std::string::npos)
           << vertices;
       const std::string faces = error_of(test::ply_header(encoding, "1", count) + kRows);
-      EXPECT_NE(faces.find(std::string("declares ") + count + " elements 'face', for which the file is too short"),
-                std::string::npos)
+      EXPECT_NE(
+          faces.find(std::string("declares ") + count + " elements 'face' in its header; copy or export it again"),
+          std::string::npos)
           << faces;
     }
   }
@@ -247,7 +249,7 @@ TEST(ReadPly, absurd_list_lengths_are_errors_and_not_allocations) {
       writer.add(length);
       for (int i = 0; i < 3; ++i) writer.add(std::int32_t{0});
       const std::string error = error_of(writer.bytes());
-      EXPECT_NE(error.find("face 0: the file ends before the data"), std::string::npos) << error;
+      EXPECT_NE(error.find("face 0: the file is cut off"), std::string::npos) << error;
     }
     test::ByteWriter skipped(std::string("ply\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                                  " 1.0\nelement odd 1\nproperty list uint double d\nelement vertex 1\nproperty char x\n"
@@ -255,7 +257,7 @@ TEST(ReadPly, absurd_list_lengths_are_errors_and_not_allocations) {
                                  "property list char char vertex_index\nend_header\n",
                              big_endian);
     skipped.add(0x20000000U).add(0.0);
-    EXPECT_NE(error_of(skipped.bytes()).find("'odd' 0: the file ends before the data"), std::string::npos)
+    EXPECT_NE(error_of(skipped.bytes()).find("'odd' 0: the file is cut off"), std::string::npos)
         << error_of(skipped.bytes());
   }
 }
@@ -272,9 +274,9 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
             "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
-            "walk.ply, line 14, face 0: corner 2 names vertex 4, but the file has 4 vertices");
+            "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
-            "walk.ply, line 14, face 0: corner 1 names vertex -1, but the file has 4 vertices");
+            "walk.ply, line 14, face 0: corner 1 refers to vertex -1, but the file has 4 vertices");
   EXPECT_EQ(with("4 0 1", "2 0 1"),
             "walk.ply, line 15, face 1: '2' is one value more than the header declares for a row");
   EXPECT_EQ(with("4 0 1", "-4 0 1"), "walk.ply, line 15, face 1: a list has a negative length, -4");
@@ -290,8 +292,7 @@ TEST(ReadPly, ascii_rows_may_go_over_several_lines_and_faces_of_two_corners_are_
   ASSERT_TRUE(mesh.ok()) << mesh.error().text();
   EXPECT_EQ(mesh.value().positions, (std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}));
   EXPECT_EQ(mesh.value().topology, Topology::polygons(4, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 3}).value());
-  EXPECT_EQ(mesh.value().notes,
-            (std::vector<std::string>{"1 face has fewer than three corners and cannot have a normal"}));
+  EXPECT_EQ(mesh.value().notes, (std::vector<std::string>{"1 face has fewer than three corners and is left out"}));
 }
 
 TEST(ReadPly, double_positions_count_from_the_origin_before_they_are_rounded) {
@@ -319,14 +320,15 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
   EXPECT_EQ(with(16, std::string("\0\0\xC0\x7F", 4)), place(16) + ", vertex 1: the coordinate is NaN or infinite");
   EXPECT_EQ(with(32, std::string("\0\0\x80\xFF", 4)), place(32) + ", vertex 2: the coordinate is NaN or infinite");
   EXPECT_EQ(with(41, std::string("\3\0\0\0", 4)),
-            place(45) + ", face 0: corner 1 names vertex 3, but the file has 3 vertices");
+            place(45) + ", face 0: corner 1 refers to vertex 3, but the file has 3 vertices");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
-            place(45) + ", face 0: corner 1 names vertex -1, but the file has 3 vertices");
+            place(45) + ", face 0: corner 1 refers to vertex -1, but the file has 3 vertices");
   // The only face has no corners, so it is skipped.
   EXPECT_EQ(with(36, std::string("\0", 1)),
             place(37) + ": no face has three or more corners, so the mesh has no normals");
-  EXPECT_EQ(with(36, "\4"),
-            place(49) + ", face 0: the file ends before the data that its header declares: 0 bytes are left");
+  EXPECT_EQ(
+      with(36, "\4"),
+      place(49) + ", face 0: the file is cut off, since only 0 bytes are left for this row; copy or export it again");
 }
 
 TEST(ReadPly, double_that_is_too_large_for_float_is_an_error) {

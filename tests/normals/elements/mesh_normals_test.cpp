@@ -202,7 +202,8 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
   const std::vector<float> before = normals_at(normals, 0.5), few(15);
   EXPECT_EQ(text_of(normals.set_segment(view(kFrom), view(broken))),
             "keyframe 1, vertex 4: the position is NaN or infinite");
-  EXPECT_EQ(text_of(normals.begin_segment(view(few), view(kTo))), "keyframe 0: there are 5 positions for 6 vertices");
+  EXPECT_EQ(text_of(normals.begin_segment(view(few), view(kTo))),
+            "keyframe 0: the keyframe has 5 positions, but the mesh has 6 vertices");
   EXPECT_EQ(normals_at(normals, 0.5), before);
   EXPECT_EQ(MeshNormals::make(Topology()).error().text(), "the mesh has no faces");
   EXPECT_EQ(MeshNormals::make(pair_of_triangles(), {{ElementKind::kFaces}, Weighting::kAngle}).error().code,

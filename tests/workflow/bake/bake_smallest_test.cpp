@@ -243,7 +243,7 @@ TEST(BakeSmallest, a_second_bake_judges_what_the_first_one_wrote_and_says_what_t
   EXPECT_FALSE(chosen(nearer).within);
   EXPECT_NEAR(chosen(nearer).played.worst, chosen(first).played.worst, 0.3 * chosen(first).played.worst);
   ASSERT_EQ(nearer.report.warnings.size(), 1U);
-  EXPECT_NE(nearer.report.warnings[0].find("bake the original file with this tolerance"), std::string::npos);
+  EXPECT_NE(nearer.report.warnings[0].find("bake the ORIGINAL file with this tolerance"), std::string::npos);
 }
 
 TEST(BakeSmallest, fits_to_animations_alone_are_taken_only_where_they_are_better) {

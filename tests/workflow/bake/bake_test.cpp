@@ -171,7 +171,7 @@ TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
   EXPECT_EQ(nodes[2]["extras"]["chronormal"], baked.mesh()["extras"]["chronormal"]);
   EXPECT_EQ(baked.report.meshes[0].unmarked_nodes, std::vector<std::size_t>{1});
   const auto tells = [](const std::string& warning) {
-    return warning.find("extras of node 1 is no object") != std::string::npos;
+    return warning.find("extras of node 1 is not an object") != std::string::npos;
   };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
   // One delta for each target needs no drivers.
@@ -228,7 +228,9 @@ TEST(Bake, keys_that_are_too_near_for_the_slopes_of_products_are_told_of) {
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_NEAR(baked.report.meshes[0].resampling_error, 180, 1e-9);
-  const auto tells = [](const std::string& warning) { return warning.find("near to each other") != std::string::npos; };
+  const auto tells = [](const std::string& warning) {
+    return warning.find("these keys are too close") != std::string::npos;
+  };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
 }
 
@@ -508,9 +510,9 @@ TEST(Bake, errors_say_what_and_where) {
     const std::string error = test::bake_document(document, options).error;
     EXPECT_NE(error.find(words), std::string::npos) << error;
   };
-  expect(builder, {.most_bytes = 10}, "bytes, and at most 10 are allowed");
+  expect(builder, {.most_bytes = 10}, "bytes, but --max-bytes allows only 10");
   builder.json["meshes"][0]["extras"] = 5;
-  expect(builder, {}, "/meshes/0/extras: it is no object");
+  expect(builder, {}, "/meshes/0/extras: extras is not an object");
   GltfBuilder still;
   test::Hills hills(1);
   still.add_mesh(hills.primitive(still, {std::vector<float>(hills.positions.size())}));
@@ -533,8 +535,8 @@ TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
   for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;
   builder.add_track(0, 0, std::vector<float>{0, 1}, weights);
   const Baked baked = test::bake_document(builder, {.encoding = BakeEncoding::kExact});
-  EXPECT_NE(baked.error.find("there are more than 10000 pairs of targets that move the same normals at once: use "
-                             "--encode endpoint"),
+  EXPECT_NE(baked.error.find("the result would need more than 10000 correction targets, since so many pairs of targets "
+                             "move the same normals; use --encode endpoint"),
             std::string::npos)
       << baked.error;
 }

@@ -177,7 +177,7 @@ TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_n
   const auto said = [](const Baked& baked) {
     const auto& warnings = baked.report.warnings;
     return std::count_if(warnings.begin(), warnings.end(), [](const std::string& warning) {
-      return warning.find("no animation drives its targets") != std::string::npos;
+      return warning.find("no animation drives the targets") != std::string::npos;
     });
   };
   const Baked posed = test::bake_document(rig(1), smallest());

@@ -255,18 +255,18 @@ TEST(MergeParts, says_whether_the_tolerance_was_kept) {
 TEST(MergeParts, refuses_shards_that_do_not_make_a_whole) {
   const Motion motion = bending();
   const std::vector<Part> three = compare_parts(motion, {}, 3), audits = audit_parts(motion, {}, {}, 3);
-  EXPECT_EQ(merged({three[0], three[2]}), "segment 2 is in none of the shards");
-  EXPECT_EQ(merged({three[0], three[1]}), "segment 5 is in none of the shards");
-  EXPECT_EQ(merged({three[0], three[1], three[2], three[1]}), "segment 2 is in two of the shards");
-  EXPECT_EQ(merged({audits[0], audits[1]}), "segment 5 is in none of the shards");
+  EXPECT_EQ(merged({three[0], three[2]}), "segment 2 is missing; give the files of all shards");
+  EXPECT_EQ(merged({three[0], three[1]}), "segment 5 is missing; give the files of all shards");
+  EXPECT_EQ(merged({three[0], three[1], three[2], three[1]}), "segment 2 is in two of the files; give each file once");
+  EXPECT_EQ(merged({audits[0], audits[1]}), "segment 5 is missing; give the files of all shards");
   CompareOptions other;
   other.samples = 5;
   EXPECT_EQ(merged({three[0], compare_parts(motion, other, 3)[1]}),
-            "part_0: it does not belong to part_1: they differ in the options");
+            "part_0: this shard does not belong to part_1: they differ in the options");
   AuditOptions stepping;
   stepping.rule = AuditRule::kStep;
   EXPECT_EQ(merged({audits[0], audit_parts(motion, {}, stepping, 3)[1]}),
-            "part_0: it does not belong to part_1: they differ in the options");
+            "part_0: this shard does not belong to part_1: they differ in the options");
   EXPECT_EQ(merged({three[0], audits[1]}), "the files are shards of both compare and audit; merge them separately");
 }
 
@@ -275,7 +275,7 @@ TEST(MergeParts, refuses_shards_of_other_inputs_and_of_other_times) {
   Motion later = motion;
   for (Motion::Keyframe& keyframe : later.keyframes) keyframe.time += 1;
   const std::vector<Part> two = compare_parts(motion, {}, 2), audits = audit_parts(motion, {}, {}, 2);
-  const std::string differ = "part_0: it does not belong to part_1: they differ in ";
+  const std::string differ = "part_0: this shard does not belong to part_1: they differ in ";
   EXPECT_EQ(merged({two[0], compare_parts(later, {}, 2)[1]}), differ + "the times of the keyframes");
   EXPECT_EQ(merged({audits[0], audit_parts(later, {}, {}, 2)[1]}), differ + "the times of the keyframes");
   for (const auto& [first, second] : {std::pair(two[0], two[1]), std::pair(audits[0], audits[1])}) {
@@ -295,7 +295,7 @@ TEST(MergeParts, refuses_parts_that_no_shard_writes) {
   options.schemes = {"linear"};
   text = compare_parts(bending(), options, 1)[0].text;
   text = edited(text, "\"certified\":true", "\"certified\":false");
-  EXPECT_NE(merged({{"a", text}}).find("a tolerance without certificates"), std::string::npos);
+  EXPECT_NE(merged({{"a", text}}).find("a tolerance, but no bounds"), std::string::npos);
 }
 
 TEST(MergeParts, merged_values_are_those_of_one_run_and_of_the_kind_that_was_asked_for) {
@@ -328,10 +328,10 @@ TEST(MergeParts, damaged_parts_are_errors_with_a_place) {
   EXPECT_EQ(merged({{"a", "{}"}}), "a: this file was not written with --shard, so it cannot be merged");
   EXPECT_NE(merged({{"a", R"({"chronormal_part": 2, "command": "compare"})"}}).find("another version"),
             std::string::npos);
-  EXPECT_NE(merged({{"a", R"({"chronormal_part": 6, "command": "bake"})"}}).find("the part is damaged"),
+  EXPECT_NE(merged({{"a", R"({"chronormal_part": 6, "command": "bake"})"}}).find("the shard is damaged"),
             std::string::npos);
   const std::string text = audit_parts(motion, {}, {}, 2)[0].text;
-  EXPECT_NE(merged({{"a", edited(text, "\"audit\"", "\"bake\"")}}).find("of compare and of audit"), std::string::npos);
+  EXPECT_NE(merged({{"a", edited(text, "\"audit\"", "\"bake\"")}}).find("must be compare or audit"), std::string::npos);
   EXPECT_NE(merged({{"a", edited(text, "\"error\":[", "\"error\":[-1.5,")}}).find("must be a count"),
             std::string::npos);
 }
@@ -377,15 +377,15 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
     return status ? "done" : status.error().message;
   };
   EXPECT_EQ(merged_arrays({third, first, second}), "done");
-  EXPECT_EQ(merged_arrays({first, third}), "row 1 is in none of the shards");
-  EXPECT_EQ(merged_arrays({second, third}), "row 0 is in none of the shards");
-  EXPECT_EQ(merged_arrays({first, second}), "row 3 is in none of the shards");
-  EXPECT_EQ(merged_arrays({first, second, second, third}), "row 1 is in two of the shards");
+  EXPECT_EQ(merged_arrays({first, third}), "row 1 is missing; give the files of all shards");
+  EXPECT_EQ(merged_arrays({second, third}), "row 0 is missing; give the files of all shards");
+  EXPECT_EQ(merged_arrays({first, second}), "row 3 is missing; give the files of all shards");
+  EXPECT_EQ(merged_arrays({first, second, second, third}), "row 1 is in two of the files; give each file once");
   for (const std::string& foreign : {other, later})
     EXPECT_EQ(merged_arrays({first, foreign, third}),
-              "it does not belong to " + first + ": they differ in the options");
+              "this shard does not belong to " + first + ": they differ in the options");
   EXPECT_EQ(merged_arrays({first, folder / "all.npy"}),
-            "this is no part that sample --shard has left, but (5, 80, 3) of '<f4'");
+            "this file was not written by sample --shard, but is (5, 80, 3) of '<f4'");
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
 }
 
@@ -538,7 +538,8 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       ASSERT_FALSE(merged.ok()) << task.name << ", keyframe " << changed << ", " << is_kept;
       EXPECT_EQ(merged.error().code, ErrorCode::kUsage);
       const std::string text = merged.error().text();
-      EXPECT_TRUE(text.starts_with(paths[later] + ": it does not belong to " + folder.path())) << task.name << text;
+      EXPECT_TRUE(text.starts_with(paths[later] + ": this shard does not belong to " + folder.path()))
+          << task.name << text;
       EXPECT_TRUE(text.ends_with(": they differ in keyframe " + std::to_string(changed))) << task.name << text;
     }
   }
@@ -560,7 +561,8 @@ TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_togethe
         for (std::size_t i = 0; i < 2; ++i) write_part(task, i == from_other ? other : one, is_kept, {i, 2}, paths[i]);
         const Result<std::string> merged = task.merge(paths);
         ASSERT_FALSE(merged.ok()) << task.name;
-        EXPECT_TRUE(merged.error().text().starts_with(paths[1] + ": it does not belong to " + paths[0])) << task.name;
+        EXPECT_TRUE(merged.error().text().starts_with(paths[1] + ": this shard does not belong to " + paths[0]))
+            << task.name;
       }
     }
   }

@@ -284,7 +284,7 @@ TEST(GltfShading, mark_whose_flag_became_a_number_is_read) {
     EXPECT_EQ(read(marked(mark)).mark->sequence, flag == 1);
   }
   mark["sequence"] = 2;
-  EXPECT_NE(error_of(marked(mark)).find("/sequence: this must be true or false"), std::string::npos);
+  EXPECT_NE(error_of(marked(mark)).find("/sequence: the value must be true or false"), std::string::npos);
 }
 
 TEST(GltfShading, mark_whose_extra_targets_all_turn_nothing_is_none) {
