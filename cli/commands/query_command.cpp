@@ -169,11 +169,11 @@ Command query_command() {
   input.insert(input.begin(), {"QUESTION", &options->question, "the question (listed below)"});
   for (const Question& question : options->questions)
     for (Option option : question.options) {
-      option.help = "for " + question.name + ": " + option.help;
+      option.help = question.name + ": " + option.help;
       own.push_back(std::move(option));
     }
   for (Option& option : options->elements.table()) {
-    option.help = "for facing and shutter: " + option.help;
+    option.help = "facing, shutter: " + option.help;
     own.push_back(std::move(option));
   }
   own.push_back({"--from T", &options->span.from, "examine the motion from this time on\nFor targets, T is a weight"});

@@ -43,19 +43,14 @@ const char* access_name(const SchemeComparison& row) { return row.sequential ? "
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
-std::string sample_pairs(std::size_t count, const std::string& word) {
-  return formatted("{} {}", grouped(count), count == 1 ? "sample" : "samples");
-}
-
 // Returns facts that the table does not show, one line each: parts that were treated differently, and parts that were
 // left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
-  const std::string word(one_element(comparison.kind));
-  const std::string of = comparison.segments > 1
-                             ? "(" + word + (is_of_targets(comparison) ? ", target) pairs" : ", segment) pairs")
-                         : pairs == 1 ? word
-                                      : std::string(element_kind_name(comparison.kind));
+  const std::string of = std::string(pairs == 1 ? one_element(comparison.kind) : element_kind_name(comparison.kind)) +
+                         (comparison.segments == 1    ? ""
+                          : is_of_targets(comparison) ? " in all targets"
+                                                      : " in all segments");
   const auto share = [pairs, &of](std::size_t count) {
     return formatted("{} of {} {} ({:.2f} %)", grouped(count), grouped(pairs), of,
                      100 * static_cast<double>(count) / static_cast<double>(pairs));
@@ -74,12 +69,12 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
       add(row.certified->unbounded,
           share(row.certified->unbounded) + " without a bound, since a normal vanishes on the way");
     add(row.quality.missing,
-        sample_pairs(row.quality.missing, word) + " left out, since the scheme has no normal there");
+        counted(row.quality.missing, "sample", "samples") + " left out, since the scheme has no normal there");
   }
   if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
   if (degenerate > 0)
     text += formatted("{}no normal: {} left out, since the faces there have no area\n", prefix,
-                      sample_pairs(degenerate, word));
+                      counted(degenerate, "sample", "samples"));
   if (comparison.tolerance && comparison.cheapest) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
     text += formatted("{}the cheapest scheme that is always within {:g} degrees is {}, with an error of at most {}\n",

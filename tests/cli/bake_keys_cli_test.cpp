@@ -35,7 +35,7 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   EXPECT_LE(report["bound_degrees"], 2);
   const std::string text = run("--sample bend --encode keys --tolerance 2 --force -o bend.glb").out;
   EXPECT_NE(text.find(" between keyframes; 0 keyframes left out; "), std::string::npos) << text;
-  EXPECT_NE(text.find("\nkeys: at most "), std::string::npos) << text;
+  EXPECT_NE(text.find("\nthe error is at most "), std::string::npos) << text;
   // The mark has the same form as after a bake for all viewers, so that all readers of marks understand it.
   const Json audited = Json::parse(
       run_shell(std::string(kProgram) + " audit bend.glb --json --for three --tolerance 2.01", folder_.path()).out);

@@ -165,7 +165,7 @@ TEST_F(BlendCli, wrong_usage_is_exit_2_and_says_what_to_do) {
   expect_misuse("--sample cloth --blend 3", {"--blend", "sequence"});
   expect_misuse("sheet.glb --active 1", {"--active", "--blend"});
   expect_misuse("sheet.glb --seed 1", {"--seed", "--blend"});
-  expect_misuse("sheet.glb --blend 3 --active 0", {"--active", "1 or more"});
+  expect_misuse("sheet.glb --blend 3 --active 0", {"--active", "at least 1"});
   expect_misuse("sheet.glb --blend 3 --active 3", {"--active", "2 targets"});
   expect_misuse("--sample bumps --blend 3 --active 13", {"--active", "12 targets"});
   expect_misuse("sheet.glb --blend 3 --animation walk --active 1", {"--active", "animation"});

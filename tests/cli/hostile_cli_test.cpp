@@ -236,7 +236,7 @@ TEST_F(HostileCli, messages_say_what_is_the_matter) {
   folder_.write("other.npz", test::zip({{"points.npy", "x"}, {"faces.npy", "y"}}));
   expect(run("inspect f.fbx"), 3, {".obj, ", ".glb", ".npz", ".md2", ".pc2", ".target.gz"});
   expect(run("inspect text.glb"), 3, {"text.glb, byte 0: this is not a glTF file"});
-  expect(run("inspect other.npz"), 3, {"positions: the file has no array of this name; it has points, faces"});
+  expect(run("inspect other.npz"), 3, {"positions: the file has no array of this name; only points, faces"});
   const ProcessResult gltf = run("convert a.obj b.obj -o r.glb");
   expect(gltf, 2, {"r.glb: ", "bake"});
   EXPECT_EQ(gltf.err.find("%d"), std::string::npos);
@@ -246,7 +246,7 @@ TEST_F(HostileCli, messages_say_what_is_the_matter) {
              {"--samples: the value must be a whole number from 2 to 1,000,00"});
   }
   expect(run("inspect a.obj --max-expansion -1"), 2,
-         {"--max-expansion: the value must be a whole number of 0 or more"});
+         {"--max-expansion: the value must be a whole number of at least 0"});
 }
 
 TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
@@ -260,7 +260,7 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   folder_.write("four.glb", builder.glb());
   const ProcessResult result = run("bake four.glb -o out.glb --encode exact");
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.err.find("quad, one, two, three: by --encode exact"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("quad, one, two, three: --encode exact"), std::string::npos) << result.err;
   const std::size_t first = result.err.find("by --encode exact");
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
 }
@@ -381,7 +381,7 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   for (const std::string arguments :
        {"query cones many.glb", "query shutter many.glb -o s.npz", "query cones many.glb --json",
         "compare many.glb --schemes linear --errors e.npz"}) {
-    expect(run(arguments), 3, {"ask for", "--max-expansion"});
+    expect(run(arguments), 3, {"of memory or output", "--max-expansion"});
   }
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
 }
@@ -397,7 +397,7 @@ TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
 TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
   expect(run("inspect /proc/self/mounts", "timeout 20 "), 3, {"mounts"});
   // Only root can open the log of the kernel.
-  if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "no end"});
+  if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "never end"});
 }
 
 // Results larger than a stack of 256 kB are on the heap.

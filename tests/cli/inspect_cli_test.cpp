@@ -189,7 +189,7 @@ TEST_F(InspectCli, errors_and_output_are_as_in_other_commands) {
 
 TEST_F(InspectCli, face_with_a_point_twice_is_told) {
   folder_.write("rep.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1 3\n");
-  expect_words(text_of("rep.obj"), {"2 edges; 2 open", "1 face has a point twice (face 0)"});
+  expect_words(text_of("rep.obj"), {"2 edges; 2 open", "1 face has the same point at two corners (face 0)"});
 }
 
 TEST_F(InspectCli, standard_input_has_one_name) {

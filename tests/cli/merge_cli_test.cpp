@@ -59,7 +59,7 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   ASSERT_EQ(run(audit + "--tolerance 2 --shard 3/3 -o other.json").exit_code, 0);
   const ProcessResult mixed = run("merge audit1.json audit2.json other.json");
   EXPECT_EQ(mixed.exit_code, 2);
-  EXPECT_NE(mixed.err.find("other.json: this shard does not belong to audit1.json: they differ in the tolerance"),
+  EXPECT_NE(mixed.err.find("other.json: this shard does not belong to audit1.json, since they differ in the tolerance"),
             std::string::npos)
       << mixed.err;
   EXPECT_EQ(run("merge sample1.npy sample3.npy -o x.npy").exit_code, 2);
@@ -83,7 +83,7 @@ TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
     folder_.write("w_3.obj", before);
     const ProcessResult merged = run("merge " + one + " " + two + " -o merged");
     EXPECT_EQ(merged.exit_code, 2) << command;
-    const std::string message = two + ": this shard does not belong to " + one + ": they differ in keyframe 3";
+    const std::string message = two + ": this shard does not belong to " + one + ", since they differ in keyframe 3";
     EXPECT_NE(merged.err.find(message), std::string::npos) << command << '\n' << merged.err;
     EXPECT_FALSE(std::filesystem::exists(folder_ / "merged"));
   }

@@ -21,9 +21,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Tells whether a number in the text is none. Sentences may name NaN.
 bool has_no_number(const std::string& text) {
+  static const std::regex kSentence("zero, infinite or NaN|NaN or infinite");
   static const std::regex kWord("(^|[^a-z])-?(nan|inf)([^a-z]|$)", std::regex::icase);
-  return std::regex_search(text, kWord);
+  return std::regex_search(std::regex_replace(text, kSentence, ""), kWord);
 }
 
 // Makes a hinge with normal deltas and an animation of its two weights.

@@ -79,8 +79,9 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
   write_turn(0.3);
   const ProcessResult usual = run("inspect 'f*.obj' --path catmull-rom");
   EXPECT_NE(usual.err.find("catmull-rom paths: 4 segments cut into "), std::string::npos) << usual.err;
-  EXPECT_NE(usual.err.find("whose normals are within 0.01 degrees"), std::string::npos) << usual.err;
-  EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("are within 0.5 degrees"), std::string::npos);
+  EXPECT_NE(usual.err.find("with normals within 0.01 degrees of the curves"), std::string::npos) << usual.err;
+  EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:0.5").err.find("with normals within 0.5 degrees"),
+            std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");
   // Every command works on the straight pieces of the curves.
@@ -194,7 +195,7 @@ TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) 
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_NE(refused.err.find("uses up the tolerance of 0.5"), std::string::npos) << refused.err;
   const std::string exact = run("bake 'w*.obj' --path catmull-rom:0.5 -o out.glb --force").out;
-  EXPECT_NE(exact.find("exact at every instant for the straight pieces, within 0.5 degrees of the curves"),
+  EXPECT_NE(exact.find("exact at every instant of the straight pieces, which are within 0.5 degrees of the curves"),
             std::string::npos)
       << exact;
 }

@@ -65,7 +65,7 @@ TEST_F(QueryCli, a_mesh_behind_a_skin_is_asked_before_it_is_skinned_and_that_is_
 }
 
 TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {
-  expect_misuse("collapse a.obj b.obj --elements vertices", "query collapse is about faces");
+  expect_misuse("collapse a.obj b.obj --elements vertices", "query collapse can only be asked of faces");
   expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements edges", "--elements");
   expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements vertices --silhouettes", "--silhouettes");
   const Json vertices = json_of("facing a.obj b.obj --direction 0,0,1 --elements vertices");
@@ -149,22 +149,22 @@ TEST_F(QueryCli, silhouettes_are_edges_between_front_and_back) {
 TEST_F(QueryCli, people_get_a_table) {
   const ProcessResult result = run("collapse a.obj b.obj c.obj");
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* const word :
-       {"a.obj ... c.obj\n", "2  collapses\n", "2  times the face turns over there", "turns over", "0 0 -1"})
+  for (const char* const word : {"a.obj ... c.obj\n", "2  times a face loses all area at an instant\n",
+                                 "2  times the face turns over there", "turns over", "0 0 -1"})
     EXPECT_NE(result.out.find(word), std::string::npos) << word << " in " << result.out;
 }
 
 TEST_F(QueryCli, misuse_is_answered_with_what_there_is) {
-  expect_misuse("", "QUESTION: name one: ");
+  expect_misuse("", "QUESTION: the question is missing; choose one of ");
   expect_misuse("why a.obj b.obj", "there is no question 'why'; choose one of ");
   expect_misuse("collapse a.obj b.obj -o table.txt", "must end in .npz");
-  expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: it belongs to query facing");
+  expect_misuse("collapse a.obj b.obj --eye 1,2,3", "--eye: this option is only for query facing");
   expect_misuse("facing a.obj b.obj", "--direction: the viewer is missing");
   expect_misuse("facing a.obj b.obj --eye 1,2", "--eye: the value must be X,Y,Z or");
   expect_misuse("facing a.obj b.obj --eye 1,2,x", "--eye: 'x' is not a number");
   expect_misuse("facing a.obj b.obj --direction 0,0,0", "--direction: the direction must not be 0,0,0");
-  expect_misuse("collapse a.obj b.obj --from 1", "--from: there is no motion after 1: it goes from 0 to 1");
-  expect_misuse("collapse a.obj b.obj --to 0", "--to: there is no motion before 0");
+  expect_misuse("collapse a.obj b.obj --from 1", "--from: the motion has nothing after 1; it goes from 0 to 1");
+  expect_misuse("collapse a.obj b.obj --to 0", "--to: the motion has nothing before 0");
   expect_misuse("collapse a.obj b.obj --from .5 --to .5", "--to: the time must be later than --from");
   EXPECT_EQ(run("collapse a.obj").exit_code, 3) << "a mesh that stands still is no motion";
 }

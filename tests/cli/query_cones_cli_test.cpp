@@ -88,7 +88,7 @@ TEST_F(QueryCones, refuse_meshlets_that_cannot_be) {
   }
   const ProcessResult other = run("collapse a.obj b.obj --meshlets 8");
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.err.find("it belongs to query cones"), std::string::npos) << other.err;
+  EXPECT_NE(other.err.find("this option is only for query cones"), std::string::npos) << other.err;
 }
 
 TEST_F(QueryCones, and_shutter_are_tables_for_people) {

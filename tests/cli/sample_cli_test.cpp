@@ -176,12 +176,12 @@ TEST_F(SampleCli, weights_are_for_blend_shapes) {
   for (std::size_t i = 0; i < time.size(); ++i) EXPECT_NEAR(time[i], weight[i], 1e-6);
 
   expect_error("--base a.obj b.obj --times 0.5 -o n.npy", 2,
-               "blend shapes have no times: give --weights, 1 number for");
+               "blend shapes have no times; give --weights, 1 number for");
   expect_error("quad.glb --times 0.5 -o n.npy", 2, "--weights, 2 numbers for each pose");
   expect_error("--base a.obj b.obj -o n.npy", 2, "--weights");
-  expect_error("--base a.obj b.obj --weights 1,0 -o n.npy", 2, "there is 1 target, but 2 weights");
+  expect_error("--base a.obj b.obj --weights 1,0 -o n.npy", 2, "the input has 1 target, but the pose has 2 weights");
   expect_error("--base a.obj b.obj --weights 1x -o n.npy", 2, "'1x' is not a number");
-  expect_error("--base a.obj b.obj --weights 1 --times 0 -o n.npy", 2, "not both");
+  expect_error("--base a.obj b.obj --weights 1 --times 0 -o n.npy", 2, "cannot be used together");
   expect_error("a.obj b.obj --weights 1 -o n.npy", 2, "give --times, from 0 to 1");
   expect_error("a.obj --weights 1 -o n.npy", 2, "no targets");
 }
@@ -296,16 +296,16 @@ TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
   expect_error(input + "--elements corners --crease 200", 2, "0 to 180");
   expect_error(input + "--hard-edges groups", 2, "--elements corners");
   expect_error(input + "--elements corners --hard-edges all", 2, "groups or normals");
-  expect_error(input + "--elements corners --hard-edges groups --crease 30", 2, "not both");
+  expect_error(input + "--elements corners --hard-edges groups --crease 30", 2, "cannot be used together");
   expect_error("--sample twist --times 0 --elements corners --hard-edges groups -o n.npy", 2, "built-in");
   expect_error("quad.glb --weights 0,0 --elements corners --hard-edges groups -o n.npy", 2, "no smoothing groups");
-  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges normals -o n.npy", 3, "has normals");
+  expect_error("quad.glb --weights 0,0 --elements corners --hard-edges normals -o n.npy", 3, "has no normals");
   EXPECT_EQ(run("a.obj b.obj --times 0 --elements corners --hard-edges groups -o -", "").exit_code, 0);
   folder_.write("plain.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expect_error("plain.obj --elements corners --hard-edges groups -o n.npy", 3, "no smoothing groups");
   ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj -o bare.npz", folder_.path()).exit_code, 0);
   expect_error("bare.npz --times 0 --elements corners --hard-edges normals -o n.npy", 2,
-               "bare.npz stores neither normals nor smoothing groups");
+               "bare.npz has neither normals nor smoothing groups");
 }
 
 TEST_F(SampleCli, hard_edges_are_those_of_the_first_mesh) {
@@ -379,14 +379,14 @@ TEST_F(SampleCli, steps_say_how_far_they_drift) {
 
   const std::string two = "a.obj b.obj -o - ";
   expect_error(two + "--step 4", 2, "name one with --scheme");
-  expect_error(two + "--step 4 --scheme circle:timed", 2, "circle:timed has no sequential form");
+  expect_error(two + "--step 4 --scheme circle:timed", 2, "circle:timed cannot go step by step");
   expect_error(two + "--step 0 --scheme linear", 2, "'0' must be N or N:M");
   expect_error(two + "--step 4:x --scheme linear", 2, "must be N or N:M");
   expect_error(two + "--step 1000000 --scheme linear", 2, "more than 1,000,000 moments");
   expect_error(two + "--step 4 --times 0.5 --scheme linear", 2, "--times");
-  expect_error(two + "--scheme linear --times 0.5 --weighting angle", 2, "area-weighted");
-  expect_error(two + "--scheme linear --times 0.5 --length area", 2, "unit normals");
-  expect_error(two + "--scheme quaternion:edge --times 0.5", 2, "has no meaning for vertices");
+  expect_error(two + "--scheme linear --times 0.5 --weighting angle", 2, "--weighting area");
+  expect_error(two + "--scheme linear --times 0.5 --length area", 2, "--length unit");
+  expect_error(two + "--scheme quaternion:edge --times 0.5", 2, "cannot be used for vertices");
   expect_error(two + "--scheme bicubic --times 0.5", 2, "there is no scheme 'bicubic'");
   expect_error("a.obj -o - --scheme linear", 2, "does not move");
 }

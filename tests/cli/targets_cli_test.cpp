@@ -92,8 +92,9 @@ TEST_F(TargetsCli, wrong_usage_of_base_is_exit_2_and_says_what_to_do) {
   expect_error("convert targets/mouth/lift.target -o out.obj", 2, {"lift.target", "--base"});
   expect_error("compare --base base.obj", 2, {"--base", "targets"});
   expect_error("compare --base base.obj --each", 2, {"--base", "targets"});
-  expect_error("compare --base base.obj --sample twist", 2, {"--base", "built-in"});
-  expect_error("compare --base base.obj --each smile.obj --sample twist", 2, {"--base", "built-in"});
+  expect_error("compare --base base.obj --sample twist", 2, {"--base", "--sample cannot be used with --base"});
+  expect_error("compare --base base.obj --each smile.obj --sample twist", 2,
+               {"--base", "--sample cannot be used with --base"});
   expect_error("convert --base base.obj -o out_%d.obj", 2, {"--base", "targets"});
   expect_error("compare --base base.obj targets --fps 30", 2, {"--fps"});
   expect_error("compare --base '' targets", 2, {"--base"});
@@ -102,10 +103,10 @@ TEST_F(TargetsCli, wrong_usage_of_base_is_exit_2_and_says_what_to_do) {
 
 TEST_F(TargetsCli, errors_in_targets_have_the_exit_code_and_the_file) {
   folder_.write("bad.target", "0 0 0 0\n0 1 1 1\n");
-  expect_error("compare --base base.obj targets bad.target", 3, {"bad.target, line 2", "already"});
+  expect_error("compare --base base.obj targets bad.target", 3, {"bad.target, line 2", "two deltas"});
   expect_error("compare --base base.obj none.target", 1, {"none.target"});
   expect_error("compare --base none.obj targets", 1, {"none.obj"});
-  expect_error("compare --base base.obj base.obj", 3, {"base.obj", "besides"});
+  expect_error("compare --base base.obj base.obj", 3, {"base.obj", "only the base itself"});
   folder_.write("three.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   expect_error("convert --base base.obj three.obj -o out_%d.obj", 3, {"three.obj", "3 vertices", "the base has 4"});
 }

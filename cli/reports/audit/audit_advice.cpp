@@ -94,14 +94,9 @@ std::string outcome(const Audited& input) {
       wrong.begin(), wrong.end(), [&](const AuditSubject* subject) { return is_driven(input, *subject); }));
   const bool by_area = std::all_of(wrong.begin(), wrong.end(),
                                    [](const AuditSubject* subject) { return subject->weighting == Weighting::kArea; });
-  const MotionError& error = input.audit.error;
-  const std::string now = error.unlit > 0 ? formatted("{} that are zero, infinite or NaN", pairs(error.unlit))
-                                          : formatted("{} degrees", degrees(error.worst));
-  std::string text = formatted(
-      "corrects these normals, to within {:g} degrees if it can, in all viewers and nowhere worse than before, and "
-      "prints\nwhat remains of {}",
-      kHarmlessTolerance, now);
-  if (driven == wrong.size() && by_area && error.unlit == 0)
+  std::string text = formatted("corrects these normals to within {:g} degrees where it can, and makes no viewer worse",
+                               kHarmlessTolerance);
+  if (driven == wrong.size() && by_area && input.audit.error.unlit == 0)
     text += "; for viewers that add up targets as glTF says, --encode exact comes within about 0.01 degrees";
   return text;
 }
