@@ -79,7 +79,7 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
                        writer.header(0)),
-            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32 for float32");
+            "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
             "a.mc, byte 136: the channel 'a' has 2 points here, but 1 before");
@@ -166,7 +166,7 @@ TEST(ReadMayaCache, a_missing_sample_is_an_error_that_names_its_file) {
   folder.write("cFrame-1.mc", frame_bytes(false, -250, test::kTurning[0]));
   folder.write("cFrame0.mc", frame_bytes(false, 0, test::kTurning[1]));
   EXPECT_EQ(error_text(read_maya_cache(folder / "c.xml")),
-            "c.xml: it declares a sample at tick -125, which is not there; that file should be cFrame-1Tick125.mc");
+            "c.xml: the sample at tick -125 is missing in the cache; that file should be cFrame-1Tick125.mc");
   folder.write("cFrame-1Tick125.mc", frame_bytes(false, -125, test::kTurning[0]));
   EXPECT_TRUE(read_maya_cache(folder / "c.xml").ok());
   folder.write("c.xml", test::maya_xml("OneFile", "mcc", 125, 250, 500));

@@ -64,9 +64,9 @@ TEST(ReadMd2, errors_say_where_and_what) {
   EXPECT_EQ(error_with(4, "\x0F"), "imp.md2, byte 4: version 15 of MD2 cannot be read; only version 8 can");
   EXPECT_EQ(error_with(16, "\x35"),
             "imp.md2, byte 16: the size of a frame is 53 bytes in the header, but 3 vertices take 52");
-  EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the header declares 0 vertices");
-  EXPECT_EQ(error_with(32, "\0"s), "imp.md2, byte 32: the header declares 0 triangles; a motion needs 1 or more");
-  EXPECT_EQ(error_with(40, "\1"), "imp.md2, byte 40: the header declares 1 frames; a motion needs 2 or more");
+  EXPECT_EQ(error_with(24, "\0"s), "imp.md2, byte 24: the number of vertices is 0, but must be at least 1");
+  EXPECT_EQ(error_with(32, "\0"s), "imp.md2, byte 32: the number of triangles is 0, but a motion needs at least 1");
+  EXPECT_EQ(error_with(40, "\1"), "imp.md2, byte 40: the number of frames is 1, but a motion needs at least 2");
   EXPECT_EQ(error_with(40, "\xFF\xFF\xFF\x7F"),
             "imp.md2, byte 56: the file is cut off, since it should have 2147483647 frames from byte 80 on, but has "
             "only 184 bytes");
@@ -77,7 +77,7 @@ TEST(ReadMd2, errors_say_where_and_what) {
             "imp.md2, byte 70, triangle 0: corner 1 refers to vertex 3, but the file has only 3 vertices");
   EXPECT_EQ(error_with(80, "\0\0\x80\x7F"s), "imp.md2, byte 120, frame 0, vertex 0: the coordinate is NaN or infinite");
   EXPECT_EQ(error_with(132, "\xFF\xFF\x7F\x7F"),
-            "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large for float32 for float32");
+            "imp.md2, byte 176, frame 1, vertex 1: the coordinate is too large for float32");
 }
 
 }  // namespace

@@ -40,11 +40,13 @@ TEST(ReadMdd, errors_say_where_and_what) {
   EXPECT_EQ(error_of("abc"),
             "walk.mdd, byte 3: the file is cut off inside its header of 8 bytes; copy or export it again");
   EXPECT_EQ(error_of(patched(4, "\x80\0\0\0"s)),
-            "walk.mdd, byte 8: the header declares -2147483648 vertices and 2 samples");
+            "walk.mdd, byte 8: the header has -2147483648 vertices and 2 samples, but both must be at least 1");
   EXPECT_EQ(error_of(patched(4, "\x7F\xFF\xFF\xFF")),
-            "walk.mdd, byte 8: the header declares 2 samples of 2147483647 vertices, for which the file is too short");
-  EXPECT_EQ(error_of(test::small_mdd(0, 1) + "xxxx"),
-            "walk.mdd, byte 8: the header declares 2 samples of 3 vertices, for which the file is too long");
+            "walk.mdd, byte 8: the file is too short for the 2 samples of 2147483647 vertices in its header; copy or "
+            "export it again");
+  EXPECT_EQ(
+      error_of(test::small_mdd(0, 1) + "xxxx"),
+      "walk.mdd, byte 8: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");
   // The start of a file is enough to find its positions, if it includes the times.
   const auto layout = [](std::size_t count) {
     const std::string bytes = test::small_mdd(0, 1);

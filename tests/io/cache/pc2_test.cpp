@@ -41,17 +41,20 @@ TEST(ReadPc2, errors_say_where_and_what) {
   EXPECT_EQ(error_of("POINTCACHE3"),
             "walk.pc2, byte 0: this is not a PC2 file, since it does not begin with POINTCACHE2");
   EXPECT_EQ(error_of(patched(12, "\2")), "walk.pc2, byte 12: version 2 of PC2 cannot be read; only version 1 can");
-  EXPECT_EQ(error_of(patched(20, "\0\0\xC0\x7F"s)), "walk.pc2, byte 20: the first frame is NaN or infinite");
+  EXPECT_EQ(error_of(patched(20, "\0\0\xC0\x7F"s)), "walk.pc2, byte 20: the start frame is NaN or infinite");
   for (const std::string& step : {"\0\0\0\0"s, "\0\0\x80\xBF"s, "\0\0\x80\x7F"s})
     EXPECT_EQ(error_of(patched(24, step)),
               "walk.pc2, byte 24: the sample rate, in frames, must be a number greater than 0");
-  EXPECT_EQ(error_of(patched(16, "\0"s)), "walk.pc2, byte 32: the header declares 0 vertices and 2 samples");
+  EXPECT_EQ(error_of(patched(16, "\0"s)),
+            "walk.pc2, byte 32: the header has 0 vertices and 2 samples, but both must be at least 1");
   EXPECT_EQ(error_of(patched(28, "\xFF\xFF\xFF\xFF")),
-            "walk.pc2, byte 32: the header declares 3 vertices and -1 samples");
+            "walk.pc2, byte 32: the header has 3 vertices and -1 samples, but both must be at least 1");
   EXPECT_EQ(error_of(patched(28, "\xFF\xFF\xFF\x7F")),
-            "walk.pc2, byte 32: the header declares 2147483647 samples of 3 vertices, for which the file is too short");
-  EXPECT_EQ(error_of(test::small_pc2(0, 1) + "x"),
-            "walk.pc2, byte 32: the header declares 2 samples of 3 vertices, for which the file is too long");
+            "walk.pc2, byte 32: the file is too short for the 2147483647 samples of 3 vertices in its header; copy or "
+            "export it again");
+  EXPECT_EQ(
+      error_of(test::small_pc2(0, 1) + "x"),
+      "walk.pc2, byte 32: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");
   EXPECT_EQ(error_of(patched(32 + 4 * 13, "\0\0\x80\xFF"s)),
             "walk.pc2, byte 84, sample 1, vertex 1: the coordinate is NaN or infinite");
 }

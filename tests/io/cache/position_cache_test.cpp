@@ -38,7 +38,9 @@ TEST(MotionFromCache, is_a_sequence_of_all_samples) {
 }
 
 TEST(MotionFromCache, errors_name_counts_and_samples) {
-  EXPECT_EQ(error_of(4, cache_at({0, 1})), "walk.pc2: it has 3 vertices, but the mesh body.obj has 4");
+  EXPECT_EQ(
+      error_of(4, cache_at({0, 1})),
+      "walk.pc2: the cache has 3 vertices, but the mesh body.obj has 4; give the mesh that the cache was made for");
   EXPECT_EQ(error_of(3, cache_at({0})), "walk.pc2: a motion needs at least two samples, but the cache has 1");
   EXPECT_EQ(error_of(3, cache_at({0, 1, 1})),
             "walk.pc2, sample 2: the time of this sample, 1 s, is not later than 1 s, the time of sample 1");

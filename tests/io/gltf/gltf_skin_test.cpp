@@ -176,7 +176,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) { s.builder.json["skins"] = {5}; }},
       {"a.gltf, /skins/0/joints: the skin has no joints",
        [](Skinned& s) { s.builder.json["skins"][0].erase("joints"); }},
-      {"a.gltf, /skins/0/joints/1: there is no 3 among the 3 nodes",
+      {"a.gltf, /skins/0/joints/1: the index is 3, but the file has only 3 nodes",
        [](Skinned& s) {
          s.builder.json["skins"][0]["joints"] = {1, 3};
        }},
@@ -186,7 +186,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        }},
       {"a.gltf, /skins/0/inverseBindMatrices: accessor 0 must be of type MAT4",
        [](Skinned& s) { s.builder.json["skins"][0]["inverseBindMatrices"] = 0; }},
-      {"a.gltf, /accessors/6: the last row of matrix 1 is not 0, 0, 0, 1",
+      {"a.gltf, /accessors/6: the last row of matrix 1 must be 0, 0, 0, 1",
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 2}, 2);
        }},
@@ -201,8 +201,10 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
          s.attributes().erase("JOINTS_0");
          s.attributes().erase("WEIGHTS_0");
        }},
-      {attributes + ": there are JOINTS_0 and no WEIGHTS_0", [](Skinned& s) { s.attributes().erase("WEIGHTS_0"); }},
-      {attributes + ": there are WEIGHTS_0 and no JOINTS_0", [](Skinned& s) { s.attributes().erase("JOINTS_0"); }},
+      {attributes + ": the primitive has JOINTS_0 but no WEIGHTS_0",
+       [](Skinned& s) { s.attributes().erase("WEIGHTS_0"); }},
+      {attributes + ": the primitive has WEIGHTS_0 but no JOINTS_0",
+       [](Skinned& s) { s.attributes().erase("JOINTS_0"); }},
       {attributes + "/JOINTS_0: vertex 2 follows joint 2, but the skin has only 2 joints",
        [](Skinned& s) {
          s.joints(
@@ -236,7 +238,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
 TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
   const std::string sampler = "a.gltf, /animations/0/samplers/0";
   const std::vector<Case> cases = {
-      {sampler + "/output: there are 3 values for 2 keys of 1",
+      {sampler + "/output: the output has 3 values, but 2 keys need 1 each",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3");
        }},
@@ -249,18 +251,19 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["samplers"][0]["interpolation"] = "CURVED";
        }},
-      {"a.gltf, /animations/0/channels/1/target: the animation has two channels for the scale of this node",
+      {"a.gltf, /animations/0/channels/1/target: another channel of this animation drives the scale of the same node",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
        }},
-      {"a.gltf, /animations/0/channels/0/target: the node stands by a matrix, whose translation cannot be animated",
+      {"a.gltf, /animations/0/channels/0/target: the channel drives the translation of a node that has a matrix; give "
+       "the node translation, rotation and scale instead",
        [](Skinned& s) {
          s.animate("translation", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["nodes"][1].erase("translation");
          s.builder.json["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
        }},
-      {"a.gltf, /animations/0/channels/0/target/node: there is no 9 among the 3 nodes",
+      {"a.gltf, /animations/0/channels/0/target/node: the index is 9, but the file has only 3 nodes",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["channels"][0]["target"]["node"] = 9;

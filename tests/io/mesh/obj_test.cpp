@@ -121,7 +121,7 @@ TEST(ReadObj, bad_coordinates_are_errors_with_line_and_vertex) {
   EXPECT_EQ(error_of("v 0 0 0\n\nv 1 nan 0\n"), "walk.obj, line 3: y of vertex 1: 'nan' is NaN or infinite");
   EXPECT_EQ(error_of("v 0 0\n"), "walk.obj, line 1: z of vertex 0: a number is missing");
   EXPECT_EQ(error_of("v 0 0 1.5x\n"), "walk.obj, line 1: z of vertex 0: '1.5x' is not a number");
-  EXPECT_EQ(error_of("v 1e39 0 0\n"), "walk.obj, line 1: x of vertex 0: '1e39' is too large");
+  EXPECT_EQ(error_of("v 1e39 0 0\n"), "walk.obj, line 1: x of vertex 0: '1e39' is too large for float32");
   for (const char* const word : {"inf",
                                  "-inf",
                                  "+nan",

@@ -111,7 +111,7 @@ TEST(ReadPly, velocity_that_is_not_whole_or_no_number_is_an_error_where_it_is_as
                     list = replaced(moving_file("vx", "vy", "vz"), "float vx", "list uchar float vx"),
                     broken = replaced(moving_file("vx", "vy", "vz"), "3.5", "nan");
   EXPECT_EQ(said(half), "walk.ply, header: the velocity of the vertices is incomplete, since they have no property vz");
-  EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list");
+  EXPECT_EQ(said(list), "walk.ply, header: the velocity vx is a list, but must be a number");
   EXPECT_EQ(said(broken).find("walk.ply, line 15, vertex 0: "), 0U) << said(broken);
   EXPECT_EQ(error_of(half), "no error");
   EXPECT_EQ(error_of(broken), "no error");
@@ -184,7 +184,7 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
   EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with format"));
   EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
-  EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is unknown");
+  EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is not a type of PLY");
   EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");
   EXPECT_TRUE(with("float z", "float z 1").starts_with("walk.ply, line 6: the line must be: property TYPE NAME"));
   EXPECT_TRUE(with("element vertex 4\n", "").starts_with("walk.ply, line 3: a property must come after its element"));
@@ -203,7 +203,8 @@ TEST(ReadPly, what_is_declared_twice_or_is_missing_is_an_error) {
             "walk.ply, line 3: the header has two lines that begin with format");
   EXPECT_EQ(with("vertex_indices", "vertex_indices\nproperty list uchar int vertex_index"),
             "walk.ply, line 9: the faces have both vertex_indices and vertex_index; keep one of them");
-  EXPECT_EQ(with("float z", "list char float z"), "walk.ply, line 6: the coordinate 'z' is a list");
+  EXPECT_EQ(with("float z", "list char float z"),
+            "walk.ply, line 6: the coordinate 'z' is a list, but must be a number");
   EXPECT_EQ(with("float z", "float w"), "walk.ply, line 9: the vertices have no property z");
   EXPECT_EQ(with("element vertex", "element point"), "walk.ply, line 9: the file has no vertices");
   EXPECT_EQ(with("vertex 4", "vertex 0"), "walk.ply, line 9: the file has no vertices");
@@ -272,7 +273,7 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
             "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 0 0"),
             "walk.ply, line 11, vertex 1: '0' is one value more than the header declares for a row");
-  EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large");
+  EXPECT_EQ(with("1 0 0", "1 0 1e39"), "walk.ply, line 11, vertex 1: '1e39' is too large for float32");
   EXPECT_EQ(with("3 0 1 2", "3 0 1 4"),
             "walk.ply, line 14, face 0: corner 2 refers to vertex 4, but the file has 4 vertices");
   EXPECT_EQ(with("3 0 1 2", "3 0 -1 2"),
