@@ -37,19 +37,19 @@ void expect_refused(const Result<Topology>& topology, const std::string& place, 
 }
 
 TEST(Topology, refuses_a_corner_that_names_no_vertex) {
-  expect_refused(Topology::triangles(3, {0, 1, 2, 0, 1, 3}), "face 1, corner 2", "vertex 3, but the mesh has 3");
+  expect_refused(Topology::triangles(3, {0, 1, 2, 0, 1, 3}), "face 1, corner 2", "vertex 3, but the mesh has only 3");
   expect_refused(Topology::triangles(3, {0, 1, 0xFFFFFFFF}), "face 0, corner 2", "4294967295");
 }
 
 TEST(Topology, refuses_faces_of_fewer_than_three_corners) {
-  expect_refused(Topology::polygons(4, {0, 2, 5}, {0, 1, 1, 2, 3}), "face 0", "three or more");
-  expect_refused(Topology::polygons(4, {0, 5, 3, 6}, {0, 1, 2, 1, 2, 3}), "face 1", "three or more");
+  expect_refused(Topology::polygons(4, {0, 2, 5}, {0, 1, 1, 2, 3}), "face 0", "at least three corners");
+  expect_refused(Topology::polygons(4, {0, 5, 3, 6}, {0, 1, 2, 1, 2, 3}), "face 1", "at least three corners");
 }
 
 TEST(Topology, refuses_offsets_that_do_not_cover_the_corners) {
   expect_refused(Topology::polygons(4, {0, 3}, {0, 1, 2, 3}), "", "offsets");
   expect_refused(Topology::polygons(4, {}, {}), "", "offsets");
-  expect_refused(Topology::triangles(4, {0, 1}), "", "threes");
+  expect_refused(Topology::triangles(4, {0, 1}), "", "multiple of 3");
 }
 
 TEST(Topology, refuses_more_vertices_than_32_bits_can_name) {
@@ -199,7 +199,7 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   expect_invalid(motion, "", "1 segments, which does not fit its 3 keyframes");
   motion.kind = MotionKind::kAnimation;
   motion.segments = {{0, 2}};
-  expect_invalid(motion, "segment 0", "neighbouring");
+  expect_invalid(motion, "segment 0", "from a keyframe to the next one");
 }
 
 TEST(Validate, refuses_a_mesh_without_faces) { expect_invalid(Motion{}, "", "no faces"); }

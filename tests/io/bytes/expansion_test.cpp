@@ -156,7 +156,7 @@ TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_de
     const std::string error = error_of(document.value().geometry(0, 0, {}));
     expect_refused(error);
     EXPECT_NE(error.find("KHR_draco_mesh_compression: "), std::string::npos) << error;
-    EXPECT_NE(error.find("ask for 17,179,869,120 of"), std::string::npos) << error << ": 64 x 268,435,455";
+    EXPECT_NE(error.find("need 17,179,869,120 bytes of"), std::string::npos) << error << ": 64 x 268,435,455";
   }
 }
 

@@ -170,7 +170,8 @@ TEST(ReadNpz, missing_and_doubled_arrays_are_errors) {
             "walk.npz, faces: the file has no array of this name, only positions");
   EXPECT_EQ(error_of(test::zip({})),
             "walk.npz, positions: the file has no array of this name, and no other array either");
-  EXPECT_NE(error_of(test::zip({{"a.npy", "1"}, {"a.npy", "1"}})).find("has 'a.npy' twice"), std::string::npos);
+  EXPECT_NE(error_of(test::zip({{"a.npy", "1"}, {"a.npy", "1"}})).find("has the array 'a.npy' twice"),
+            std::string::npos);
 }
 
 TEST(ReadNpz, damaged_array_headers_are_errors) {
@@ -350,7 +351,7 @@ TEST(WriteNpz, refuses_faces_of_different_numbers_of_corners) {
   const Result<std::string> bytes = test::written(motion, ".npz");
   ASSERT_FALSE(bytes.ok());
   EXPECT_EQ(bytes.error().code, ErrorCode::kUsage);
-  EXPECT_NE(bytes.error().message.find("face 0 has 3 and face 1 has 4"), std::string::npos);
+  EXPECT_NE(bytes.error().message.find("face 0 has 3 corners and face 1 has 4"), std::string::npos);
 }
 
 // An array in Fortran order is read as a whole, not keyframe by keyframe.

@@ -274,7 +274,7 @@ TEST(ReadMesh, unknown_format_is_an_error_that_lists_what_can_be_read) {
     ASSERT_FALSE(result.ok());
     EXPECT_EQ(result.error().code, ErrorCode::kInvalidInput);
     EXPECT_EQ(result.error().place, "cube.stl");
-    EXPECT_NE(result.error().message.find("a mesh is .obj or .ply"), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.find("give a mesh as .obj or .ply"), std::string::npos) << result.error().message;
   }
 }
 

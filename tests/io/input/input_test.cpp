@@ -89,7 +89,7 @@ TEST_F(OpenInput, everything_else_is_a_sequence) {
   EXPECT_TRUE(read({"body.obj", "body2.obj"}).ok());
   EXPECT_TRUE(read({"body*.obj"}).ok());
   expect_error({"body.obj"}, ErrorCode::kInvalidInput, "a sequence needs at least two keyframes");
-  expect_error({"none.obj", "body.obj"}, ErrorCode::kFailed, "there is no file or folder");
+  expect_error({"none.obj", "body.obj"}, ErrorCode::kFailed, "none.obj");
 }
 
 TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
@@ -98,7 +98,7 @@ TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
   expect_error({"body.obj", "walk.pc2", "body.obj"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "give no other inputs");
   folder_.write("body2.obj", kObj);
-  expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "stands for 2 files");
+  expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "this names 2 files");
   EXPECT_EQ(read({"walk.npz"}, 0).error().code, ErrorCode::kUsage);
 }
 
@@ -115,7 +115,7 @@ TEST_F(OpenInput, a_cache_over_a_mesh_has_no_animations) {
 TEST_F(OpenInput, errors_name_the_file) {
   folder_.write("small.obj", "v 0 0 0\nf 1 1 1\n");
   expect_error({"small.obj", "walk.pc2"}, ErrorCode::kInvalidInput,
-               "walk.pc2: it has 3 vertices, but the mesh small.obj has 1");
+               "walk.pc2: the cache has 3 vertices, but the mesh small.obj has 1");
   folder_.write("cut.mdd", test::small_mdd(0, 1).substr(0, 40));
   expect_error({"body.obj", "cut.mdd"}, ErrorCode::kInvalidInput, "cut.mdd, byte 8: ");
   folder_.write("twice.mdd", test::small_mdd(1, 1));

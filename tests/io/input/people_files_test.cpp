@@ -82,12 +82,15 @@ TEST(PaddedFaces, are_refused_and_say_so) {
     return error_of(read_npz(npz_of(positions, faces), "a.npz", 1, Expansion::kUsual));
   };
   const std::vector<std::int32_t> rows = {3, 0, 1, 2, 3, 0, 2, 3, 3, 0, 3, 4};
-  EXPECT_NE(read(npy_of("<i4", {3, 4}, rows)).find("padded"), std::string::npos);
-  EXPECT_NE(read(npy_of("<i4", {12}, rows)).find("padded"), std::string::npos);
-  EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1})).find("padded"),
+  EXPECT_NE(read(npy_of("<i4", {3, 4}, rows)).find("begins with its number of corners"), std::string::npos);
+  EXPECT_NE(read(npy_of("<i4", {12}, rows)).find("begins with its number of corners"), std::string::npos);
+  EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1}))
+                .find("begins with its number of corners"),
             std::string::npos);
   // Only the first face has a vertex that does not exist.
-  EXPECT_NE(read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("padded"), std::string::npos);
+  EXPECT_NE(
+      read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
+      std::string::npos);
   // Faces that meet in vertex 3, or begin with other numbers, are not padded.
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{3, 0, 1, 2, 3, 2, 4, 0})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{0, 1, 2, 3, 3, 2, 1, 4})), "");
