@@ -6,15 +6,17 @@
 #include "cli/options/command.h"
 #include "cli/terminal/print.h"
 #include "cli/terminal/process.h"
+#include "io/system/names.h"
 
 int main(int argument_count, char** arguments) {
   using namespace chronormal::cli;
+  using chronormal::arguments_of_program;
   constexpr int kExitFailed = 1;
   prepare_process();
   try {
     return run_program({audit_command(), bake_command(), compare_command(), convert_command(), inspect_command(),
                         merge_command(), query_command(), report_command(), sample_command()},
-                       argument_count, arguments);
+                       arguments_of_program(argument_count, arguments));
   } catch (const std::bad_alloc&) {
     say_ending("out of memory");
   } catch (const std::exception& error) {

@@ -6,10 +6,6 @@
 #include <optional>
 #include <string_view>
 #include <utility>
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "chronormal/motion/paths.h"
@@ -22,6 +18,8 @@
 #include "cli/terminal/process.h"
 #include "core/text.h"
 #include "io/bytes/expansion.h"
+#include "io/system/names.h"
+#include "io/system/process.h"
 
 namespace chronormal::cli {
 namespace {
@@ -213,9 +211,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   Result<GltfBake> baked = bake(document, how, edit);
   progress.clear();
   if (!baked) return baked.error();
-#ifdef __GLIBC__
-  (void)::malloc_trim(0);  // returns the freed memory of the bake to the system
-#endif
+  give_back_free_memory();  // returns the freed memory of the bake to the system
   const int code = is_beyond(options, how, baked.value()) ? kExitBeyond : kExitDone;
   BakeReport told{input.name(), output, options.drivers, std::nullopt, input.notes()};
   if (options.plan) {
@@ -292,7 +288,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.recompute_base)
     return misuse("--recompute-base",
                   "--recompute-base is only for glTF files, and the input is a sequence; leave --recompute-base out");
-  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::string extension = utf8_of(path_of(output).extension());
   if (!is_stream(output) && extension != ".glb" && extension != ".GLB")
     return misuse(output, "a sequence can only be written as .glb; choose such a name");
   MotionStream& stream = *input.stream().value();
@@ -355,7 +351,7 @@ Status take_output(BakeArguments& options) {
     return Success{};
   }
   if (options.plan && files.size() < 2) return Success{};
-  const std::string extension = files.size() < 2 ? "" : std::filesystem::path(files.back()).extension().string();
+  const std::string extension = files.size() < 2 ? "" : utf8_of(path_of(files.back()).extension());
   if (extension != ".glb" && extension != ".gltf" && extension != ".vrm" && extension != ".GLB")
     return misuse("-o,--output", "the output is missing; give it last (bake IN OUT), or with -o OUT");
   options.common.output = files.back();

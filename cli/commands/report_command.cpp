@@ -15,6 +15,7 @@
 #include "cli/terminal/print.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
+#include "io/system/names.h"
 #include "workflow/report/report.h"
 
 namespace chronormal::cli {
@@ -36,10 +37,9 @@ bool is_container(const ReportArguments& options) { return lower_extension(optio
 // Returns the template that was installed or built with the program, in share/ beside it; nothing if the system cannot
 // tell where the program is.
 std::optional<std::string> usual_template() {
-  std::error_code failed;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  if (failed) return std::nullopt;
-  return (program.parent_path().parent_path() / "share" / "chronormal" / "report.html").string();
+  const std::optional<std::string> program = file_of_program();
+  if (!program) return std::nullopt;
+  return utf8_of(path_of(*program).parent_path().parent_path() / "share" / "chronormal" / "report.html");
 }
 
 // Reads the template of the page before any computation, so that no work is wasted. A named template has priority, then
@@ -48,7 +48,7 @@ Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();
   std::error_code failed;
-  if (!options.page_template && (!path || !fs::exists(*path, failed)))
+  if (!options.page_template && (!path || !fs::exists(path_of(*path), failed)))
     return Error{ErrorCode::kFailed, path.value_or("report.html"),
                  "the template of the page is missing; make it with ./run report in the source folder of chronormal, "
                  "or name one with --template"};

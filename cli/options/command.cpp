@@ -14,6 +14,7 @@
 #include "cli/terminal/text.h"
 #include "core/charconv.h"
 #include "core/text.h"
+#include "io/system/names.h"
 
 namespace chronormal::cli {
 namespace {
@@ -104,9 +105,9 @@ Status check_viewers(const std::vector<Viewer>& viewers, const Input& input) {
 }
 
 std::string short_name(std::string path) {
-  while (path.size() > 1 && path.back() == '/') path.pop_back();
-  const std::size_t slash = path.find_last_of('/');
-  return slash == std::string::npos || slash + 1 == path.size() ? path : path.substr(slash + 1);
+  while (path.size() > 1 && is_separator(path.back())) path.pop_back();
+  const std::size_t begin = begin_of_name(path);
+  return begin == path.size() ? path : path.substr(begin);
 }
 
 std::vector<Option> CommonOptions::table(bool output_required) {

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -183,8 +182,7 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
 
 // Parses the command line and runs the command. `running` gets its name. Messages of the parser are printed before this
 // returns.
-Result<int> understand_and_run(const std::vector<Command>& commands, int argument_count, char** arguments,
-                               std::string& running) {
+Result<int> understand_and_run(const std::vector<Command>& commands, std::span<char*> arguments, std::string& running) {
   CLI::App program("", "chronormal");
   const std::string version = formatted("chronormal {}{}\n", kVersion, has_mpi() ? " with MPI" : "");
   program.set_version_flag("-V,--version", version);
@@ -192,8 +190,8 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
   program.require_subcommand(1);
   for (const Command& command : commands) add_command(command, program);
 
-  const std::string_view first = argument_count > 1 ? arguments[1] : "",
-                         second = argument_count > 2 ? arguments[2] : "";
+  const std::string_view first = arguments.size() > 1 ? arguments[1] : "",
+                         second = arguments.size() > 2 ? arguments[2] : "";
   if (first == "--manual-page") return print_or_report(manual_page(commands));
   if (first == "--completions") {
     const Result<std::string> text = completions(commands, second);
@@ -207,8 +205,8 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
   };
   if (first == "help") return print_or_report(help_of_command(*command_of(asked), false, columns_of_output()));
   if (const auto named = command_of(first); named != commands.end()) {
-    const std::span<char* const> rest(arguments + 2, static_cast<std::size_t>(argument_count) - 2);
-    if (const auto unknown = find_unknown_option(*named, commands, rest)) return report(named->name, *unknown);
+    if (const auto unknown = find_unknown_option(*named, commands, arguments.subspan(2)))
+      return report(named->name, *unknown);
   }
   const auto print_help = [&](bool all) {
     const auto parsed = program.get_subcommands();
@@ -217,7 +215,7 @@ Result<int> understand_and_run(const std::vector<Command>& commands, int argumen
                                : help_of_command(*command_of(parsed.front()->get_name()), all, columns_of_output()));
   };
   try {
-    program.parse(argument_count, arguments);
+    program.parse(static_cast<int>(arguments.size()), arguments.data());
   } catch (const CLI::CallForVersion&) {
     return print_or_report(version);
   } catch (const CLI::CallForAllHelp&) {
@@ -261,10 +259,10 @@ Check check_given(std::string message) {
   return [message = std::move(message)](const std::string& value) { return value.empty() ? message : ""; };
 }
 
-int run_program(const std::vector<Command>& commands, int argument_count, char** arguments) {
+int run_program(const std::vector<Command>& commands, std::span<char*> arguments) {
   std::string name;  // name of the command, once known
   start_ranks([&name](const Error& error) { return report(name, error); });
-  return end_ranks(understand_and_run(commands, argument_count, arguments, name));
+  return end_ranks(understand_and_run(commands, arguments, name));
 }
 
 }  // namespace chronormal::cli

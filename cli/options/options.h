@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -63,7 +64,7 @@ struct Command {
 /// Parses the command line and runs the command that it names, or prints help (--help, --help-all), the version, --manual-page or
 /// --completions SHELL (cli/options/help.h). Errors go to stderr as "chronormal COMMAND: place: message". Returns the
 /// exit code.
-[[nodiscard]] int run_program(const std::vector<Command>& commands, int argument_count, char** arguments);
+[[nodiscard]] int run_program(const std::vector<Command>& commands, std::span<char*> arguments);
 
 }  // namespace chronormal::cli
 

@@ -6,8 +6,8 @@
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
 #include "cli/terminal/text.h"
-#include "io/bytes/same_file.h"
 #include "io/input/sequence.h"
+#include "io/system/files.h"
 
 namespace chronormal::cli {
 

@@ -18,6 +18,7 @@
 #include "io/bytes/expansion.h"
 #include "io/bytes/file.h"
 #include "io/input/input_identity.h"
+#include "io/system/names.h"
 
 namespace chronormal::cli {
 namespace {
@@ -130,7 +131,7 @@ std::vector<Part> CommandRun::gather(const std::string& own) {
 Status CommandRun::finish(std::string_view text) {
   std::error_code error;
   bool is_there = false;
-  if (journal_ && !common_.force && std::filesystem::is_regular_file(common_.output, error)) {
+  if (journal_ && !common_.force && std::filesystem::is_regular_file(path_of(common_.output), error)) {
     const Result<FileBytes> file = FileBytes::open(common_.output);
     is_there = file && file.value().bytes() == as_file(text);
   }
@@ -187,7 +188,7 @@ Status RunArguments::check_output(const CommonOptions& common) const {
   if (is_stream(common.output))
     return misuse("--resume", "--resume needs an output file, beside which it keeps its journal; add --output FILE");
   std::error_code error;
-  const bool goes_on = std::filesystem::exists(journal_name(common.output), error);
+  const bool goes_on = std::filesystem::exists(path_of(journal_name(common.output)), error);
   return chronormal::check_output(common.output, common.force || goes_on);
 }
 

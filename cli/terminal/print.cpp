@@ -1,8 +1,5 @@
 #include "cli/terminal/print.h"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -13,6 +10,7 @@
 #include "cli/terminal/format.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/text.h"
+#include "io/system/files.h"
 
 namespace chronormal::cli {
 namespace {
@@ -25,17 +23,7 @@ thread_local volatile std::sig_atomic_t writes_to_stderr = 0;  // the handler of
 void write_to_stderr(std::string_view text) noexcept {
   const int system_error = errno;
   writes_to_stderr = 1;
-  while (!text.empty()) {
-    const ssize_t count = ::write(STDERR_FILENO, text.data(), text.size());
-    if (count > 0) {
-      text.remove_prefix(static_cast<std::size_t>(count));
-      continue;
-    }
-    if (count < 0 && errno == EINTR) continue;
-    if (count == 0 || errno != EAGAIN) break;
-    pollfd waiting{STDERR_FILENO, POLLOUT, 0};  // the other side of the pipe may have made it non-blocking
-    if (::poll(&waiting, 1, -1) < 0 && errno != EINTR) break;
-  }
+  (void)write_bytes(kStandardError, text);
   writes_to_stderr = 0;
   errno = system_error;
 }
@@ -48,12 +36,12 @@ Status print(std::string_view text) { return print_to("-", text, false); }
 
 Status print_to(const std::string& path, std::string_view text, bool force) {
   if (path == "-" && is_silent) return Success{};
-  if (path == "-" && !is_rank && shows_colour(STDOUT_FILENO)) return write_output(path, text, force);
+  if (path == "-" && !is_rank && shows_colour(kStandardOutput)) return write_output(path, text, force);
   return write_output(path, plain(text), force);
 }
 
 void say_text(std::string_view text) {
-  say_raw(!is_rank && shows_colour(STDERR_FILENO) ? std::string(text) : plain(text));
+  say_raw(!is_rank && shows_colour(kStandardError) ? std::string(text) : plain(text));
 }
 
 void say_raw(std::string_view text) noexcept {

@@ -1,13 +1,12 @@
 #include "cli/terminal/progress.h"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <utility>
 
 #include "cli/terminal/format.h"
 #include "cli/terminal/print.h"
-#include "cli/terminal/screen.h"
+#include "io/system/files.h"
+#include "io/system/terminal.h"
 
 namespace chronormal::cli {
 namespace {
@@ -38,7 +37,7 @@ std::string pace_text(double share_done, double seconds, double share_left, std:
 }
 
 Progress::Progress(bool quiet)
-    : is_quiet_(quiet), enabled_(!quiet && isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()), start_(Clock::now()) {}
+    : is_quiet_(quiet), enabled_(!quiet && is_clever_terminal(kStandardError)), start_(Clock::now()) {}
 
 std::function<void(std::size_t, std::size_t)> Progress::callback(std::string label, std::string things,
                                                                  std::size_t count) {

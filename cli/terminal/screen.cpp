@@ -1,13 +1,12 @@
 #include "cli/terminal/screen.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
 #include "core/charconv.h"
+#include "io/system/files.h"
+#include "io/system/terminal.h"
 
 namespace chronormal::cli {
 namespace {
@@ -32,18 +31,15 @@ std::size_t columns_of_output() {
   std::size_t columns = 0;
   const std::string_view given = environment("COLUMNS");
   from_chars(given.data(), given.data() + given.size(), columns);
-  winsize size{};
-  if (columns == 0 && isatty(STDOUT_FILENO) != 0 && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
+  if (columns == 0) columns = columns_of_terminal(kStandardOutput);
   return columns == 0 ? kUsualColumns : std::max(columns, kLeastColumns);
 }
-
-bool is_dumb_terminal() { return environment("TERM") == "dumb"; }
 
 bool shows_colour(int stream) {
   if (!environment("NO_COLOR").empty()) return false;
   const std::string_view forced = environment("CLICOLOR_FORCE");
   if (!forced.empty() && forced != "0") return true;
-  return isatty(stream) != 0 && !environment("TERM").empty() && !is_dumb_terminal();
+  return has_colours(stream);
 }
 
 std::string heading(std::string_view text) { return marked(kBold, text); }

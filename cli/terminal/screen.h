@@ -15,11 +15,8 @@ namespace chronormal::cli {
 /// Returns the width of lines: COLUMNS if it is set, else the width of the terminal on stdout, else 80; at least 40.
 [[nodiscard]] std::size_t columns_of_output();
 
-/// Tells whether, according to TERM, the terminal cannot erase a line or show colours.
-[[nodiscard]] bool is_dumb_terminal();
-
-/// Tells whether a stream (STDOUT_FILENO) shows colours: it is a terminal that is not dumb, or CLICOLOR_FORCE is set
-/// and not 0. NO_COLOR turns colours off in any case.
+/// Tells whether a stream (kStandardOutput) shows colours: it is a terminal that has them, or CLICOLOR_FORCE is set and
+/// not 0. NO_COLOR turns colours off in any case.
 [[nodiscard]] bool shows_colour(int stream);
 
 /// Return the text with emphasis, for titles, errors and warnings. An empty text stays empty.

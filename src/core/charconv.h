@@ -7,13 +7,24 @@
 #define CHRONORMAL_CORE_CHARCONV_H_
 
 #include <charconv>
+#include <concepts>
 
 namespace chronormal::inline internal {
 
+#ifdef __cpp_lib_to_chars
 using std::from_chars;
 using std::to_chars;
-
-#ifndef __cpp_lib_to_chars
+#else
+// The library may have some of the functions for floating point, so that its names are not taken over: integers alone
+// are left to it.
+template <std::integral T>
+[[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, T& value, int base = 10) {
+  return std::from_chars(first, last, value, base);
+}
+template <std::integral T>
+[[nodiscard]] std::to_chars_result to_chars(char* first, char* last, T value, int base = 10) {
+  return std::to_chars(first, last, value, base);
+}
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, float& value) noexcept;
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, double& value) noexcept;
 /// Writes the fewest digits that read back as the same number, in the shorter of both notations.

@@ -7,6 +7,8 @@
 
 #ifdef __linux__
 #include <sys/mman.h>
+#elif defined(_WIN32)
+#include <malloc.h>
 #endif
 
 namespace chronormal::inline internal {
@@ -22,7 +24,11 @@ std::byte* allocate_aligned(std::size_t size) {
   const std::size_t alignment = size >= kSmallestHuge ? kHugePage : kCacheLine;
   if (size > std::size_t(-1) - alignment) throw std::bad_alloc();
   const std::size_t whole = (size + alignment - 1) / alignment * alignment;
+#ifdef _WIN32
+  void* const memory = ::_aligned_malloc(whole, alignment);
+#else
   void* const memory = std::aligned_alloc(alignment, whole);
+#endif
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
   if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // the system may refuse: small pages then
@@ -30,7 +36,13 @@ std::byte* allocate_aligned(std::size_t size) {
   return static_cast<std::byte*>(memory);
 }
 
-void free_aligned(void* memory) noexcept { std::free(memory); }
+void free_aligned(void* memory) noexcept {
+#ifdef _WIN32
+  ::_aligned_free(memory);
+#else
+  std::free(memory);
+#endif
+}
 
 AlignedBytes::AlignedBytes(std::size_t size)
     : data_(size == 0 ? nullptr : allocate_aligned(size)), size_(size), capacity_(size) {}

@@ -25,7 +25,7 @@
 #include <thread>
 #include <vector>
 
-#if __has_include(<pthread.h>)
+#if __has_include(<pthread.h>) && !defined(_WIN32)
 #include <pthread.h>
 #endif
 #ifdef __linux__
@@ -290,7 +290,7 @@ Pool& pool() {
   alignas(Pool) static std::byte room[sizeof(Pool)];
   static Pool* const made = [] {
     Pool* const begun = new (room) Pool;
-#if __has_include(<pthread.h>)
+#if __has_include(<pthread.h>) && !defined(_WIN32)
     (void)::pthread_atfork([] { pool().begin_fork(); }, [] { pool().end_fork(); }, [] { pool().begin_anew(); });
 #endif
     return begun;

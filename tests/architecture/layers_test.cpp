@@ -32,7 +32,7 @@ const std::vector<Floor> kFloors = {
     {"normals", {"control", "groups", "curves", "recompute", "blend", "weighting", "elements"}},
     {"schemes", {}},
     {"analysis", {"fits", "quality", "certificates", "signs", "cones", "containment"}},
-    {"io", {"bytes", "json", "mesh", "cache", "gltf", "input"}},
+    {"io", {"system", "bytes", "json", "mesh", "cache", "gltf", "input"}},
     {"workflow",
      {"segments", "viewers", "shading", "truth", "sample", "inspect", "errors", "audit", "compare", "bake", "query",
       "json", "report"}},

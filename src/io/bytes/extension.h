@@ -6,12 +6,13 @@
 #include <string>
 #include <string_view>
 
+#include "io/system/names.h"
+
 namespace chronormal::inline internal {
 
 /// Returns the extension in lower case and with the dot (".obj"); empty where there is none.
 [[nodiscard]] inline std::string lower_extension(std::string_view path) {
-  const std::size_t slash = path.rfind('/');
-  if (slash != std::string_view::npos) path.remove_prefix(slash + 1);
+  path.remove_prefix(begin_of_name(path));
   const std::size_t dot = path.rfind('.');
   std::string extension(dot == std::string_view::npos ? std::string_view() : path.substr(dot));
   for (char& c : extension) {

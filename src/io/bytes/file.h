@@ -1,16 +1,21 @@
-/// Whole files as bytes, read by memory mapping, or from memory where the caller has them there. Private to io and the
-/// program; chronormal/io/output.h writes files.
+/// Files as bytes, read by memory mapping, or from memory where the caller has them there, or part by part. Private to
+/// io and the program; chronormal/io/output.h writes files.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_BYTES_FILE_H_
 #define CHRONORMAL_IO_BYTES_FILE_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "chronormal/core/result.h"
+#include "io/system/files.h"
 
 namespace chronormal::inline internal {
 
@@ -50,6 +55,31 @@ class FileBytes {
   std::string_view view_;   // the mapping, or the memory of a resolver's owner
   bool is_mapped_ = false;  // where false, view_ belongs to the resolver's owner
   std::string owned_;       // the bytes where there is no view
+};
+
+/// A file whose parts are read wherever they lie, by a descriptor and without a mapping: it may be larger than memory,
+/// and may be shortened while it is read.
+///
+/// Threads    several may call read() at the same time.
+class PositionedFile {
+ public:
+  /// Opens a regular file; returns nothing for any other, and for one that cannot be opened.
+  [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
+
+  /// Returns the size of the file in bytes when it was opened.
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, where the file
+  /// has become shorter or the system refuses to read.
+  [[nodiscard]] Status read(std::uint64_t at, std::span<char> bytes) const;
+
+ private:
+  PositionedFile(std::string path, Descriptor descriptor, std::uint64_t size)
+      : path_(std::move(path)), descriptor_(std::move(descriptor)), size_(size) {}
+
+  std::string path_;
+  Descriptor descriptor_;
+  std::uint64_t size_;
 };
 
 }  // namespace chronormal::inline internal

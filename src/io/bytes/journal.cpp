@@ -1,10 +1,6 @@
 // Reads a journal once, when it is opened, and then only writes behind its end.
 #include "io/bytes/journal.h"
 
-#include <sys/file.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <optional>
@@ -30,38 +26,33 @@ bool Journal::read(std::string_view bytes) {
 }
 
 Result<Journal> Journal::open(const std::string& path, std::string_view run) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 && errno == ENOENT) {
+  if (!status_of(path) && errno == ENOENT) {
     if (const Status begun = write_output(path, checked_line(run), false); !begun) return begun.error();
   }
-  Journal journal(path, Descriptor(open_descriptor(path, O_RDWR | O_NOFOLLOW | O_NONBLOCK)));
+  Journal journal(path, open_file(path, {.reads = true, .writes = true, .follows_links = false, .waits = false}));
   const int file = journal.file_.number();
-  if (file < 0 || ::fstat(file, &status) != 0) return failure(path, errno);
+  std::optional<FileStatus> status = journal.file_.is_open() ? status_of(file) : std::nullopt;
+  if (!status) return failure(path, errno);
   const Error foreign{
       ErrorCode::kFailed, path,
       "this file is in the way of the journal, but is not one; remove the file, or choose another output"};
-  if (!S_ISREG(status.st_mode)) return foreign;
+  if (!status->is_file()) return foreign;
   // If the file system has no locks, two runs that write the same output are not noticed.
-  const bool is_taken = ::flock(file, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (is_taken || ::fstat(file, &status) != 0 || status.st_nlink == 0)
+  if (!lock_file(file) || !(status = status_of(file)) || status->is_removed)
     return Error{ErrorCode::kFailed, path,
                  "another run is writing to the same output; wait until that run has ended, or choose another output"};
-  const Result<FileBytes> bytes = FileBytes::open(path);
-  if (!bytes) return bytes.error();
-  if (!journal.read(bytes.value().bytes())) return foreign;
+  {
+    const Result<FileBytes> bytes = FileBytes::open(path);  // Windows changes no file that is mapped
+    if (!bytes) return bytes.error();
+    if (!journal.read(bytes.value().bytes())) return foreign;
+  }
   if (const Status whole = journal.keep_first(journal.records_.size()); !whole) return whole.error();
   return journal;
 }
 
 Status Journal::append(std::string_view record) {
   const std::string line = checked_line(record);
-  std::string_view rest = line;
-  while (!rest.empty()) {
-    const ssize_t count = ::write(file_.number(), rest.data(), rest.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return failure(path_, errno);
-    rest.remove_prefix(static_cast<std::size_t>(count));
-  }
+  if (!write_bytes(file_.number(), line)) return failure(path_, errno);
   ++count_;
   return Success{};
 }
@@ -71,14 +62,12 @@ Status Journal::keep_first(std::size_t count) {
   records_.resize(count);
   ends_.resize(count + 1);
   count_ = count;
-  const auto end = static_cast<off_t>(ends_.back());
-  if (::ftruncate(file_.number(), end) != 0 || ::lseek(file_.number(), end, SEEK_SET) != end)
-    return failure(path_, errno);
+  if (!set_end(file_.number(), ends_.back())) return failure(path_, errno);
   return Success{};
 }
 
 Status Journal::remove() {
-  if (::unlink(path_.c_str()) != 0 && errno != ENOENT) return failure(path_, errno);
+  if (!remove_file(path_.c_str()) && errno != ENOENT) return failure(path_, errno);
   return Success{};
 }
 

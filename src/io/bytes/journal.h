@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "io/bytes/descriptor.h"
+#include "io/system/files.h"
 
 namespace chronormal::inline internal {
 

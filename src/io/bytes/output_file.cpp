@@ -1,24 +1,15 @@
 // A new file is a temporary sibling until it is whole; a stream takes bytes as they come.
 #include "io/bytes/output_file.h"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 #include <utility>
 
 #include "chronormal/io/output.h"
-#include "core/charconv.h"
-#include "io/bytes/descriptor.h"
-#include "io/bytes/same_file.h"
-#include "io/bytes/temporary_file.h"
+#include "io/system/files.h"
+#include "io/system/temporary_file.h"
 
 namespace chronormal {
 namespace {
@@ -40,39 +31,6 @@ bool write_pieces(int descriptor, std::span<const std::string_view> pieces) {
   return write_bytes(descriptor, block);
 }
 
-// Writes all bytes at a position of a file. Returns false, with errno, on failure.
-bool write_all_at(int descriptor, std::uint64_t at, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(at));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return false;
-    at += static_cast<std::uint64_t>(count);
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
-}
-
-// Returns the descriptor of a path that names a stream of this process; nothing for other paths.
-std::optional<int> stream_descriptor(std::string_view path) {
-  if (path == "-" || path == "/dev/stdout") return STDOUT_FILENO;
-  if (path == "/dev/stderr") return STDERR_FILENO;
-  for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
-    if (!path.starts_with(folder)) continue;
-    int number = -1;
-    const char* const last = path.data() + path.size();
-    const auto [end, code] = from_chars(path.data() + folder.size(), last, number);
-    if (code == std::errc{} && end == last && number >= 0) return number;
-  }
-  return std::nullopt;
-}
-
-// Makes the rename last through a power cut. Errors are ignored, since some file systems cannot do it.
-void flush_folder_of(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  const Descriptor descriptor(open_descriptor(folder.empty() ? "." : folder.string(), O_RDONLY | O_DIRECTORY));
-  if (descriptor.is_open()) (void)::fsync(descriptor.number());
-}
-
 Error exists_already(const std::string& path) {
   return Error{ErrorCode::kFailed, path, "the file exists already; add --force to overwrite it"};
 }
@@ -87,7 +45,7 @@ struct internal::OutputFile::State {
   Descriptor device{-1};
   std::string target = {};  // the file behind the symbolic links of path
   bool replaces = false;    // whether target exists already, as:
-  struct stat old {};
+  FileStatus old = {};
   std::unique_ptr<TemporaryFile> file = {};
   bool is_joined = false;  // whether another process gives the file its name
   bool is_sealed = false;
@@ -96,17 +54,21 @@ struct internal::OutputFile::State {
   [[nodiscard]] int descriptor() const noexcept {
     return stream ? *stream : file != nullptr ? file->descriptor() : device.number();
   }
+  [[nodiscard]] Status look_for_old() {
+    const std::optional<FileStatus> found = status_of(path);
+    if (!found && errno != ENOENT) return failure(path, errno);
+    replaces = found.has_value();
+    if (found) old = *found;
+    return Success{};
+  }
+
   [[nodiscard]] Error error() const { return failure(stream && path == "-" ? "<stdout>" : path, errno); }
 
   // Flushes the new file to disk, and closes it. Returns false, with errno, on failure.
   [[nodiscard]] bool seal() {
     if (std::exchange(is_sealed, true)) return true;
-    if (replaces) {
-      if (::fchown(file->descriptor(), old.st_uid, old.st_gid) != 0) errno = 0;  // only the owner or root may do that
-      if (::fchmod(file->descriptor(), old.st_mode & 07777) != 0) return false;
-    }
-    if (::fsync(file->descriptor()) != 0 && errno != EINVAL && errno != EROFS) return false;
-    return file->close();
+    if (replaces && !take_permissions(file->descriptor(), old)) return false;
+    return flush_file(file->descriptor()) && file->close();
   }
 };
 
@@ -121,23 +83,22 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   auto state = std::make_unique<State>();
   state->path = path;
   state->force = force;
-  state->stream = stream_descriptor(path);
+  state->stream = stream_of(path);
   if (state->stream) {
     // The bytes that the program printed before are still in a buffer, and must come first.
-    (void)std::fflush(*state->stream == STDERR_FILENO ? stderr : stdout);
+    (void)std::fflush(*state->stream == kStandardError ? stderr : stdout);
     return OutputFile(std::move(state));
   }
   if (Status status = check_output(path, force); !status) return status.error();
-  state->replaces = ::stat(path.c_str(), &state->old) == 0;
-  if (!state->replaces && errno != ENOENT) return failure(path, errno);
-  if (state->replaces && !S_ISREG(state->old.st_mode)) {
-    state->device = Descriptor(open_descriptor(path, O_WRONLY));
+  if (const Status found = state->look_for_old(); !found) return found.error();
+  if (state->replaces && !state->old.is_file()) {
+    state->device = open_file(path, {.writes = true});
     if (!state->device.is_open()) return failure(path, errno);
     return OutputFile(std::move(state));
   }
   state->target = follow_links(path);
   // Nobody else may read the new file until it has the permissions of the file that it replaces.
-  state->file = std::make_unique<TemporaryFile>(state->target, state->replaces ? 0600 : 0666);
+  state->file = std::make_unique<TemporaryFile>(state->target, state->replaces);
   if (!state->file->is_open()) return TemporaryFile::not_opened(path);
   return OutputFile(std::move(state));
 }
@@ -148,16 +109,13 @@ Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::u
   auto state = std::make_unique<State>();
   state->path = path;
   state->force = force;
-  state->replaces = ::stat(path.c_str(), &state->old) == 0;
-  if (!state->replaces && errno != ENOENT) return failure(path, errno);
+  if (const Status found = state->look_for_old(); !found) return found.error();
   state->target = follow_links(path);
   const TemporaryFile::Kept partial{partial_name(path)};
-  state->file = std::make_unique<TemporaryFile>(partial, state->replaces ? 0600 : 0666);
-  const auto size = static_cast<off_t>(kept);
-  if (!state->file->is_open() || ::ftruncate(state->descriptor(), size) != 0 ||
-      ::lseek(state->descriptor(), size, SEEK_SET) != size) {
+  state->file = std::make_unique<TemporaryFile>(partial, state->replaces);
+  if (!state->file->is_open() || !set_end(state->descriptor(), kept)) {
     Error error = failure(partial.name, errno);
-    if (kept == 0) (void)::unlink(partial.name.c_str());  // it holds nothing that a later run could go on with
+    if (kept == 0) remove_file(partial.name.c_str());  // it holds nothing that a later run could go on with
     return error;
   }
   return OutputFile(std::move(state));
@@ -189,7 +147,7 @@ Status OutputFile::append(std::span<const std::string_view> pieces) {
 
 Status OutputFile::put(std::uint64_t at, std::string_view bytes) {
   if (state_->file != nullptr) {
-    if (!write_all_at(state_->descriptor(), at, bytes)) return state_->error();
+    if (!write_at(state_->descriptor(), at, bytes)) return state_->error();
     return Success{};
   }
   std::string& gathered = state_->gathered;
@@ -230,18 +188,19 @@ Status OutputFile::finish() {
 
 Status check_output(const std::string& path, bool force) {
   if (path.empty()) return Error{ErrorCode::kUsage, "", "the name of the output is empty; name a file"};
-  if (stream_descriptor(path)) return Success{};
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return Success{};
-  if (S_ISDIR(status.st_mode)) return Error{ErrorCode::kFailed, path, "this is a folder; name a file"};
-  if (S_ISREG(status.st_mode) && !force) return exists_already(path);
+  if (stream_of(path)) return Success{};
+  const std::optional<FileStatus> status = status_of(path);
+  if (!status) return Success{};
+  if (status->kind == FileStatus::Kind::kFolder)
+    return Error{ErrorCode::kFailed, path, "this is a folder; name a file"};
+  if (status->is_file() && !force) return exists_already(path);
   return Success{};
 }
 
 bool is_stream(const std::string& path) {
-  if (stream_descriptor(path)) return true;
-  struct stat status {};
-  return ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+  if (stream_of(path)) return true;
+  const std::optional<FileStatus> status = status_of(path);
+  return status && !status->is_file() && status->kind != FileStatus::Kind::kFolder;
 }
 
 Status write_output(const std::string& path, std::string_view bytes, bool force) {

@@ -1,16 +1,13 @@
 // Appends to a file, or to a list of blocks, and reads back from either.
 #include "io/bytes/spool.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <span>
 #include <utility>
 
-#include "io/bytes/temporary_file.h"
+#include "io/system/temporary_file.h"
 
 namespace chronormal::inline internal {
 
@@ -33,16 +30,14 @@ void Spool::add(std::string bytes) {
 void Spool::append(std::string_view bytes) {
   if (!file_) return add(std::string(bytes));
   if (bytes.empty() || !status_) return;
-  size_ += bytes.size();
-  if (!write_bytes(file_->number(), bytes)) status_ = failure(place_, errno);
+  if (!write_at(file_->number(), std::exchange(size_, size_ + bytes.size()), bytes)) status_ = failure(place_, errno);
 }
 
 void Spool::clear() {
   size_ = 0;
   blocks_.clear();
   if (!file_ || !status_) return;
-  if (::ftruncate(file_->number(), 0) != 0 || ::lseek(file_->number(), 0, SEEK_SET) != 0)
-    status_ = failure(place_, errno);
+  if (!set_end(file_->number(), 0)) status_ = failure(place_, errno);
 }
 
 Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const {
@@ -77,13 +72,7 @@ Status Spool::give_away(std::uint64_t at, std::uint64_t size, const Take& take) 
   for (std::uint64_t given = 0; given < size;) {
     const std::uint64_t part = std::min(size - given, kForgotten);
     if (Status status = hand_over(at + given, part, take); !status) return status;
-#ifdef __linux__
-    // Pages that are freed here are the next ones that take gets, and their bytes never go to the disk.
-    if (file_) {
-      (void)::fallocate(file_->number(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(at + given),
-                        static_cast<off_t>(part));
-    }
-#endif
+    if (file_) forget_bytes(file_->number(), at + given, part);
     given += part;
   }
   return status_;

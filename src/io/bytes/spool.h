@@ -22,7 +22,7 @@
 #include <string_view>
 
 #include "chronormal/core/result.h"
-#include "io/bytes/descriptor.h"
+#include "io/system/files.h"
 
 namespace chronormal::inline internal {
 

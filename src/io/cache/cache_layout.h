@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "chronormal/core/result.h"
-#include "io/bytes/positioned_file.h"
+#include "io/bytes/file.h"
 #include "io/cache/position_cache.h"
 
 namespace chronormal::inline internal {

@@ -15,6 +15,7 @@
 #include "io/bytes/file.h"
 #include "io/bytes/scan.h"
 #include "io/cache/maya_chunks.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -134,11 +135,11 @@ Result<std::vector<std::string>> list_frame_files(const std::filesystem::path& f
   std::filesystem::directory_iterator entries(folder.empty() ? "." : folder, code);
   std::vector<std::string> files;
   while (!code && entries != std::filesystem::directory_iterator{}) {
-    std::string file = entries->path().filename().string();
+    std::string file = utf8_of(entries->path().filename());
     if (is_frame_file(file, stem, extension)) files.push_back(std::move(file));
     entries.increment(code);
   }
-  if (code) return Error{ErrorCode::kFailed, folder.string(), code.message()};
+  if (code) return Error{ErrorCode::kFailed, utf8_of(folder), code.message()};
   std::sort(files.begin(), files.end());  // so messages do not depend on the file system
   return files;
 }
@@ -175,8 +176,8 @@ Result<PositionCache> read_maya_points(std::string_view bytes, const std::string
 
 Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOptions& options,
                                       const std::function<Result<std::string_view>(const std::string& name)>& resolve) {
-  const std::filesystem::path path(xml_path);
-  const std::string name = path.filename().string(), stem = path.stem().string();
+  const std::filesystem::path path = path_of(xml_path);
+  const std::string name = utf8_of(path.filename()), stem = utf8_of(path.stem());
   Result<MayaCacheDescription> description = Error{};
   {
     const Result<FileBytes> xml = FileBytes::open(xml_path, resolve);
@@ -203,7 +204,7 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   CacheOptions choice = options;
   using Use = std::function<Status(std::string_view bytes, const std::vector<maya::Points>& list)>;
   const auto with_points_of = [&](const std::string& file, const Use& use) -> Status {
-    const Result<FileBytes> opened = FileBytes::open((path.parent_path() / file).string(), resolve);
+    const Result<FileBytes> opened = FileBytes::open(utf8_of(path.parent_path() / path_of(file)), resolve);
     if (!opened) return opened.error();
     const Result<std::vector<maya::Points>> list = maya::list_points(opened.value().bytes(), file);
     if (!list) return list.error();

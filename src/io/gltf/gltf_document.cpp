@@ -18,6 +18,7 @@
 #include "io/gltf/gltf_document_state.h"
 #include "io/gltf/gltf_lone_weights.h"
 #include "io/gltf/model/gltf_model.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 
@@ -87,8 +88,8 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
   Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
   std::optional<std::string> folder;
-  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
-  const std::string name = path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
+  if (path != "-") folder = folder_of(path);
+  const std::string name = path == "-" ? "<stdin>" : file_name(path);
   return read(std::move(file).value(), name, folder, options);
 }
 

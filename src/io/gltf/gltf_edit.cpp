@@ -15,6 +15,7 @@
 #include "io/json/json.h"
 #include "io/json/json_text.h"
 #include "io/json/json_writer.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 
@@ -44,7 +45,7 @@ namespace {
 
 bool is_same_folder(const std::string& a, const std::string& b) {
   std::error_code error;
-  return std::filesystem::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, error);
+  return std::filesystem::equivalent(path_of(a.empty() ? "." : a), path_of(b.empty() ? "." : b), error);
 }
 
 // Returns what is wrong with text that is to be a JSON value at this level of nesting, or an empty text if nothing is.
@@ -108,8 +109,7 @@ Result<gltf::LayoutTarget> GltfEdit::State::target_of(const std::string& path) c
   if (!is_glb_extension(extension) && extension != ".gltf")
     return Error{ErrorCode::kUsage, path, "the name of a glTF file must end with .glb, .gltf or .vrm"};
   target.glb = is_glb_extension(extension);
-  target.stands_alone = !folder || (target.glb && !is_glb) ||
-                        !is_same_folder(std::filesystem::path(path).parent_path().string(), *folder);
+  target.stands_alone = !folder || (target.glb && !is_glb) || !is_same_folder(folder_of(path), *folder);
   return target;
 }
 

@@ -10,6 +10,7 @@
 #include "chronormal/io/input.h"
 #include "io/input/formats.h"
 #include "io/input/input_files.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 namespace {
@@ -25,15 +26,15 @@ bool holds(const std::string& path, Holds kind) {
 // listed is reported when it is opened.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
-  fs::recursive_directory_iterator entries(folder, fs::directory_options::skip_permission_denied, code);
+  fs::recursive_directory_iterator entries(path_of(folder), fs::directory_options::skip_permission_denied, code);
   std::vector<std::string> files;
   std::string own_mesh, own_gltf;
   while (!code && entries != fs::recursive_directory_iterator{}) {
-    const std::string path = entries->path().string();
+    const std::string path = utf8_of(entries->path());
     std::error_code ignored;  // a broken link is not a file
     if (file_name_of(path).starts_with('.')) {
       entries.disable_recursion_pending();
-    } else if (!fs::is_directory(path, ignored)) {
+    } else if (!fs::is_directory(entries->path(), ignored)) {
       const bool is_own = entries.depth() == 0;
       if (is_own && holds(path, Holds::kMesh)) own_mesh = path;
       if (is_own && holds(path, Holds::kGltf)) own_gltf = path;
@@ -45,7 +46,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
     return Error{ErrorCode::kUsage, folder,
                  "the folder has both glTF files and keyframes of a sequence, such as " + file_name_of(own_gltf) +
                      " and " + file_name_of(own_mesh) + "; choose one kind with a pattern such as '" +
-                     (fs::path(folder) / "*.glb").string() + "'"};
+                     utf8_of(path_of(folder) / "*.glb") + "'"};
   if (!own_mesh.empty()) files.clear();
   return files;
 }
@@ -57,7 +58,7 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
   std::string other;
   for (const std::string& input : inputs) {
     std::error_code code;
-    const fs::file_status status = fs::status(input, code);
+    const fs::file_status status = fs::status(path_of(input), code);
     const bool is_folder = fs::is_directory(status);
     const bool is_pattern = !fs::exists(status) && input.find_first_of("*?[") != std::string::npos;
     std::vector<std::string> found;

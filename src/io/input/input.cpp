@@ -19,7 +19,6 @@
 #include "io/bytes/expansion.h"
 #include "io/bytes/file.h"
 #include "io/bytes/known_kinds.h"
-#include "io/bytes/positioned_file.h"
 #include "io/cache/cache_layout.h"
 #include "io/cache/maya_cache.h"
 #include "io/gltf/gltf_motion.h"
@@ -28,6 +27,7 @@
 #include "io/input/numbering.h"
 #include "io/input/sequence.h"
 #include "io/input/targets.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 
@@ -61,7 +61,7 @@ struct Opened {
 std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {
-  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  while (path.size() > 1 && is_separator(path.back())) path.pop_back();
   return file_name_of(path);
 }
 
@@ -349,14 +349,14 @@ bool may_be_whole(const std::string& input, const InputOptions& options) {
   if (input == "-" || options.resolve) return true;
   if (format != nullptr && format->holds != Holds::kMesh) return true;
   std::error_code code;
-  const std::filesystem::file_status status = std::filesystem::status(input, code);
+  const std::filesystem::file_status status = std::filesystem::status(path_of(input), code);
   return std::filesystem::exists(status) && !std::filesystem::is_directory(status);
 }
 
 Result<Opened> open_document(FileBytes file, const std::string& path, const InputOptions& options) {
   if (options.chooses_frames()) return chooses_nothing(options);
   std::optional<std::string> folder;
-  if (path != "-") folder = std::filesystem::path(path).parent_path().string();
+  if (path != "-") folder = folder_of(path);
   Opened opened;
   opened.file_size = file.bytes().size();
   Result<GltfDocument> document = GltfDocument::read(std::move(file), file_name_of(path), folder,

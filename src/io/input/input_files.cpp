@@ -1,8 +1,6 @@
 // Finds the files of inputs, in order, and reads single meshes from them.
 #include "io/input/input_files.h"
 
-#include <glob.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -16,6 +14,8 @@
 #include "io/bytes/scan.h"
 #include "io/input/formats.h"
 #include "io/mesh/far_origin.h"
+#include "io/system/files.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -33,20 +33,10 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-std::vector<std::string> match_pattern(const std::string& pattern, int flags = 0) {
-  glob_t matches{};
-  const int code = ::glob(pattern.c_str(), GLOB_NOSORT | flags, nullptr, &matches);
-  std::vector<std::string> files;
-  for (std::size_t i = 0; code == 0 && i < matches.gl_pathc; ++i) files.emplace_back(matches.gl_pathv[i]);
-  ::globfree(&matches);
-  return files;
-}
-
 // Finds the parts before and after the number in a name with a place for one, %d or %0Nd, in the form of output names.
 // Returns nothing if it has no such place.
 std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
-  const std::size_t slash = input.rfind('/');
-  const std::size_t percent = input.find('%', slash == std::string::npos ? 0 : slash);
+  const std::size_t percent = input.find('%', begin_of_name(input));
   if (percent == std::string::npos) return std::nullopt;
   std::string_view rest = std::string_view(input).substr(percent + 1);
   if (rest.starts_with('0')) (void)take_number(rest);
@@ -56,8 +46,7 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
 
 // Finds the files whose names have only a number at this place.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
-  // A backslash is a part of the name here.
-  std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, GLOB_NOESCAPE);
+  std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, false);
   const auto is_other = [&](std::string_view file) {
     if (file.size() < before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after)) return true;
     const std::string_view number = file.substr(before.size(), file.size() - before.size() - after.size());
@@ -104,7 +93,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
       continue;
     }
     std::error_code code;
-    const std::filesystem::file_status status = std::filesystem::status(input, code);
+    const std::filesystem::file_status status = std::filesystem::status(path_of(input), code);
     const bool is_missing = status.type() == std::filesystem::file_type::not_found;
     if (std::filesystem::exists(status) && !std::filesystem::is_directory(status)) {
       files.push_back(input);
@@ -115,7 +104,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
     if (!std::filesystem::exists(status) && !(is_missing && is_pattern) && !numbered)
       return Error{ErrorCode::kFailed, input, code ? code.message() : "there is no file or folder of this name"};
     Result<std::vector<std::string>> found = numbered     ? match_numbered(numbered->first, numbered->second)
-                                             : is_missing ? match_pattern(input)
+                                             : is_missing ? match_pattern(input, true)
                                                           : list_folder(input);
     if (!found) return found.error();
     if (found.value().empty() && is_missing) return Error{ErrorCode::kFailed, input, std::string(kNoneMatches)};
@@ -125,9 +114,7 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
   return files;
 }
 
-std::string file_name_of(const std::string& path) {
-  return path == "-" ? "<stdin>" : std::filesystem::path(path).filename().string();
-}
+std::string file_name_of(const std::string& path) { return path == "-" ? "<stdin>" : file_name(path); }
 
 Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path, const std::string& place,
                                  ReadMotion& read) {

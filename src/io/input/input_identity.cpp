@@ -1,14 +1,14 @@
 // Finds the files of an input, and gets their sizes and times from the system.
 #include "io/input/input_identity.h"
 
-#include <sys/stat.h>
-
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
-#include "io/bytes/descriptor.h"
 #include "io/input/sequence.h"
+#include "io/system/files.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 std::string without_channel(const std::string& input) {
   const std::size_t hash = input.rfind('#');
   std::error_code ignored;
-  return hash == std::string::npos || std::filesystem::exists(input, ignored) ? input : input.substr(0, hash);
+  return hash == std::string::npos || std::filesystem::exists(path_of(input), ignored) ? input : input.substr(0, hash);
 }
 
 }  // namespace
@@ -35,17 +35,16 @@ Result<std::vector<FileIdentity>> identify_files(const InputOptions& options) {
   if (!paths) return paths.error();
   std::vector<FileIdentity> files;
   for (const std::string& path : paths.value()) {
-    struct stat status {};
     if (path == "-")
       return Error{ErrorCode::kUsage, path, "the standard input cannot be read again by a later run; name a file"};
-    if (::stat(path.c_str(), &status) != 0) return failure(path, errno);
-    if (!S_ISREG(status.st_mode))
+    const std::optional<FileStatus> status = status_of(path);
+    if (!status) return failure(path, errno);
+    if (!status->is_file())
       return Error{ErrorCode::kUsage, path, "a pipe or a device cannot be read again by a later run; name a file"};
     if (path.ends_with(".xml"))
       return Error{ErrorCode::kUsage, path,
                    "changes of the other files of this cache would not be noticed; name the .mcx or .mc file"};
-    files.push_back({path, static_cast<std::uint64_t>(status.st_size),
-                     std::int64_t{status.st_mtim.tv_sec} * 1000000000 + status.st_mtim.tv_nsec});
+    files.push_back({path, status->size, status->changed});
   }
   return files;
 }

@@ -18,6 +18,7 @@
 #include "io/bytes/scan.h"
 #include "io/input/formats.h"
 #include "io/input/input_files.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -103,7 +104,7 @@ Cut cut_name(std::string_view name, Syntax syntax) {
     if (place.power == 0) place.power = place.end;
     // This is a minus at the start of a name, or after a blank.
     if (place.begin > 0 && name[place.begin - 1] == '-' &&
-        (place.begin == 1 || name[place.begin - 2] == ' ' || name[place.begin - 2] == '/'))
+        (place.begin == 1 || name[place.begin - 2] == ' ' || is_separator(name[place.begin - 2])))
       --place.begin;
     cut.texts.emplace_back(name.substr(text, place.begin - text));
     cut.places.push_back(place);

@@ -18,6 +18,7 @@
 #include "io/input/numbering.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/obj_faces.h"
+#include "io/system/names.h"
 #include "motion/outline.h"
 
 namespace chronormal::inline internal {
@@ -25,12 +26,12 @@ namespace {
 
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
-  std::filesystem::directory_iterator entries(folder, code);
+  std::filesystem::directory_iterator entries(path_of(folder), code);
   std::vector<std::string> files;
   const Format* format = nullptr;
   while (!code && entries != std::filesystem::directory_iterator{}) {
     const std::filesystem::path path = entries->path();
-    const std::string name = path.filename().string();
+    const std::string name = utf8_of(path.filename());
     const Format* const own = find_format(name);
     std::error_code ignored;  // a broken link is not a file
     if (own != nullptr && own->holds == Holds::kMesh && !name.starts_with('.') &&
@@ -38,10 +39,10 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
       if (format != nullptr && format != own)
         return invalid_input(folder, "the folder has both " + std::string(format->name) + " and " +
                                          std::string(own->name) + " files; choose one kind with a pattern such as '" +
-                                         (std::filesystem::path(folder) / "*").string() +
-                                         std::string(format->extensions.front()) + "'");
+                                         utf8_of(path_of(folder) / "*") + std::string(format->extensions.front()) +
+                                         "'");
       format = own;
-      files.push_back(path.string());
+      files.push_back(utf8_of(path));
     }
     entries.increment(code);
   }

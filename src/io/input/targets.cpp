@@ -16,6 +16,7 @@
 #include "io/bytes/known_kinds.h"
 #include "io/input/formats.h"
 #include "io/mesh/make_human_target.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -30,22 +31,22 @@ const Format* target_format(const std::string& file_name) {
 
 bool is_same_file(const std::string& a, const std::string& b) {
   std::error_code ignored;  // a missing file is reported when it is opened
-  return a == b || fs::equivalent(a, b, ignored);
+  return a == b || fs::equivalent(path_of(a), path_of(b), ignored);
 }
 
 // Returns all targets in a folder and its subfolders, without the base.
 Result<std::vector<std::string>> list_targets(const std::string& folder, const std::string& base) {
   std::error_code code;
-  fs::recursive_directory_iterator entries(folder, code);
+  fs::recursive_directory_iterator entries(path_of(folder), code);
   std::vector<std::string> files;
   const Format* format = nullptr;
   while (!code && entries != fs::recursive_directory_iterator{}) {
-    const std::string path = entries->path().string(), name = entries->path().filename().string();
+    const std::string path = utf8_of(entries->path()), name = file_name(path);
     const Format* const own = target_format(name);
     std::error_code ignored;  // a broken link is not a file
     if (name.starts_with('.')) {
       entries.disable_recursion_pending();
-    } else if (own != nullptr && !fs::is_directory(path, ignored) && !is_same_file(path, base)) {
+    } else if (own != nullptr && !fs::is_directory(entries->path(), ignored) && !is_same_file(path, base)) {
       if (format != nullptr && format != own)
         return invalid_input(folder, "the folder has both " + std::string(format->name) + " and " +
                                          std::string(own->name) + " files (" + files.back() + ", " + path +
@@ -67,9 +68,9 @@ std::string place_of(const std::string& path) { return path == "-" ? "<stdin>" :
 
 // Returns "blink" for "a/blink.target.gz".
 std::string keyframe_name(const std::string& path) {
-  const fs::path name = file_name_of(path), stem = name.stem();
+  const fs::path name = path_of(file_name_of(path)), stem = name.stem();
   const bool is_packed_target = is_make_human_target(path) && lower_extension(path) == ".gz";
-  return (is_packed_target ? stem.stem() : stem).string();
+  return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
 // Checks the limit for the positions of another keyframe, in addition to the existing ones: a target of one line takes

@@ -14,6 +14,7 @@
 #include "io/gltf/glb/glb_targets.h"
 #include "io/input/formats.h"
 #include "io/input/write_motion.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 namespace {
@@ -37,8 +38,7 @@ Result<NamePattern> parse_pattern(const std::string& pattern) {
       ErrorCode::kUsage, pattern,
       "the name of the output must have one %d, or %03d for three digits, where the number of each file goes"};
   NamePattern parts;
-  const std::size_t slash = pattern.rfind('/');
-  const std::size_t percent = pattern.find('%', slash == std::string::npos ? 0 : slash);
+  const std::size_t percent = pattern.find('%', begin_of_name(pattern));
   parts.before = pattern.substr(0, percent);
   if (percent == std::string::npos) return parts;
 

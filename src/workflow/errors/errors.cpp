@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "io/cache/npz.h"
 #include "io/mesh/ply.h"
+#include "io/system/names.h"
 #include "workflow/errors/error_rows.h"
 
 namespace chronormal {
@@ -17,7 +18,7 @@ namespace {
 
 constexpr float kNotJudged = std::numeric_limits<float>::quiet_NaN();
 
-bool is_ply(const std::string& path) { return std::filesystem::path(path).extension() == ".ply"; }
+bool is_ply(const std::string& path) { return path_of(path).extension() == ".ply"; }
 
 bool has_numbers(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
@@ -82,7 +83,7 @@ std::vector<float> ErrorTable::worst() const {
 }
 
 Status check_errors_output(const std::string& path, bool force) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = utf8_of(path_of(path).extension());
   if (extension != ".npz" && extension != ".ply")
     return Error{ErrorCode::kUsage, path, "the name of a file of errors must end in .npz or .ply"};
   return check_output(path, force);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "io/bytes/checksum.h"
+#include "io/bytes/file.h"
 #include "io/bytes/output_file.h"
-#include "io/bytes/positioned_file.h"
 #include "io/cache/npy.h"
 #include "workflow/json/parts.h"
 #include "workflow/sample/sample_part.h"

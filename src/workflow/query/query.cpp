@@ -11,6 +11,7 @@
 #include "chronormal/io/output.h"
 #include "core/text.h"
 #include "io/cache/npz.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 namespace {
@@ -87,7 +88,7 @@ std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept {
 }
 
 Status check_query_output(const std::string& path, bool force) {
-  if (std::filesystem::path(path).extension() != ".npz")
+  if (path_of(path).extension() != ".npz")
     return Error{ErrorCode::kUsage, path,
                  "the name of a file of arrays must end in .npz; leave -o out for a table, or add --json for JSON"};
   return check_output(path, force);

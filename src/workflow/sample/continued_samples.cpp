@@ -7,8 +7,8 @@
 
 #include "core/charconv.h"
 #include "io/bytes/checksum.h"
+#include "io/bytes/file.h"
 #include "io/bytes/output_file.h"
-#include "io/bytes/positioned_file.h"
 #include "workflow/sample/sample_part.h"
 
 namespace chronormal::inline internal {

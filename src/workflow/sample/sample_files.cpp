@@ -19,6 +19,7 @@
 #include "io/cache/npz.h"
 #include "io/mesh/obj.h"
 #include "io/mesh/ply.h"
+#include "io/system/names.h"
 #include "workflow/sample/continued_samples.h"
 #include "workflow/sample/sample_part.h"
 #include "workflow/sample/scheme_normals.h"
@@ -186,7 +187,7 @@ struct EmptyPartial {
   EmptyPartial& operator=(const EmptyPartial&) = delete;
   ~EmptyPartial() {
     std::error_code ignored;
-    if (!name.empty() && journal->is_empty()) std::filesystem::remove(name, ignored);
+    if (!name.empty() && journal->is_empty()) std::filesystem::remove(path_of(name), ignored);
   }
 
   std::string name;  // empty if there is no partial output

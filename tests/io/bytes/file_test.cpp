@@ -24,8 +24,7 @@
 
 #include "chronormal/io/output.h"
 #include "io/bytes/output_file.h"
-#include "io/bytes/positioned_file.h"
-#include "io/bytes/temporary_file.h"
+#include "io/system/temporary_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace chronormal::file_test {
@@ -314,7 +313,7 @@ TEST(PositionedFile, a_place_that_no_file_has_is_an_error_with_the_path) {
 
 TEST(WriteOutput, standard_output_and_its_other_names_are_streams) {
   const TemporaryFolder folder;
-  const int file = ::open((folder / "out").c_str(), O_WRONLY | O_CREAT, 0600);
+  const int file = ::open((folder / "out").c_str(), O_WRONLY | O_CREAT, true);
   bool all_ok = true;
   {
     const Redirect redirect(STDOUT_FILENO, file);
@@ -358,18 +357,18 @@ TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file
 
 TEST(WriteOutput, temporaries_that_are_on_their_way_can_be_removed_all_at_once) {
   const TemporaryFolder folder;
-  const TemporaryFile first(folder / "a", 0600);
+  const TemporaryFile first(folder / "a", true);
   ASSERT_TRUE(first.is_open());
   {
-    TemporaryFile second(folder / "b", 0600);
+    TemporaryFile second(folder / "b", true);
     ASSERT_TRUE(second.is_open());
     EXPECT_EQ(folder.entry_count(), 2U);
   }
   EXPECT_EQ(folder.entry_count(), 1U);
-  TemporaryFile named(folder / "c", 0600);
+  TemporaryFile named(folder / "c", true);
   ASSERT_TRUE(named.rename_to(folder / "c", false));
   std::vector<std::unique_ptr<TemporaryFile>> many;
-  for (int i = 0; i < 100; ++i) many.push_back(std::make_unique<TemporaryFile>(folder / "d", 0600));
+  for (int i = 0; i < 100; ++i) many.push_back(std::make_unique<TemporaryFile>(folder / "d", true));
   EXPECT_EQ(folder.entry_count(), 102U);
   many.clear();
   remove_temporaries();
@@ -380,7 +379,7 @@ TEST(WriteOutput, temporaries_that_are_on_their_way_can_be_removed_all_at_once) 
 TEST(WriteOutput, temporary_becomes_no_file_that_somebody_made_meanwhile) {
   const TemporaryFolder folder;
   const std::string theirs = folder.write("a", "theirs");
-  TemporaryFile file(theirs, 0600);
+  TemporaryFile file(theirs, true);
   EXPECT_FALSE(file.rename_to(theirs, false));
   EXPECT_EQ(errno, EEXIST);
   EXPECT_EQ(read_whole(theirs), "theirs");

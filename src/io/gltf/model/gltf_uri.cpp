@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "io/gltf/model/unicode_forms.h"
+#include "io/system/names.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -91,7 +92,7 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
     return invalid_input(
         place,
         "the uri is a web address or another scheme; copy the file beside the glTF file and refer to it by name");
-  return fs::path(*relative);
+  return path_of(*relative);
 }
 
 // Returns the file of a path. If it does not exist, returns the file that was probably meant: the URI without decoding,
@@ -101,7 +102,7 @@ fs::path existing(const fs::path& path, const fs::path& literal) {
   if (fs::exists(path, code)) return path;
   if (fs::exists(literal, code)) return literal;
   for (fs::directory_iterator entry(path.parent_path(), code), end; !code && entry != end; entry.increment(code))
-    if (are_same_text(entry->path().filename().string(), path.filename().string())) return entry->path();
+    if (are_same_text(utf8_of(entry->path().filename()), utf8_of(path.filename()))) return entry->path();
   return path;
 }
 
@@ -138,11 +139,11 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
     return invalid_input(place,
                          "the glTF file came from standard input, so the folder of its other files is unknown; "
                          "--allow-external looks in the current folder");
-  if (!allow_external && path_in_uri.is_absolute())
+  if (!allow_external && path_in_uri.has_root_path())
     return invalid_input(place, "the uri is an absolute path, which is refused for safety; --allow-external reads it");
 
-  const fs::path base = folder && !folder->empty() ? fs::path(*folder) : fs::path(".");
-  const fs::path path = existing(base / path_in_uri, base / fs::path(uri));
+  const fs::path base = folder && !folder->empty() ? path_of(*folder) : ".";
+  const fs::path path = existing(base / path_in_uri, base / path_of(uri));
   std::error_code code;
   const fs::path real_base = fs::canonical(base, code);
   const fs::path real = code ? fs::path() : fs::weakly_canonical(path, code);
@@ -151,10 +152,9 @@ Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<s
         place,
         "the uri leads out of the folder of the glTF file, which is refused for safety; --allow-external reads it");
   const fs::file_status status = fs::status(path, code);
-  if (!fs::exists(status)) return invalid_input(place, std::string("this file is missing: ").append(path.string()));
-  if (!fs::is_regular_file(status))
-    return invalid_input(place, std::string(path.string()).append(" is not a regular file"));
-  return path.string();
+  if (!fs::exists(status)) return invalid_input(place, std::string("this file is missing: ").append(utf8_of(path)));
+  if (!fs::is_regular_file(status)) return invalid_input(place, utf8_of(path).append(" is not a regular file"));
+  return utf8_of(path);
 }
 
 Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
@@ -162,9 +162,9 @@ Result<std::string> name_file_uri(std::string_view uri, const std::optional<std:
   const Result<fs::path> relative = decode_file_uri(uri, place);
   if (!relative) return relative.error();
   const fs::path path = relative.value().lexically_normal();
-  if (path.is_absolute() || *path.begin() == "..")
+  if (path.has_root_path() || *path.begin() == "..")
     return invalid_input(place, "the uri leads out of the folder of the glTF file");
-  return (fs::path(folder.value_or("")) / path).string();
+  return utf8_of(path_of(folder.value_or("")) / path);
 }
 
 }  // namespace chronormal::inline internal

@@ -1,18 +1,16 @@
 // The list has a place for every temporary file that exists at the same time. A name in it belongs to whoever takes it
 // out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
-#include "io/bytes/temporary_file.h"
-
-#include <sys/random.h>
+#include "io/system/temporary_file.h"
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 
 #include "chronormal/io/output.h"
+#include "io/system/names.h"
 
 namespace chronormal {
 namespace {
@@ -26,9 +24,7 @@ static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not
 
 // Makes 16 hexadecimal digits.
 std::string random_digits() {
-  std::uint64_t number = 0;
-  if (::getentropy(&number, sizeof number) != 0)
-    number = static_cast<std::uint64_t>(::getpid()) << 32U ^ reinterpret_cast<std::uintptr_t>(&number);
+  std::uint64_t number = random_number();
   std::string digits;
   for (; digits.size() < 16; number >>= 4U) digits += "0123456789abcdef"[number & 0xFU];
   return digits;
@@ -36,8 +32,7 @@ std::string random_digits() {
 
 // Makes a name in the folder of target. It does not depend on the name of target, so that it is never too long.
 std::string name_beside(const std::string& target) {
-  const std::filesystem::path folder = std::filesystem::path(target).parent_path();
-  return (folder / (".chronormal-" + random_digits() + ".tmp")).string();
+  return utf8_of(path_of(target).parent_path() / (".chronormal-" + random_digits() + ".tmp"));
 }
 
 // Takes the first free place of the list. Returns kMostFiles if there is none; the file is written all the same.
@@ -49,26 +44,23 @@ std::size_t enter(char* name) noexcept {
   return kMostFiles;
 }
 
-// Renames without replacing a file that somebody else made meanwhile, if the system and the file system can do that.
-bool rename_to_new(const char* from, const char* to) noexcept {
-#ifdef RENAME_NOREPLACE
-  if (::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return true;
-  if (errno != EINVAL && errno != ENOSYS) return false;
-#endif
-  return std::rename(from, to) == 0;
+// Copies a name onto the heap, where the list needs it. Returns nullptr, with errno, where there is no memory.
+char* copy_of(const std::string& name) noexcept {
+  void* const copy = std::malloc(name.size() + 1);
+  return copy == nullptr ? nullptr : static_cast<char*>(std::memcpy(copy, name.c_str(), name.size() + 1));
 }
 
 }  // namespace
 
 inline namespace internal {
 
-TemporaryFile::TemporaryFile(const std::string& target, mode_t mode) {
-  open(name_beside(target), O_WRONLY | O_CREAT | O_EXCL, mode);
+TemporaryFile::TemporaryFile(const std::string& target, bool is_private) {
+  open(name_beside(target), {.writes = true, .makes = Opening::Makes::kNew, .is_private = is_private});
 }
 
 std::unique_ptr<TemporaryFile> TemporaryFile::of_peer(const std::string& name) {
   std::unique_ptr<TemporaryFile> file(new TemporaryFile());
-  file->open(name, O_WRONLY, 0);
+  file->open(name, {.writes = true});
   return file;
 }
 
@@ -81,33 +73,32 @@ Error TemporaryFile::not_opened(const std::string& place) {
 // Moves the descriptor out before the object ends here and removes the name.
 Descriptor TemporaryFile::nameless(const std::string& target) {
   TemporaryFile file;
-  file.open(name_beside(target), O_RDWR | O_CREAT | O_EXCL, 0600);
+  file.open(name_beside(target), {.reads = true, .writes = true, .makes = Opening::Makes::kNew, .is_private = true});
   return std::move(file.file_);
 }
 
-void TemporaryFile::open(const std::string& name, int flags, mode_t mode) {
-  name_ = ::strdup(name.c_str());
+void TemporaryFile::open(const std::string& name, const Opening& how) {
+  name_ = copy_of(name);
   if (name_ == nullptr) return;  // errno says so
-  place_ = enter(name_);
-  file_ = Descriptor(open_descriptor(name, O_NOFOLLOW | flags, mode));
+  place_ = stays_ ? kMostFiles : enter(name_);
+  Opening without_links = how;
+  without_links.follows_links = false;
+  file_ = open_file(name, without_links);
   if (!file_.is_open()) forget();
 }
 
-TemporaryFile::TemporaryFile(const Kept& kept, mode_t mode) : place_(kMostFiles), stays_(true) {
-  name_ = ::strdup(kept.name.c_str());
-  if (name_ == nullptr) return;  // errno says so
-  file_ = Descriptor(open_descriptor(kept.name, O_WRONLY | O_CREAT | O_NOFOLLOW, mode));
-  if (!file_.is_open()) forget();
+TemporaryFile::TemporaryFile(const Kept& kept, bool is_private) : stays_(true) {
+  open(kept.name, {.writes = true, .makes = Opening::Makes::kMissing, .is_private = is_private});
 }
 
 TemporaryFile::~TemporaryFile() {
   if (name_ == nullptr) return;
-  if (!stays_) (void)::unlink(name_);
+  if (!stays_) remove_file(name_);
   forget();
 }
 
 bool TemporaryFile::rename_to(const std::string& target, bool replace) noexcept {
-  const bool renamed = replace ? std::rename(name_, target.c_str()) == 0 : rename_to_new(name_, target.c_str());
+  const bool renamed = rename_file(name_, target.c_str(), replace);
   if (renamed) forget();
   return renamed;
 }
@@ -129,7 +120,7 @@ void remove_temporaries() noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
     char* const name = names[i].exchange(nullptr);
     if (name == nullptr) continue;
-    (void)::unlink(name);
+    remove_file(name);
     removed[i] = name;
   }
   errno = system_error;

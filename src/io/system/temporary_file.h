@@ -5,29 +5,28 @@
 /// removed.
 ///
 /// Threads    every thread may have temporary files of its own.
-#ifndef CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
-#define CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
-
-#include <sys/types.h>
+#ifndef CHRONORMAL_IO_SYSTEM_TEMPORARY_FILE_H_
+#define CHRONORMAL_IO_SYSTEM_TEMPORARY_FILE_H_
 
 #include <cstddef>
 #include <memory>
 #include <string>
 
-#include "io/bytes/descriptor.h"
+#include "io/system/files.h"
 
 namespace chronormal::inline internal {
 
 class TemporaryFile {
  public:
-  /// Opens a file in the folder of target; is_open() says whether that succeeded, and errno why not.
-  TemporaryFile(const std::string& target, mode_t mode);
+  /// Opens a file in the folder of target, which others may read unless it is private; is_open() says whether that
+  /// succeeded, and errno why not.
+  TemporaryFile(const std::string& target, bool is_private);
   /// Opens the file `name`, which may exist already. It stays when the object ends and when the process is told to end,
   /// so that a later run can go on with it.
   struct Kept {
     std::string name;
   };
-  TemporaryFile(const Kept& kept, mode_t mode);
+  TemporaryFile(const Kept& kept, bool is_private);
   /// Opens a temporary file that another process has opened, by its name there. Each of the two processes removes it.
   [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
   /// Opens a file in the folder of target for reading and writing, and removes its name at once: the file exists as
@@ -55,7 +54,7 @@ class TemporaryFile {
 
  private:
   TemporaryFile() noexcept = default;
-  void open(const std::string& name, int flags, mode_t mode);
+  void open(const std::string& name, const Opening& how);
 
   char* name_ = nullptr;   // on the heap, for the list; nullptr where there is no file
   std::size_t place_ = 0;  // in the list
@@ -65,4 +64,4 @@ class TemporaryFile {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_IO_BYTES_TEMPORARY_FILE_H_
+#endif  // CHRONORMAL_IO_SYSTEM_TEMPORARY_FILE_H_
