@@ -113,11 +113,12 @@ class Chooser {
     choice.skinned = weights_.skins.any();
     judged.is_affordable = bytes <= most_bytes() && candidate.drivers.size() <= most_extras(options_, targets);
     judged.is_bearable = bytes <= bearable_bytes(candidate.drivers.size());
+    const bool is_stored = candidate.name == stored_.name;
     if (best_ && !options_.plan) {
       const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
       if (mean_of(glance) > kHopeless * std::fmax(best_glance_, tolerance_ / 2)) return bytes;
     }
-    const std::vector<ErrorsOfKinds> after = judge_->measure(candidate, Judge::Depth::kAll);
+    const std::vector<ErrorsOfKinds> after = is_stored ? before_ : judge_->measure(candidate, Judge::Depth::kAll);
     judge(after, judged);
     const bool is_best = !best_ || is_better(judged, of_best_);
     if (is_best) of_choice_ = candidates_.size();
@@ -181,10 +182,10 @@ class Chooser {
     if (!best_) consider(stored_);
     ChosenCandidate result;
     candidates_[of_choice_].chosen = true;
-    candidates_[of_choice_].rounded = rounded_worst();
     result.viewers = of_best_.choice.viewers;
     const bool is_rounding = std::any_of(viewers_.begin(), viewers_.end(),
                                          [](const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; });
+    if (is_rounding) candidates_[of_choice_].rounded = rounded_worst();
     if (is_rounding)
       result.viewers = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
                                judge_->measure(*best_, Judge::Depth::kGlance, true), result.viewers);

@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
+#include "analysis/quality/kernels/blended_normals.h"
+#include "core/bits.h"
 #include "core/blocks.h"
+#include "workflow/bake/fits/missing_normals.h"
 
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMostPieces = 16, kMostKeys = 20000;
+constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
 // Splines may leave this many times what straight pieces may: their bound is the sum of all errors, as if they came at
 // once.
 constexpr double kPartOfSplines = 2;
@@ -39,24 +43,65 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     for (std::size_t c = track.targets; c < missing.size(); ++c)
       missing[c] = (at_start[c] + at_end[c]) / 2 - middles.back()[c];
   }
-  std::vector<std::atomic<float>> worst(middles.size());
-  rights.for_each(vertices, middles, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
-    const Vec3d stored = rights.stored(vertices[n]);
-    for (std::size_t p = 0; p < right.size(); ++p) {
-      if (right[p] == Vec3f{}) continue;
-      Vec3d shown = stored, off;
-      for (const auto& [column, delta] : columns.of(n)) {
-        const double w = middles[first + p][column], q = lack[first + p][column];
-        if (w != 0) shown = shown + w * to_double(delta);
-        if (q != 0) off = off + q * to_double(delta);
-      }
-      if (off == Vec3d{}) continue;
-      const auto angle = static_cast<float>(angle_between(shown, shown + off));
-      std::atomic<float>& most = worst[first + p];
-      for (float known = most; known < angle && !most.compare_exchange_weak(known, angle);) continue;
+  // Holds the weights of columns as rows of poses.
+  const std::size_t poses = middles.size(), stride = block_count(poses, kPosePadding) * kPosePadding;
+  const auto rows_of = [&](const PoseList& of) {
+    std::vector<float> rows((track.targets + extra_count) * stride);
+    for (std::size_t p = 0; p < poses; ++p)
+      for (std::size_t c = 0; c < of[p].size(); ++c) rows[c * stride + p] = static_cast<float>(of[p][c]);
+    return rows;
+  };
+  const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
+  // Calls visit(p, openness) for the rendered normal of a vertex, and the same normal with what is missing.
+  const auto turn = [&](std::size_t n, const auto& visit) {
+    thread_local std::vector<WeightedVector> shown_terms, off_terms;
+    thread_local std::vector<float> shown, off;
+    shown_terms.clear();
+    off_terms.clear();
+    for (const auto& [column, delta] : columns.of(n)) {
+      shown_terms.push_back({of_middles.data() + column * stride, 0, poses, delta});
+      if (column >= track.targets) off_terms.push_back({of_lack.data() + column * stride, 0, poses, delta});
     }
+    if (off_terms.empty()) return;
+    for (std::vector<float>* const planes : {&shown, &off}) planes->resize(3 * stride);
+    add_weighted(to_float(rights.stored(vertices[n])), shown_terms, shown.data(), stride);
+    add_weighted({}, off_terms, off.data(), stride);
+    const auto at = [stride](const std::vector<float>& planes, std::size_t p) {
+      return Vec3f{planes[p], planes[stride + p], planes[2 * stride + p]};
+    };
+    for (std::size_t p = 0; p < poses; ++p) visit(p, openness(at(shown, p), at(shown, p) + at(off, p)));
+  };
+  // The largest openness of each pose, with the vertex that has it in the lower bits.
+  std::vector<std::atomic<std::uint64_t>> worst(poses);
+  const auto note = [&](std::size_t n, std::size_t p, float open) {
+    const std::uint64_t found = std::uint64_t{bit_cast<std::uint32_t>(open)} << 32 | n;
+    std::atomic<std::uint64_t>& most = worst[p];
+    for (std::uint64_t known = most; open > 0 && known < found && !most.compare_exchange_weak(known, found);) continue;
+  };
+  parallel_each(vertices.size(), kTurnBlock,
+                [&](std::size_t n) { turn(n, [&](std::size_t p, float open) { note(n, p, open); }); });
+  // A normal whose truth has no direction does not count. There are few, so that only the largest is asked first.
+  std::vector<std::size_t> again;
+  PoseList poses_again;
+  for (std::size_t p = 0; p < poses; ++p) {
+    const std::uint32_t vertex = vertices[worst[p] & 0xffffffffU];
+    rights.for_each({&vertex, 1}, {middles[p]}, [&](std::size_t, std::size_t, std::span<const Vec3f> right) {
+      if (right[0] != Vec3f{}) return;
+      again.push_back(p);
+      poses_again.push_back(middles[p]);
+      worst[p] = 0;
+    });
+  }
+  rights.for_each(vertices, poses_again, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
+    turn(n, [&](std::size_t p, float open) {
+      const auto at = static_cast<std::size_t>(std::lower_bound(again.begin(), again.end(), p) - again.begin());
+      if (first <= at && at < first + right.size() && again[at] == p && right[at - first] != Vec3f{}) note(n, p, open);
+    });
   });
-  return {worst.begin(), worst.end()};
+  std::vector<double> result;
+  for (const std::atomic<std::uint64_t>& most : worst)
+    result.push_back(degrees_of(bit_cast<float>(static_cast<std::uint32_t>(most >> 32))) / kDegreesPerRadian);
+  return result;
 }
 
 // Splits the gaps of a LINEAR track until straight pieces of correction weights turn no normal by more than the

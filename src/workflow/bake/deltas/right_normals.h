@@ -41,14 +41,14 @@ class RightNormals {
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
   /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: `right` has the unit normals of
-  /// the vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
+  /// the vertex in the poses from number `first` on, a multiple of 16. Different n are visited at once, the batches one after the other.
   /// Cost: for each pose all positions, and the normals of these vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
-    constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kVertices = 64;
+    constexpr std::size_t kBytes = std::size_t{32} << 20, kSome = 16, kVertices = 64;
     const Places places(shading_, vertices);
     const std::size_t elements = places.elements.size();
-    const std::size_t batch = std::max(kFewest, kBytes / (sizeof(Vec3d) * (elements + 1)));
+    const std::size_t batch = kSome * std::max<std::size_t>(1, kBytes / (kSome * sizeof(Vec3d) * (elements + 1)));
     std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
     for (std::size_t first = 0; first < poses.size(); first += batch) {
       const std::size_t count = std::min(batch, poses.size() - first);

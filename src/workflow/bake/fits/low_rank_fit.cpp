@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "analysis/fits/kernels/products.h"
 #include "analysis/fits/leading_vectors.h"
@@ -197,22 +198,21 @@ void LowRankFit::measure_rows() {
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// Finds the largest error of each point at rows, places, unseen places and its dips. own_weights go with the
+// Finds the largest error of some points at rows, places, unseen places and their dips. own_weights go with the
 // corrections of own deltas, if there are any.
-void LowRankFit::measure(std::span<const float> own_weights) {
+void LowRankFit::measure(std::span<const float> own_weights, std::span<const std::size_t> points) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
   const Basis basis = basis_of(own_weights, places);
-  parallel_blocks(missing_.points(), kPointBlock, [&](IndexRange points) {
-    for (std::size_t p = points.first; p < points.first + points.count; ++p) {
-      std::vector<PlaceOfRows> of_point = dips_of(p);
-      if (of_point.empty()) {
-        errors_[p] = error_of(p, basis, places);
-        continue;
-      }
-      of_point.insert(of_point.begin(), places.begin(), places.end());
-      errors_[p] = error_of(p, basis_of(own_weights, of_point), of_point);
+  parallel_each(points.size(), kPointBlock, [&](std::size_t n) {
+    const std::size_t p = points[n];
+    std::vector<PlaceOfRows> of_point = dips_of(p);
+    if (of_point.empty()) {
+      errors_[p] = error_of(p, basis, places);
+      return;
     }
+    of_point.insert(of_point.begin(), places.begin(), places.end());
+    errors_[p] = error_of(p, basis_of(own_weights, of_point), of_point);
   });
 }
 
@@ -374,7 +374,9 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
       importance_[p] *= std::sqrt(std::clamp(beyond, 0.5F, 4.0F));
     }
   }
-  measure({});
+  std::vector<std::size_t> all(missing_.points());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  measure({}, all);
   own_targets_ = own_targets;
   own_deltas_.assign(missing_.points() * 3 * own_targets, 0.0F);
   std::vector<std::size_t> bad;
@@ -391,7 +393,7 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
     of_point.insert(of_point.begin(), places_.begin(), places_.end());
     refit(bad[n], basis_of(own_weights, of_point), of_point, tolerance);
   });
-  measure(own_weights);
+  measure(own_weights, bad);  // the others are as they were
 }
 
 double LowRankFit::worst() const {

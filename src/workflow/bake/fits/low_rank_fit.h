@@ -65,7 +65,7 @@ class LowRankFit {
   void take_weights(std::span<const double> vectors, std::size_t columns, std::size_t extras);
   void project();
   void measure_rows();
-  void measure(std::span<const float> own_weights);
+  void measure(std::span<const float> own_weights, std::span<const std::size_t> points);
   [[nodiscard]] float error_of(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places) const;
   [[nodiscard]] std::vector<PlaceOfRows> dips_of(std::size_t point) const;
   [[nodiscard]] Basis basis_of(std::span<const float> own_weights, std::span<const PlaceOfRows> places) const;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "analysis/quality/kernels/shown_angles.h"
+#include "analysis/quality/kernels/blended_normals.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {
@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t kSamplesOfBlock = 8192, kMostOfBlock = 1024, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
-constexpr auto kDegrees = static_cast<float>(kDegreesPerRadian);
 // Limits for the samples whose right normals are held, and for the poses of one kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
 // A glance takes every eighth pose, but no fewer than this if there are more.
@@ -36,16 +35,20 @@ bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
 }
 
+std::size_t padded(std::size_t poses) { return block_count(poses, kPosePadding) * kPosePadding; }
+
 // Holds the weights of poses by column, side by side, and the range of poses in which a column has any: if targets are
 // judged alone, most columns have no weight in most poses.
 class PoseWeights {
  public:
   explicit PoseWeights(std::span<const SeenPose> poses)
-      : poses_(poses.size()), active_(poses.empty() ? 0 : poses[0].weights.size()), weights_(poses_ * active_.size()) {
-    for (std::size_t p = 0; p < poses_; ++p) {
+      : stride_(padded(poses.size())),
+        active_(poses.empty() ? 0 : poses[0].weights.size()),
+        weights_(stride_ * active_.size()) {
+    for (std::size_t p = 0; p < poses.size(); ++p) {
       for (std::size_t c = 0; c < active_.size(); ++c) {
         const auto weight = static_cast<float>(poses[p].weights[c]);
-        weights_[c * poses_ + p] = weight;
+        weights_[c * stride_ + p] = weight;
         if (weight == 0) continue;
         IndexRange& active = active_[c];
         if (active.count == 0) active.first = p;
@@ -56,100 +59,82 @@ class PoseWeights {
       if (active_[c].count > 0) columns_.push_back(c);
   }
 
-  // Returns the weights of a column: (poses).
-  [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * poses_; }
+  // Returns the weights of a column: (poses, padded).
+  [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * stride_; }
   // Returns the columns with any weight, ascending.
   [[nodiscard]] std::span<const std::uint32_t> columns() const { return columns_; }
   // Returns the range of poses beyond which the column has no weight.
   [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
 
  private:
-  std::size_t poses_;
+  std::size_t stride_;
   std::vector<IndexRange> active_;
   std::vector<std::uint32_t> columns_;
   std::vector<float> weights_;
 };
 
+std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
+  return {first, first + stride, first + 2 * stride};
+}
+
 // Holds the sums of one vertex in many poses.
 class Sums {
  public:
+  // Adds up `count` poses from number `first` on, a multiple of kPosePadding.
   void add_up(const Viewer& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
               const PoseWeights& weights, std::size_t first, std::size_t count) {
     const Vec3f base = kept_normal(viewer, normal);
-    x_.assign(count, base.x);
-    y_.assign(count, base.y);
-    z_.assign(count, base.z);
+    terms_.clear();
+    no_sums_.clear();
     const auto add = [&](std::uint32_t column, const Vec3f& delta) {
       const IndexRange& active = weights.active(column);
       const std::size_t begin = std::max(active.first, first), end = std::min(active.end(), first + count);
       if (begin >= end) return;
       const Vec3f kept = kept_delta(viewer, normal, base, delta);
-      const float* const w = weights.of(column) + first;
-      for (std::size_t p = begin - first; p < end - first; ++p) {
-        x_[p] += w[p] * kept.x;
-        y_[p] += w[p] * kept.y;
-        z_[p] += w[p] * kept.z;
-      }
+      if (is_finite(to_double(kept)))
+        terms_.push_back({weights.of(column) + first, begin - first, end - first, kept});
+      else
+        no_sums_.push_back({begin - first, end - begin});
     };
     constexpr std::size_t kFew = 8;  // a list of entries is searched for columns only if it is this many times longer
     if (kFew * weights.columns().size() > entries.size()) {
       for (const auto& [column, delta] : entries) add(column, delta);
-      return;
+    } else {
+      for (const std::uint32_t column : weights.columns()) {
+        const auto found = std::lower_bound(entries.begin(), entries.end(), column,
+                                            [](const auto& entry, std::uint32_t c) { return entry.column < c; });
+        if (found != entries.end() && found->column == column) add(column, found->delta);
+      }
     }
-    for (const std::uint32_t column : weights.columns()) {
-      const auto found = std::lower_bound(entries.begin(), entries.end(), column,
-                                          [](const auto& entry, std::uint32_t c) { return entry.column < c; });
-      if (found != entries.end() && found->column == column) add(column, found->delta);
-    }
+    stride_ = padded(count);
+    planes_.resize(3 * stride_);
+    add_weighted(base, terms_, planes_.data(), stride_);
+    for (const IndexRange& range : no_sums_)
+      std::fill_n(planes_.data() + range.first, range.count, std::numeric_limits<float>::quiet_NaN());
   }
 
   // Replaces the sums by what the skin makes of them.
-  void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule) {
-    for (std::size_t p = 0; p < x_.size(); ++p) {
-      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(Vec3f{x_[p], y_[p], z_[p]})));
-      x_[p] = seen.x;
-      y_[p] = seen.y;
-      z_[p] = seen.z;
+  void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule, std::size_t poses) {
+    for (std::size_t p = 0; p < poses; ++p) {
+      float *const x = planes_.data() + p, *const y = x + stride_, *const z = y + stride_;
+      const Vec3f seen = to_float(carrying.seen(rule, p, to_double(Vec3f{*x, *y, *z})));
+      *x = seen.x;
+      *y = seen.y;
+      *z = seen.z;
     }
   }
 
-  // Writes the angles to the right normals in degrees, negative where no right normal is known, and the differences of
-  // unit vectors as planes, NaN where none is known. Returns the largest length of a difference. right has three
-  // planes.
+  // Does what compare_normals() does, with errors as planes side by side. right has three planes.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
-    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    const std::size_t count = degrees.size();
-    const auto [u, v, w] = right;
-    const float *const x = x_.data(), *const y = y_.data(), *const z = z_.data();
-    for (std::vector<double>* const of : {&across_, &along_, &angles_}) of->resize(count);
-    for (std::size_t p = 0; p < count; ++p) {
-      const float a = y[p] * w[p] - z[p] * v[p], b = z[p] * u[p] - x[p] * w[p], c = x[p] * v[p] - y[p] * u[p];
-      across_[p] = static_cast<double>(std::sqrt(a * a + b * b + c * c));
-      along_[p] = static_cast<double>(x[p] * u[p] + y[p] * v[p] + z[p] * w[p]);
-    }
-    upper_angles(across_, along_, angles_);
-    float *const to_x = errors.data(), *const to_y = to_x + count, *const to_z = to_y + count;
-    for (std::size_t p = 0; p < count; ++p) {
-      const float size = std::sqrt(x[p] * x[p] + y[p] * y[p] + z[p] * z[p]);
-      const float angle = kDegrees * static_cast<float>(angles_[p]);
-      const bool is_lit = size > 0 && size <= std::numeric_limits<float>::max() && angle <= 180.5F;
-      const bool is_known = u[p] != 0 || v[p] != 0 || w[p] != 0;
-      degrees[p] = is_known ? is_lit ? angle : 180 : -1;
-      // A normal that is not lit counts as one that points to the other side.
-      const float scale = is_lit ? 1 / size : 0, side = is_known ? is_lit ? 1 : 2 : kNan;
-      to_x[p] = (is_lit ? scale * x[p] : 0) - side * u[p];
-      to_y[p] = (is_lit ? scale * y[p] : 0) - side * v[p];
-      to_z[p] = (is_lit ? scale * z[p] : 0) - side * w[p];
-    }
-    float largest = 0;
-    for (std::size_t p = 0; p < count; ++p)
-      largest = std::max(largest, to_x[p] * to_x[p] + to_y[p] * to_y[p] + to_z[p] * to_z[p]);  // NaN counts for nothing
-    return std::sqrt(largest);
+    float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
+    return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
   }
 
  private:
-  std::vector<float> x_, y_, z_;
-  std::vector<double> across_, along_, angles_;
+  std::vector<WeightedVector> terms_;
+  std::vector<IndexRange> no_sums_;  // poses that a delta makes infinite or NaN
+  std::size_t stride_ = 0;
+  std::vector<float> planes_;
 };
 
 // Returns the edges with an end among some vertices, by indices in that list; other vertices have an index beyond its
@@ -173,10 +158,6 @@ void write_planes(std::span<const Vec3f> vectors, float* planes, std::size_t str
     planes[stride + p] = vectors[p].y;
     planes[2 * stride + p] = vectors[p].z;
   }
-}
-
-std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
-  return {first, first + stride, first + 2 * stride};
 }
 
 std::vector<std::uint32_t> numbers_up_to(std::size_t count) {
@@ -308,7 +289,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
       sums.add_up(viewer, to_float(rights_.stored(vertex)), columns.of(n), weights, 0, poses);
       if (skins.any()) {
         const SkinsInPoses::Vertex carrying(skins, vertex, 0, poses);
-        sums.carry(carrying, viewer.skins);
+        sums.carry(carrying, viewer.skins, poses);
         for (std::size_t p = 0; p < poses; ++p) {
           const Vec3f of_mesh{right[p], right[poses + p], right[2 * poses + p]};
           const Vec3f seen = to_float(carrying.seen(viewer.skins, p, to_double(of_mesh)));

@@ -1,0 +1,45 @@
+/// Adds up the normals that a viewer renders in many poses at once, and compares them with the true ones, in lanes of
+/// float.
+///
+/// All functions return the bits of their scalar forms: terms are added in their order, and angles are those of
+/// portable::atan2().
+#ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_
+#define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "chronormal/core/vec3.h"
+
+namespace chronormal::inline internal {
+
+/// The number of poses that planes of sums and weights are padded to a multiple of: the floats of the widest vector.
+inline constexpr std::size_t kPosePadding = 16;
+
+/// A finite vector with a weight in each pose. Its weights are zero outside [first, end).
+struct WeightedVector {
+  const float* weights = nullptr;  ///< (poses, padded)
+  std::size_t first = 0, end = 0;
+  Vec3f vector;
+};
+
+/// Writes base + the sum of weight times vector over all terms to three planes of `stride` floats. The stride is a
+/// multiple of kPosePadding, and each list of weights has as many floats.
+void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, float* sums, std::size_t stride) noexcept;
+
+/// Compares rendered normals of any length with the true unit normals in as many poses as `degrees` has. Both are
+/// planes, and a true normal is (0, 0, 0) where none is known. Writes
+///
+///     degrees   the angles; 180 for a normal that cannot be lit, -1 where no true normal is known
+///     errors    as planes, the rendered minus the true unit normal; minus twice the true one if it cannot be lit, NaN
+///               where none is known
+///
+/// Returns the largest length of an error.
+[[nodiscard]] float compare_normals(const std::array<const float*, 3>& rendered,
+                                    const std::array<const float*, 3>& right, std::span<float> degrees,
+                                    const std::array<float*, 3>& errors) noexcept;
+
+}  // namespace chronormal::inline internal
+
+#endif  // CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_

@@ -1,0 +1,96 @@
+// Checks that sums and errors of normals in many poses have the bits of plain loops on every instruction set.
+#include "analysis/quality/kernels/blended_normals.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/portable_math.h"
+#include "simd/targets.h"
+#include "tests/support/hard_motions.h"
+
+namespace chronormal::blended_normals_test {
+namespace {
+
+Vec3f any_vector(fixtures::Random& random) {
+  const fixtures::Point p = random.in_cube(std::pow(10.0, random.uniform(-3, 3)));
+  return to_float({p[0], p[1], p[2]});
+}
+
+TEST(AddWeighted, has_the_bits_of_one_sum_after_the_other_on_every_instruction_set) {
+  fixtures::Random random(11);
+  for (const std::size_t stride : {16U, 48U, 64U, 208U}) {
+    std::vector<std::vector<float>> weights(7);
+    std::vector<WeightedVector> terms;
+    for (std::vector<float>& row : weights) {
+      const std::size_t first = random.below(stride), end = first + random.below(stride - first) + 1;
+      row.assign(stride, 0.0F);
+      for (std::size_t p = first; p < end; ++p) row[p] = static_cast<float>(random.uniform(-2, 2));
+      terms.push_back({row.data(), first, end, any_vector(random)});
+    }
+    const Vec3f base = any_vector(random);
+    std::vector<float> expected(3 * stride);
+    for (std::size_t p = 0; p < stride; ++p) {
+      Vec3f sum = base;
+      for (const WeightedVector& term : terms) sum = sum + term.weights[p] * term.vector;
+      expected[p] = sum.x, expected[stride + p] = sum.y, expected[2 * stride + p] = sum.z;
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      std::vector<float> sums(3 * stride);
+      add_weighted(base, terms, sums.data(), stride);
+      EXPECT_EQ(sums, expected) << target_name(target) << ", " << stride;
+    }
+  }
+}
+
+// The vector of a pose in planes of this many.
+Vec3f at(const std::vector<float>& planes, std::size_t count, std::size_t p) {
+  return {planes[p], planes[count + p], planes[2 * count + p]};
+}
+
+TEST(CompareNormals, has_the_bits_of_one_comparison_after_the_other_on_every_instruction_set) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  fixtures::Random random(12);
+  for (const std::size_t count : {1U, 3U, 16U, 37U, 501U}) {
+    std::vector<float> rendered(3 * count), right(3 * count), degrees(count), errors(3 * count);
+    for (std::size_t p = 0; p < count; ++p) {
+      const Vec3f u = p % 9 == 8 ? Vec3f{} : to_float(unit(to_double(any_vector(random))));
+      Vec3f n = p % 11 == 10 ? Vec3f{} : p % 13 == 12 ? -u : p % 5 == 4 ? 3.0F * u : any_vector(random);
+      if (p % 17 == 16) n.y = p % 2 == 0 ? kInfinity : std::numeric_limits<float>::quiet_NaN();
+      rendered[p] = n.x, rendered[count + p] = n.y, rendered[2 * count + p] = n.z;
+      right[p] = u.x, right[count + p] = u.y, right[2 * count + p] = u.z;
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      const float largest = compare_normals({rendered.data(), &rendered[count], &rendered[2 * count]},
+                                            {right.data(), &right[count], &right[2 * count]}, degrees,
+                                            {errors.data(), &errors[count], &errors[2 * count]});
+      float most = 0;
+      for (std::size_t p = 0; p < count; ++p) {
+        const Vec3f n = at(rendered, count, p), u = at(right, count, p), error = at(errors, count, p);
+        if (u == Vec3f{}) {
+          EXPECT_EQ(degrees[p], -1);
+          EXPECT_TRUE(std::isnan(error.x) && std::isnan(error.y) && std::isnan(error.z));
+          continue;
+        }
+        const float size = std::sqrt(dot(n, n));
+        const bool is_lit = size > 0 && size < kInfinity;
+        const Vec3f aside = cross(n, u);
+        const double angle = portable::atan2(double{std::sqrt(dot(aside, aside))}, double{dot(n, u)});
+        EXPECT_EQ(degrees[p], is_lit ? static_cast<float>(kDegreesPerRadian) * static_cast<float>(angle) : 180.0F)
+            << target_name(target) << " " << p;
+        const Vec3f expected = is_lit ? (1 / size) * n - u : Vec3f{} - 2.0F * u;
+        EXPECT_EQ(error, expected) << target_name(target) << " " << p;
+        most = std::fmax(most, dot(expected, expected));
+      }
+      EXPECT_EQ(largest, std::sqrt(most)) << target_name(target) << ", " << count;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace chronormal::blended_normals_test
