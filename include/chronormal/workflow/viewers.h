@@ -177,7 +177,9 @@ void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<con
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// Returns the unit normal that is rendered for a sum; zero or not finite if the sum is.
+/// The first returns the vector in whose direction the normal is rendered for a sum, the second the unit normal itself.
+/// Both are zero or not finite if the sum is.
+[[nodiscard]] Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
 }  // namespace chronormal

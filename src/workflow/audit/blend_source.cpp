@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/quality/kernels/shown_angles.h"
 #include "core/blocks.h"
 #include "workflow/audit/measure.h"
 
@@ -145,7 +146,8 @@ Vec3d BlendSource::seen(std::size_t i, const Vec3d& normal, SkinRule rule) const
 
 bool BlendSource::hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
   if (skin_ == nullptr) return false;
-  const Vec3d is_seen = right(output, normal, rule);
+  Vec3d is_seen = normal;
+  right(number(output), std::span(&is_seen, 1), rule);
   return is_seen == Vec3d{} || !is_finite(is_seen);
 }
 
@@ -166,16 +168,25 @@ void BlendSource::place_at(std::span<const double> weights, std::span<Vec3d> pos
   });
 }
 
-Vec3f BlendSource::shown(const JudgedOutput& output) const {
-  const std::size_t i = number(output);
-  if (rule_ == AuditRule::kGltf) return to_float(seen(i, unit(to_double(vector_at(shown_now_, i)))));
-  const Vec3d from = to_double(vector_at(shown_start_, i)), to = to_double(vector_at(shown_end_, i));
-  return to_float(seen(i, to_double(blend_stored(rule_, from, to, t_))));
+void BlendSource::shown(std::size_t first, std::span<Vec3d> normals) const {
+  for (std::size_t k = 0; k < normals.size(); ++k) {
+    const std::size_t i = first + k;
+    if (rule_ == AuditRule::kGltf)
+      normals[k] = to_double(vector_at(shown_now_, i));
+    else
+      normals[k] = to_double(
+          blend_stored(rule_, to_double(vector_at(shown_start_, i)), to_double(vector_at(shown_end_, i)), t_));
+  }
+  if (rule_ == AuditRule::kGltf) {
+    if (skin_ == nullptr) return make_rounded_units(normals);
+    make_units(normals);
+  }
+  for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = to_double(to_float(seen(first + k, normals[k])));
 }
 
-Vec3d BlendSource::right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule) const {
-  const std::size_t i = number(output);
-  return seen(i, turns_[i](unit(normal)), rule);
+void BlendSource::right(std::size_t first, std::span<Vec3d> normals, SkinRule rule) const {
+  make_units(normals);
+  for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = seen(first + k, turns_[first + k](normals[k]), rule);
 }
 
 std::size_t BlendSource::number(const JudgedOutput& output) const {

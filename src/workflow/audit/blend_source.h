@@ -63,8 +63,8 @@ class BlendSource {
   /// Tells whether the skin collapses the true normal, so that no target could render it.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
-  [[nodiscard]] Vec3f shown(const JudgedOutput& output) const;
-  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
+  void shown(std::size_t first, std::span<Vec3d> normals) const;
+  void right(std::size_t first, std::span<Vec3d> normals, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const;
 
  private:

@@ -42,14 +42,16 @@ std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const Aut
   AuditFinding finding = finding_of(Kind::kStaleTangents, shading.mesh);
   finding.target = k;
   finding.degrees = kAuditFault;
-  for (const JudgedOutput& output : part.outputs()) {
+  for (std::size_t i = 0; i < part.outputs().size(); ++i) {
+    const JudgedOutput& output = part.outputs()[i];
     const float* t = shading.tangents.data() + 4 * std::size_t{output.vertex};
     const Vec3d before = to_double(Vec3f{t[0], t[1], t[2]});
     Vec3d after = before;
     if (!shading.tangent_deltas[k].empty())
       after = after + to_double(vector_at(shading.tangent_deltas[k], output.vertex));
     const Vec3d stored = to_double(vector_at(shading.normals, output.vertex));
-    const Vec3d right = source.right(output, normals.elements[output.element]);
+    Vec3d right = normals.elements[output.element];
+    source.right(i, std::span(&right, 1));
     if (before == Vec3d{} || after == Vec3d{} || stored == Vec3d{} || right == Vec3d{}) continue;
     const auto lean = [](const Vec3d& a, const Vec3d& b) {
       return std::fabs(angle_between(a, b) * kDegreesPerRadian - 90);

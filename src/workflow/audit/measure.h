@@ -35,6 +35,9 @@ inline constexpr double kCancels = -3;
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
 inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 
+/// The number of outputs that are computed together: few enough for the fastest cache.
+inline constexpr std::size_t kOutputsAtOnce = 256;
+
 /// Returns the bin of the histogram for an error in [0, 180] degrees.
 [[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
   std::size_t bin = 0;
@@ -96,9 +99,10 @@ void finish(Audit& result);
 //     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
 //     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
 //     show()                         is called after each placement, before shown()
-//     shown(output)                  returns a normal of any length, zero if there is none
+//     shown(first, normals)          writes the normals of outputs from number `first` on; zero if there is none
 //     seen(i, n)                     returns a normal of the i-th output as it reaches the screen
-//     right(output, n)               returns the true direction for a normal of the geometry
+//     right(first, normals)          replaces normals of the geometry by the true directions for outputs from number
+//                                    `first` on
 //     hides(output, n)               tells whether the true normal has no direction on the screen and is not judged
 //     at(segment, t, output)         returns the place in terms that a person understands
 //
@@ -199,21 +203,6 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
-/// Returns a vector of length 1. Most inputs have nearly that length already and are returned as they are.
-[[nodiscard]] inline Vec3d to_unit(const Vec3d& v) noexcept {
-  constexpr double kNear = 1e-6;  // lengths in float32 are closer
-  return std::fabs(dot(v, v) - 1) < kNear ? v : unit(v);
-}
-
-/// Returns the rendered minus the true unit normal: the opposite side if the normal cannot be lit, NaN if the sample is
-/// not judged.
-[[nodiscard]] inline Vec3f difference(double judged, const Vec3d& shown, const Vec3d& right) noexcept {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  if (judged == kNotJudged || right == Vec3d{}) return {kNan, kNan, kNan};
-  const Vec3d u = to_unit(right);
-  return to_float(judged == kNotLit ? -2.0 * u : to_unit(shown) - u);
-}
-
 /// Counts the torn edges of a part. differences has, for each output, the rendered minus the true unit normal, or NaN
 /// if the output is not judged.
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error);
@@ -226,34 +215,48 @@ struct RightOutput {
   bool has_area = false;    ///< whether a face around the output is drawn: faces without area are not drawn
 };
 
+/// Writes the true normals of all placed outputs.
 template <class Source>
-[[nodiscard]] RightOutput right_output(const Source& source, const PlacedPart& placed, std::span<const double> largest,
-                                       const JudgedOutput& output) {
-  const Vec3d& normal = placed.normals.elements[output.element];
-  const double least = kVanished * largest[output.element];
-  return {source.right(output, normal), source.hides(output, normal), length(normal) > least,
-          placed.normals.sizes[output.element] > least};
+void find_right(const Source& source, const PlacedPart& placed, std::span<const double> largest,
+                std::vector<RightOutput>& result) {
+  const std::span<const JudgedOutput> outputs = placed.part.outputs();
+  result.resize(outputs.size());
+  parallel_blocks(outputs.size(), kOutputsAtOnce, [&](IndexRange range) {
+    std::array<Vec3d, kOutputsAtOnce> normals;
+    const std::span<Vec3d> some = std::span(normals).first(range.count);
+    for (std::size_t k = 0; k < range.count; ++k) some[k] = placed.normals.elements[outputs[range.first + k].element];
+    source.right(range.first, some);
+    for (std::size_t k = 0; k < range.count; ++k) {
+      const JudgedOutput& output = outputs[range.first + k];
+      const Vec3d& normal = placed.normals.elements[output.element];
+      const double least = kVanished * largest[output.element];
+      const bool has_normal = max_abs(normal) > least || length(normal) > least;  // the first mostly tells
+      result[range.first + k] = {some[k], source.hides(output, normal), has_normal,
+                                 placed.normals.sizes[output.element] > least};
+    }
+  });
 }
 
-/// Returns the errors of all placed outputs. shown(i, output) returns the rendered normal of the i-th output, and
-/// right(i, output) the true one. If the argument each is not empty, it receives the error of every output in degrees,
-/// and NaN for outputs that are not judged.
-template <class Source, class Shown, class Right>
+/// Returns the errors of all placed outputs. shown(first, normals) writes the rendered normals of outputs from number
+/// `first` on, and right has the true ones. If the argument each is not empty, it receives the error of every output in
+/// degrees, and NaN for outputs that are not judged.
+template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
-                                   double t, const Shown& shown, const Right& right, std::span<float> each = {}) {
+                                   double t, const Shown& shown, std::span<const RightOutput> right,
+                                   std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const bool has_edges = !placed.part.edges().empty();
   std::vector<Vec3f> differences(has_edges ? outputs.size() : 0);
   std::vector<MotionError> of_blocks(block_count(outputs.size(), kRange));
   numbered_blocks(outputs.size(), kRange, [&](std::size_t b, std::size_t first, std::size_t end) {
     std::vector<double> degrees(end - first);
-    std::array<Vec3d, 256> is_shown, is_right;
+    std::array<Vec3d, kOutputsAtOnce> is_shown, is_right;
     for (std::size_t from = first; from < end; from += is_shown.size()) {
       const std::size_t count = std::min(is_shown.size(), end - from);
       const std::span<double> of_some = std::span(degrees).subspan(from - first, count);
+      shown(from, std::span(is_shown).first(count));
       for (std::size_t k = 0; k < count; ++k) {
-        is_shown[k] = shown(from + k, outputs[from + k]);
-        const RightOutput& is = right(from + k, outputs[from + k]);
+        const RightOutput& is = right[from + k];
         const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
         // A skin may collapse a true normal.
         of_some[k] = is.is_hidden                                                        ? kNotJudged
@@ -265,20 +268,24 @@ template <class Source, class Shown, class Right>
         if (of_some[k] == kNotLit) is_shown[k] = {};
       }
       std::array<double, is_shown.size()> angles;
-      angles_of_pairs(std::span(is_shown).first(count), std::span(is_right).first(count),
-                      std::span(angles).first(count));
-      for (std::size_t k = 0; k < count; ++k) {
-        if (has_edges) differences[from + k] = difference(of_some[k], is_shown[k], is_right[k]);
+      const std::span<const Vec3d> of_shown = std::span(is_shown).first(count),
+                                   of_right = std::span(is_right).first(count);
+      if (has_edges)
+        errors_of_pairs(of_shown, of_right, std::span(angles).first(count),
+                        std::span(differences).subspan(from, count));
+      else
+        angles_of_pairs(of_shown, of_right, std::span(angles).first(count));
+      for (std::size_t k = 0; k < count; ++k)
         if (of_some[k] == 0) of_some[k] = angles[k];
-      }
     }
     add_errors(
         outputs.subspan(first, end - first), [&](const JudgedOutput&, std::size_t i) { return degrees[i]; },
         [&](const JudgedOutput& output, std::size_t i) {
           const Vec3d& normal = placed.normals.elements[output.element];
           if (normal != Vec3d{} && source.hides(output, normal)) return kNotJudged;
-          const Vec3d now = shown(first + i, output);
-          const RightOutput& is = right(first + i, output);
+          Vec3d now;
+          shown(first + i, std::span(&now, 1));
+          const RightOutput& is = right[first + i];
           const double faint = normal == Vec3d{}
                                    ? kNotJudged
                                    : faint_degrees(now, is.direction, length(normal),
@@ -312,7 +319,9 @@ struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
   const PlacedPart& placed;
-  std::span<const double> largest;  ///< the result of largest_control_normals()
+  std::span<const double> largest;     ///< the result of largest_control_normals()
+  std::span<const double> next;        ///< the places of the next samples in the segment
+  std::span<const RightOutput> right;  ///< of all outputs
   const MotionError& error;
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
@@ -332,12 +341,12 @@ template <class Source, class Segments, class EachSample>
   const std::vector<double>& largest = all_largest.value();
   source.forget();
   const bool is_flat = rule == AuditRule::kFlat;
-  const auto shown = [&](std::size_t i, const JudgedOutput& output) {
-    return is_flat ? source.seen(i, placed.normals.faces[output.face]) : to_double(source.shown(output));
+  const auto shown = [&](std::size_t from, std::span<Vec3d> normals) {
+    if (!is_flat) return source.shown(from, normals);
+    for (std::size_t k = 0; k < normals.size(); ++k)
+      normals[k] = source.seen(from + k, placed.normals.faces[part.outputs()[from + k].face]);
   };
-  const auto right = [&](std::size_t, const JudgedOutput& output) {
-    return right_output(source, placed, largest, output);
-  };
+  std::vector<RightOutput> right;
   MotionError error;  // error of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Status measured = segments.over(subject, [&](std::size_t s) {
@@ -349,17 +358,20 @@ template <class Source, class Segments, class EachSample>
       source.begin(std::move(start), placed.normals.elements);
       source.forget();
     }
-    for (std::size_t i = 0; i < subject.samples; ++i) {
-      const double t = time_of_sample(i, subject.samples);
+    std::vector<double> times(subject.samples);
+    for (std::size_t i = 0; i < times.size(); ++i) times[i] = time_of_sample(i, times.size());
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double t = times[i];
       if (placed.place(source, s, t)) {
         source.show();
+        find_right(source, placed, largest, right);
         error = error_at(source, placed, is_flat, s, t, shown, right, each);
       }
       if (kept.table != nullptr)
         keep_sample(kept, part.outputs(), each, subject.is_weighed(), source.at(s, t, part.outputs().front()).at);
       found.error.add(error);
       if (i == 0 || i + 1 == subject.samples) found.at_keys.add(error);
-      each_sample(MeasuredSample{s, t, placed, largest, error, each});
+      each_sample(MeasuredSample{s, t, placed, largest, std::span(times).subspan(i + 1), right, error, each});
     }
     return found;
   });

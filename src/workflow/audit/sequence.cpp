@@ -62,22 +62,14 @@ class SequenceSource {
     end_ = end;
   }
 
-  [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
-    if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
-    // The viewer computes normals at the keyframes and keeps them in float32.
-    const auto computed = [](const Vec3d& normal) { return rounded_to_float(unit(normal)); };
-    return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
+  void shown(std::size_t first, std::span<Vec3d> normals) const {
+    for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = to_double(shown(part_.outputs()[first + k]));
   }
 
   [[nodiscard]] static Vec3d seen(std::size_t /*i*/, const Vec3d& normal) noexcept { return normal; }
   [[nodiscard]] static bool hides(const JudgedOutput& /*output*/, const Vec3d& /*normal*/) noexcept { return false; }
-  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
-    const Vec3d now = unit(normal);
-    if (!stored_) return now;
-    const Vec3d from = offset_by(keys().from, start_[output.element], output, now);
-    const Vec3d to = offset_by(keys().to, end_[output.element], output, now);
-    const Vec3d between = lerp(from, to, t_);
-    return between == Vec3d{} ? now : between;
+  void right(std::size_t first, std::span<Vec3d> normals) const {
+    for (std::size_t k = 0; k < normals.size(); ++k) normals[k] = right(part_.outputs()[first + k], normals[k]);
   }
 
   [[nodiscard]] AuditPlace at(std::size_t segment, double t, const JudgedOutput& output) const {
@@ -87,6 +79,20 @@ class SequenceSource {
   }
 
  private:
+  [[nodiscard]] Vec3f shown(const JudgedOutput& output) const {
+    if (stored_) return blend_stored(rule_, stored_at(keys().from, output), stored_at(keys().to, output), t_);
+    // The viewer computes normals at the keyframes and keeps them in float32.
+    const auto computed = [](const Vec3d& normal) { return rounded_to_float(unit(normal)); };
+    return blend_stored(rule_, computed(start_[output.element]), computed(end_[output.element]), t_);
+  }
+  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
+    const Vec3d now = unit(normal);
+    if (!stored_) return now;
+    const Vec3d from = offset_by(keys().from, start_[output.element], output, now);
+    const Vec3d to = offset_by(keys().to, end_[output.element], output, now);
+    const Vec3d between = lerp(from, to, t_);
+    return between == Vec3d{} ? now : between;
+  }
   [[nodiscard]] const Motion::SegmentKeys& keys() const { return motion_.segments[segments_[segment_]]; }
 
   [[nodiscard]] Vec3d stored_at(std::size_t keyframe, const JudgedOutput& output) const {

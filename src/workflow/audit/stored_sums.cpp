@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "analysis/fits/kernels/products.h"
+#include "analysis/quality/kernels/shown_angles.h"
 #include "core/blocks.h"
 
 namespace chronormal::inline internal {
@@ -111,8 +112,10 @@ Vec3f StoredSums::kept(std::size_t output) const {
   return kept_normals_.empty() ? stored(output) : kept_normals_[output];
 }
 
-Vec3f StoredSums::shown(std::span<const float> sums, std::size_t output) const {
-  return shown_of_sum(viewer_, kept(output), vector_at(sums, output));
+void StoredSums::shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const {
+  for (std::size_t k = 0; k < normals.size(); ++k)
+    normals[k] = to_double(vector_of_sum(viewer_, kept(first + k), vector_at(sums, first + k)));
+  make_rounded_units(normals);
 }
 
 std::span<const float> StoredSums::find(const std::vector<double>& weights) const noexcept {

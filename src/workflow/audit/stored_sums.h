@@ -34,8 +34,9 @@ class StoredSums {
   /// Returns the sums at one of the sets of weights, three for each output; empty if the set is not known.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
-  /// Returns the unit normal that is rendered for a sum; zero or not finite if the sum is.
-  [[nodiscard]] Vec3f shown(std::span<const float> sums, std::size_t output) const;
+  /// Writes the unit normals, rounded to float, that are rendered for the sums of outputs from number `first` on; zero
+  /// or not finite if a sum is.
+  void shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 

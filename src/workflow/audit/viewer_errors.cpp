@@ -24,9 +24,7 @@ struct SeenByViewer {
   const BlendSource& source;
   SkinRule rule;
 
-  [[nodiscard]] Vec3d right(const JudgedOutput& output, const Vec3d& normal) const {
-    return source.right(output, normal, rule);
-  }
+  void right(std::size_t first, std::span<Vec3d> normals) const { source.right(first, normals, rule); }
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal) const {
     return source.hides(output, normal, rule);
   }
@@ -114,20 +112,22 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
       }
       StoredSums& kept = kept_[kept_by_[other]];
       const SeenByViewer by_viewer{source, kept.viewer().skins};
-      if (!is_right_for || (is_skinned_ && *is_right_for != by_viewer.rule)) {
-        right_.resize(part_.outputs().size());
-        parallel_each(right_.size(), kRange, [&](std::size_t i) {
-          right_[i] = right_output(by_viewer, *where, sample.largest, part_.outputs()[i]);
-        });
+      std::span<const RightOutput> right = sample.right;
+      if (where != &sample.placed || (is_skinned_ && by_viewer.rule != SkinRule::kBlended)) {
+        if (!is_right_for || (is_skinned_ && *is_right_for != by_viewer.rule))
+          find_right(by_viewer, *where, sample.largest, right_);
         is_right_for = by_viewer.rule;
+        right = right_;
       }
-      kept.add_up({now_[other]});
+      if (kept.find(now_[other]).empty()) kept.add_up(now_and_next(other, sample));
       const std::span<const float> sums = kept.find(now_[other]);
-      const auto shown_at = [&](std::size_t i, const JudgedOutput&) {
-        return source.seen(i, to_double(kept.shown(sums, i)), by_viewer.rule);
+      const auto shown_at = [&](std::size_t first, std::span<Vec3d> normals) {
+        kept.shown(sums, first, normals);
+        if (is_skinned_)
+          for (std::size_t k = 0; k < normals.size(); ++k)
+            normals[k] = source.seen(first + k, normals[k], by_viewer.rule);
       };
-      const auto right_at = [&](std::size_t i, const JudgedOutput&) -> const RightOutput& { return right_[i]; };
-      last_[other] = {error_at(by_viewer, *where, false, sample.segment, sample.t, shown_at, right_at), displaced};
+      last_[other] = {error_at(by_viewer, *where, false, sample.segment, sample.t, shown_at, right), displaced};
       known = &last_[other].error;
     }
   }
@@ -135,6 +135,15 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
     errors_[h].error.add(last_[h].error);
     errors_[h].displaced = std::max(errors_[h].displaced, last_[h].displaced);
   }
+}
+
+std::vector<std::vector<double>> ViewerErrors::now_and_next(std::size_t viewer, const MeasuredSample& sample) const {
+  std::vector<std::vector<double>> result = {now_[viewer]};
+  for (const double t : sample.next.first(std::min(sample.next.size(), StoredSums::kAtOnce - 1))) {
+    result.push_back(now_[viewer]);
+    weights_[viewer](sample.segment, t, result.back());
+  }
+  return result;
 }
 
 }  // namespace chronormal::inline internal

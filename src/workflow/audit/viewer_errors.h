@@ -44,16 +44,19 @@ class ViewerErrors {
   [[nodiscard]] std::vector<ViewerError> take() { return std::move(errors_); }
 
  private:
+  // Returns the weights that a viewer plays at a sample and at the next ones in its segment.
+  [[nodiscard]] std::vector<std::vector<double>> now_and_next(std::size_t viewer, const MeasuredSample& sample) const;
+
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
-  std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
-  std::vector<RightOutput> right_;          // true normal of each output, as some viewers see it
-  double size_ = 0;                         // size of the mesh
-  std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones, once needed
-  std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
-  std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample
+  std::vector<StoredSums> kept_;          // normals and deltas as some viewers keep them
+  std::vector<std::size_t> kept_by_;      // for each viewer, its index in kept_
+  std::vector<RightOutput> right_;        // true normal of each output, as some viewers see it, if not as in the sample
+  double size_ = 0;                       // size of the mesh
+  std::optional<PlacedPart> elsewhere_;   // the part at weights other than the specified ones, once needed
+  std::size_t placed_ = 0;                // source.placed() at the last sample; 0 before any
+  std::vector<std::vector<double>> now_;  // for each viewer, the weights of the last sample
   std::vector<ViewerError> last_, errors_;  // for each viewer: of the last sample and of all
 };
 

@@ -22,21 +22,27 @@ CornerTerms& CornerTerms::emptied(Weighting weighting) {
   terms.weighting_ = weighting;
   terms.needs_edges_ = weighting != Weighting::kArea && weighting != Weighting::kUniform;
   ++terms.use_;
-  for (std::vector<Vec3d>* const vectors : {&terms.terms_, &terms.next_, &terms.previous_}) vectors->clear();
-  terms.areas_.clear();
+  for (std::vector<Vec3d>* const vectors : {&terms.faces_, &terms.next_, &terms.previous_}) vectors->clear();
+  terms.face_of_corner_.clear();
   return terms;
 }
 
 void CornerTerms::finish() {
-  if (!needs_edges_) return;
-  if (weighting_ != Weighting::kAngle && weighting_ != Weighting::kAreaAngle) {
+  areas_.resize(faces_.size());
+  lengths_of(faces_, areas_);
+  if (weighting_ == Weighting::kAngle || weighting_ == Weighting::kUniform) make_units(faces_);
+  terms_.resize(face_of_corner_.size());
+  for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] = faces_[face_of_corner_[i]];
+  if (weighting_ == Weighting::kAngle || weighting_ == Weighting::kAreaAngle) {
+    angles_.resize(terms_.size());
+    angles_of_pairs(next_, previous_, angles_, 1);
+    for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] = angles_[i] * terms_[i];
+  } else if (needs_edges_) {
     for (std::size_t i = 0; i < terms_.size(); ++i)
       terms_[i] = corner_term(weighting_, terms_[i], next_[i], previous_[i]);
-    return;
   }
-  angles_.resize(terms_.size());
-  angles_of_pairs(next_, previous_, angles_, 1);
-  for (std::size_t i = 0; i < terms_.size(); ++i) terms_[i] = angles_[i] * terms_[i];
+  lengths_.resize(terms_.size());
+  lengths_of(terms_, lengths_);
 }
 
 }  // namespace chronormal::inline internal

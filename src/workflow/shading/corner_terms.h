@@ -1,7 +1,7 @@
 /// Computes the terms that corners of polygons add to the normals of elements, by a weighting. Private to workflow.
 ///
 /// Many corners are computed at once: the normal of a polygon once for corners that are close together in the list, and
-/// angles in SIMD lanes. The result has the same bits as calls of corner_term() for each corner.
+/// lengths and angles in SIMD lanes. The result has the same bits as calls of corner_term() for each corner.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 
@@ -32,9 +32,7 @@ class CornerTerms {
   /// Appends a corner of a polygon whose vertices are `loop`. The same number must always mean the same polygon.
   template <class PositionOf>
   void add(std::uint32_t polygon, std::span<const std::uint32_t> loop, std::size_t corner, const PositionOf& position) {
-    const Face& face = face_of(polygon, loop, position);
-    terms_.push_back(face.term);
-    areas_.push_back(face.area);
+    face_of_corner_.push_back(face_of(polygon, loop, position));
     if (!needs_edges_) return;
     const std::size_t last = loop.size() - 1;
     const Vec3d here = position(loop[corner]);
@@ -45,35 +43,37 @@ class CornerTerms {
   /// Computes the terms of all corners that were appended. Call it once.
   void finish();
 
-  /// Return, in the order of appending, the terms and the lengths of the normals of their polygons.
+  /// Return, in the order of appending, the terms, their lengths, and the lengths of the normals of their polygons.
   [[nodiscard]] std::span<const Vec3d> terms() const noexcept { return terms_; }
-  [[nodiscard]] std::span<const double> areas() const noexcept { return areas_; }
+  [[nodiscard]] std::span<const double> lengths() const noexcept { return lengths_; }
+  [[nodiscard]] double area(std::size_t corner) const noexcept { return areas_[face_of_corner_[corner]]; }
 
  private:
-  struct Face {
-    std::uint64_t use = 0;  // the use of the object in which this entry was added
-    std::uint32_t polygon = 0;
-    Vec3d term;  // the whole term, or the vector that the angle multiplies
-    double area = 0;
+  struct Known {
+    std::uint64_t use = 0;  // the use of the object in which this entry was made
+    std::uint32_t polygon = 0, face = 0;
   };
-  static constexpr std::size_t kFaces = 512;
+  static constexpr std::size_t kKnown = 512;
 
+  // Returns the index of a polygon in faces_.
   template <class PositionOf>
-  const Face& face_of(std::uint32_t polygon, std::span<const std::uint32_t> loop, const PositionOf& position) {
-    Face& face = faces_[polygon % kFaces];
-    if (face.use == use_ && face.polygon == polygon) return face;
-    const Vec3d n = twice_vector_area(loop.size(), [&](std::size_t c) -> Vec3d { return position(loop[c]); });
-    const bool is_unit = weighting_ == Weighting::kAngle || weighting_ == Weighting::kUniform;
-    face = {use_, polygon, is_unit ? unit(n) : n, length(n)};
-    return face;
+  std::uint32_t face_of(std::uint32_t polygon, std::span<const std::uint32_t> loop, const PositionOf& position) {
+    Known& known = known_[polygon % kKnown];
+    if (known.use == use_ && known.polygon == polygon) return known.face;
+    known = {use_, polygon, static_cast<std::uint32_t>(faces_.size())};
+    faces_.push_back(twice_vector_area(loop.size(), [&](std::size_t c) -> Vec3d { return position(loop[c]); }));
+    return known.face;
   }
 
   Weighting weighting_ = Weighting::kArea;
   bool needs_edges_ = false;
   std::uint64_t use_ = 0;
-  std::array<Face, kFaces> faces_;
+  std::array<Known, kKnown> known_;
+  std::vector<Vec3d> faces_;  // normals of polygons; then what the weights of corners multiply
+  std::vector<double> areas_;
+  std::vector<std::uint32_t> face_of_corner_;
   std::vector<Vec3d> terms_, next_, previous_;
-  std::vector<double> areas_, angles_;
+  std::vector<double> lengths_, angles_;
 };
 
 }  // namespace chronormal::inline internal

@@ -130,10 +130,9 @@ class AuthorSums {
     for (std::size_t i = 0; i < elements.size(); ++i) {
       AuthorSum sum;
       for (const std::size_t end = next + offsets_[elements[i] + 1] - offsets_[elements[i]]; next < end; ++next) {
-        const Vec3d& term = corners.terms()[next];
-        sum.normal = sum.normal + term;
-        sum.terms += length(term);
-        sum.areas += corners.areas()[next];
+        sum.normal = sum.normal + corners.terms()[next];
+        sum.terms += corners.lengths()[next];
+        sum.areas += corners.area(next);
       }
       sum.normal = without_rounding(sum.normal, kRounding * sum.terms);
       visit(i, sum);

@@ -198,8 +198,12 @@ void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<con
   }
 }
 
+Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept {
+  return viewer.keeps_halves() ? kept_normal + half(sum) : sum;
+}
+
 Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept {
-  return to_float(unit(to_double(viewer.keeps_halves() ? kept_normal + half(sum) : sum)));
+  return to_float(unit(to_double(vector_of_sum(viewer, kept_normal, sum))));
 }
 
 }  // namespace chronormal

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "simd/angles-inl.h"
 #include "simd/double_rows-inl.h"
@@ -149,11 +150,93 @@ void ShownAngles(const ShownElements& elements, double time, std::span<double> d
   }
 }
 
+HWY_INLINE Real3 LoadVectors(const Vec3d* from) {
+  Real3 v;
+  hn::LoadInterleaved3(kDoubles, &from->x, v.x.v, v.y.v, v.z.v);
+  return v;
+}
+HWY_INLINE void StoreVectors(const Real3& v, Vec3d* to) {
+  hn::StoreInterleaved3(v.x.v, v.y.v, v.z.v, kDoubles, &to->x);
+}
+
+// Replaces all vectors by make(vector); the last ones are computed in memory of whole lanes.
+template <class Make>
+HWY_INLINE void ReplaceVectors(std::span<Vec3d> vectors, const Make& make) {
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= vectors.size(); i += kDoubleLanes)
+    StoreVectors(make(LoadVectors(&vectors[i])), &vectors[i]);
+  if (i == vectors.size()) return;
+  Vec3d last[kDoubleLanes];
+  std::copy(vectors.begin() + static_cast<std::ptrdiff_t>(i), vectors.end(), last);
+  StoreVectors(make(LoadVectors(last)), last);
+  std::copy_n(last, vectors.size() - i, &vectors[i]);
+}
+
+void MakeUnits(std::span<Vec3d> vectors) {
+  ReplaceVectors(vectors, [](const Real3& v) HWY_ATTR { return Scaled(v).unit(); });
+}
+
+void MakeRoundedUnits(std::span<Vec3d> vectors) {
+  ReplaceVectors(vectors, [](const Real3& v) HWY_ATTR {
+    const Real3 u = Scaled(v).unit();
+    return Real3{RoundedToFloat(u.x), RoundedToFloat(u.y), RoundedToFloat(u.z)};
+  });
+}
+
+void LengthsOf(std::span<const Vec3d> vectors, std::span<double> lengths) {
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= vectors.size(); i += kDoubleLanes)
+    Scaled(LoadVectors(&vectors[i])).whole_length().store(&lengths[i]);
+  if (i == vectors.size()) return;
+  Vec3d last[kDoubleLanes];
+  double of_last[kDoubleLanes];
+  std::copy(vectors.begin() + static_cast<std::ptrdiff_t>(i), vectors.end(), last);
+  Scaled(LoadVectors(last)).whole_length().store(of_last);
+  std::copy_n(of_last, vectors.size() - i, &lengths[i]);
+}
+
+HWY_INLINE Real3 Select(RealMask mask, const Real3& a, const Real3& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+// Most inputs have a length of nearly 1 already, and are returned as they are.
+HWY_INLINE Real3 ToUnit(const Real3& v) {
+  const RealMask is_near = absolute(dot(v, v) - Real(1.0)) < Real(1e-6);
+  return any(!is_near) ? Select(is_near, v, Scaled(v).unit()) : v;
+}
+
+void ErrorsOfPairs(std::span<const Vec3d> rendered, std::span<const Vec3d> right, std::span<double> degrees,
+                   std::span<Vec3f> differences) {
+  const auto compare = [](const Vec3d* of_rendered, const Vec3d* of_right, double* of_degrees,
+                          Vec3f* difference) HWY_ATTR {
+    const Real3 shown = LoadVectors(of_rendered), truth = LoadVectors(of_right);
+    (upper_angle(Scaled(cross(shown, truth)).whole_length(), dot(shown, truth) + Real(0.0)) * Real(kDegreesPerRadian))
+        .store(of_degrees);
+    const Real zero(0.0), nan(std::numeric_limits<double>::quiet_NaN());
+    const Real3 u = ToUnit(truth);
+    const Real3 of_lit = ToUnit(shown) - u, of_unlit = Real(-2.0) * u;
+    const Real3 found = Select(max_abs(shown) == zero, of_unlit, of_lit);
+    Vec3d all[kDoubleLanes];
+    StoreVectors(Select(max_abs(truth) == zero, {nan, nan, nan}, found), all);
+    for (std::size_t lane = 0; lane < kDoubleLanes; ++lane) difference[lane] = to_float(all[lane]);
+  };
+  std::size_t i = 0;
+  for (; i + kDoubleLanes <= degrees.size(); i += kDoubleLanes)
+    compare(&rendered[i], &right[i], &degrees[i], &differences[i]);
+  if (i == degrees.size()) return;
+  Vec3d last_rendered[kDoubleLanes], last_right[kDoubleLanes];
+  double last[kDoubleLanes];
+  Vec3f last_differences[kDoubleLanes];
+  std::copy(rendered.begin() + static_cast<std::ptrdiff_t>(i), rendered.end(), last_rendered);
+  std::copy(right.begin() + static_cast<std::ptrdiff_t>(i), right.end(), last_right);
+  compare(last_rendered, last_right, last, last_differences);
+  std::copy_n(last, degrees.size() - i, &degrees[i]);
+  std::copy_n(last_differences, degrees.size() - i, &differences[i]);
+}
+
 void AnglesOfPairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> degrees, double per_radian) {
   const auto angles = [per_radian](const Vec3d* of_a, const Vec3d* of_b, double* result) HWY_ATTR {
-    Real3 u, v;
-    hn::LoadInterleaved3(kDoubles, &of_a->x, u.x.v, u.y.v, u.z.v);
-    hn::LoadInterleaved3(kDoubles, &of_b->x, v.x.v, v.y.v, v.z.v);
+    const Real3 u = LoadVectors(of_a), v = LoadVectors(of_b);
     // Adding 0 turns -0 into 0, as angle_between() does.
     (upper_angle(Scaled(cross(u, v)).whole_length(), dot(u, v) + Real(0.0)) * Real(per_radian)).store(result);
   };
@@ -189,6 +272,10 @@ HWY_EXPORT(TriangleNormals);
 HWY_EXPORT(SumsAround);
 HWY_EXPORT(ShownAngles);
 HWY_EXPORT(AnglesOfPairs);
+HWY_EXPORT(ErrorsOfPairs);
+HWY_EXPORT(LengthsOf);
+HWY_EXPORT(MakeUnits);
+HWY_EXPORT(MakeRoundedUnits);
 HWY_EXPORT(UpperAngles);
 
 void TrianglesInMotion::gather(VectorView<const float> from, VectorView<const float> to,
@@ -229,6 +316,21 @@ void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::sp
   assert(a.size() == angles.size() && b.size() == angles.size());
   HWY_DYNAMIC_DISPATCH(AnglesOfPairs)(a, b, angles, per_radian);
 }
+
+void errors_of_pairs(std::span<const Vec3d> rendered, std::span<const Vec3d> right, std::span<double> degrees,
+                     std::span<Vec3f> differences) noexcept {
+  assert(rendered.size() == degrees.size() && right.size() == degrees.size() && differences.size() == degrees.size());
+  HWY_DYNAMIC_DISPATCH(ErrorsOfPairs)(rendered, right, degrees, differences);
+}
+
+void lengths_of(std::span<const Vec3d> vectors, std::span<double> lengths) noexcept {
+  assert(vectors.size() == lengths.size());
+  HWY_DYNAMIC_DISPATCH(LengthsOf)(vectors, lengths);
+}
+
+void make_units(std::span<Vec3d> vectors) noexcept { HWY_DYNAMIC_DISPATCH(MakeUnits)(vectors); }
+
+void make_rounded_units(std::span<Vec3d> vectors) noexcept { HWY_DYNAMIC_DISPATCH(MakeRoundedUnits)(vectors); }
 
 void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept {
   assert(y.size() == radians.size() && x.size() == radians.size());

@@ -72,6 +72,19 @@ void shown_angles(const ShownElements& elements, double t, std::span<double> deg
 void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
                      double per_radian = kDegreesPerRadian) noexcept;
 
+/// Does what angles_of_pairs() does for rendered and true normals, and writes the differences of the unit vectors in
+/// float: minus twice the true one if nothing is rendered, NaN if no true normal is known; zero vectors stand for both.
+/// A length within 1e-6 of 1 counts as 1.
+void errors_of_pairs(std::span<const Vec3d> rendered, std::span<const Vec3d> right, std::span<double> degrees,
+                     std::span<Vec3f> differences) noexcept;
+
+/// Writes the lengths of vectors.
+void lengths_of(std::span<const Vec3d> vectors, std::span<double> lengths) noexcept;
+
+/// Replace vectors by unit(v), or by unit(v) rounded to float.
+void make_units(std::span<Vec3d> vectors) noexcept;
+void make_rounded_units(std::span<Vec3d> vectors) noexcept;
+
 /// Writes, in radians, the angles of the vectors (x, y), as portable::atan2() does, but NaN if both are infinite. All
 /// three must have the same size; no y may be below 0.
 void upper_angles(std::span<const double> y, std::span<const double> x, std::span<double> radians) noexcept;
