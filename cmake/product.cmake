@@ -99,7 +99,7 @@ endfunction()
 # A shared object, such as an engine's plugin, can be linked from the static libraries, and exports none of their names.
 set(position_independent ON)
 if(EMSCRIPTEN)
-  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without
+  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without such code
 endif()
 set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
@@ -179,7 +179,7 @@ function(chronormal_add_product suffix flags)
 endfunction()
 
 chronormal_add_product("" chronormal_product_flags)
-# These targets have the same names in this build tree as in an installed package.
+# The targets have the same names in this build tree as in an installed package.
 add_library(chronormal::chronormal ALIAS chronormal)
 if(CHRONORMAL_IO)
   add_library(chronormal::chronormal_io ALIAS chronormal_io)

@@ -61,7 +61,7 @@ bool take_signal(int from, int kind) {
 // Tells the other ranks to end. Returns when they have removed their files, or when their time is over.
 void end_others() {
   for (int rank = 1; rank < state().count; ++rank) {
-    MPI_Request request{};  // never awaited: some ranks may never look
+    MPI_Request request{};  // not awaited, since some ranks may never look for messages
     MPI_Isend(nullptr, 0, MPI_BYTE, rank, kEnd, MPI_COMM_WORLD, &request);
     MPI_Request_free(&request);
   }

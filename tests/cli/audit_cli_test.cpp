@@ -352,7 +352,7 @@ TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   };
   folder_.write("big.obj", big);
   folder_.write("small.obj", small(".009", "0"));
-  // So far from the origin, float32 keeps only a point or a line of the triangle.
+  // At this distance from the origin, float32 keeps only a point or a line of the triangle.
   folder_.write("far.obj", small(".009", "100000"));
   for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
     const std::string arguments = "big.obj small.obj " + rule;

@@ -235,7 +235,7 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes a dozen faces over a few vertices, whose normals cancel more or less; sometimes some are quads.
+/// Makes a dozen faces over a few vertices, whose normals cancel more or less. Sometimes some of the faces are quads.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;

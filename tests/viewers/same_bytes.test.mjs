@@ -32,7 +32,7 @@ function both(args) {
   return { expected, found };
 }
 
-// Checks that both have the same results. Returns the number of written files.
+// Checks that both programs have the same results. Returns the number of written files.
 function assertSame(args) {
   const { expected, found } = both(args), what = args.join(' ');
   assert.equal(found.status, expected.status, `${what}\n${found.stderr}`);

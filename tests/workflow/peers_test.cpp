@@ -239,7 +239,7 @@ Motion moving_by_turns() {
 
 TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
   const Motion motion = moving_by_turns();
-  // These rules are computed in blocks, and vertex by vertex.
+  // Both rules are computed in blocks, and vertex by vertex.
   for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
     AuditOptions options;
     options.rule = rule;

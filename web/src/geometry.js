@@ -159,7 +159,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
       const size = Math.sqrt(normals[at] ** 2 + normals[at + 1] ** 2 + normals[at + 2] ** 2), scale = sides[f] / size;
       if (size === 0) continue;
       const zx = scale * normals[at], zy = scale * normals[at + 1], zz = scale * normals[at + 2];
-      // These are the mean angle of the edges to z, and the direction in which the reference edge leaves the vertex.
+      // The next lines compute the mean angle of the edges to z, and the direction in which the reference edge leaves
+      // the vertex.
       let angles = 0, count = 0, xx = 0, xy = 0, xz = 0;
       for (let i = first[f]; i < first[f + 1]; ++i) {
         const a = 3 * edges[2 * i], b = 3 * edges[2 * i + 1], ex = p[b] - p[a], ey = p[b + 1] - p[a + 1], ez = p[b + 2] - p[a + 2];

@@ -53,8 +53,7 @@ void main() {
   bool hasNone = dot(vNormal, vNormal) < 1e-8;
   bool isJudged = vDegrees > -0.5;
   vec3 n = hasNone ? face : normalize(vNormal);
-  // The back of a face gets the opposite normal. Near silhouettes, where the face is seen almost from its edge, the
-  // normal stays like that of the visible neighbours.
+  // The back of a face has the opposite normal; not where it is seen from its edge, as behind silhouettes: there it is as beside it.
   if (!gl_FrontFacing && !hasNone && abs(dot(face, eye)) > 0.3) n = -n;
   if (mode == ${ERROR}) {
     float depth = 0.72 + 0.28 * max(dot(face, eye), 0.0);

@@ -57,9 +57,9 @@ struct BakeOptions {
   /// The size of the document, which decides whether a result is too large if neither a tolerance nor a limit is given;
   /// 0 means that no size is too large.
   std::size_t bytes_of_file = 0;
-  /// The weighting of the true normals. Weightings other than area are fitted, with a stated error. By default, for
-  /// each mesh the weighting that its stored base normals clearly follow (as in an audit), or else area; always area
-  /// with recompute_base.
+  /// The weighting of the true normals. Weightings other than area are fitted, with a stated error. By default, each
+  /// mesh has the weighting that its stored base normals clearly follow (as in an audit), or else area. With
+  /// recompute_base, the default is always area.
   std::optional<Weighting> weighting = {};
   bool smooth = false;        ///< gives normals to primitives without NORMAL, which otherwise stay flat
   double crease_angle = 180;  ///< degrees; hard edges of smoothed primitives and of sequences
@@ -142,7 +142,7 @@ struct BakedCandidate {
   /// The errors of each named viewer. Empty if "as it is" was the only candidate, and for the numbers of "quadratics"
   /// that were tried for all vertices at once.
   std::vector<ViewerChange> viewers;
-  bool within = false;  ///< its worst error is within the tolerance, and its size within the limits
+  bool within = false;  ///< the worst error is within the tolerance, and the size within the limits
   bool chosen = false;
   bool animations_only = false;  ///< its deltas are fitted to the animations, and have no meaning alone
   bool skinned = false;          ///< a skin does more than rotate and scale uniformly, so `played` depends on it
@@ -189,7 +189,7 @@ struct BakedMesh {
   double resampling_error = 0;  ///< degrees, from cutting cubic splines and leaving out pairs, along the animations
   /// KHR_animation_pointer drives a single weight, so only exact adds correction targets.
   bool has_lone_weight = false;
-  /// Nothing was changed; `candidates` has the evaluation of the present normals by smallest.
+  /// The bake changed nothing; `candidates` has the evaluation of the present normals by smallest.
   bool already_baked = false;
   std::vector<ViewerChange> viewers;       ///< except for exact: the errors of each named viewer, if the mesh changed
   std::vector<BakedCandidate> candidates;  ///< for smallest: the candidates that were evaluated

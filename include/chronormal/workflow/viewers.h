@@ -160,8 +160,8 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 /// Returns the value that a viewer stores for the base normal N; (0, 0, 0) for zero.
 [[nodiscard]] Vec3f kept_normal(const Viewer& viewer, const Vec3f& normal) noexcept;
 
-/// Returns the value that a viewer stores for the delta D of a target. For each unit of weight it is added to
-/// kept_normal().
+/// Returns the value that a viewer stores for the delta D of a target. For each unit of weight, this value is
+/// added to kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
 /// Returns the delta that a viewer keeps, as above, from a known result of kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,

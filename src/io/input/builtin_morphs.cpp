@@ -123,7 +123,7 @@ Motion twist() {
   return connected(grid.topology(), {column(0, 0), column(1, 2 * kPi / 3)});
 }
 
-// Turns a sphere inside out: every point passes the centre to the opposite side, rotating on the way.
+// Makes a sphere that turns inside out: every point moves past the centre to the opposite side, and rotates on the way.
 Motion eversion() {
   const Grid grid{100, 105, true};
   const auto sphere = [&grid](double time, double scale, double turn) {

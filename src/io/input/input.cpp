@@ -661,7 +661,7 @@ Result<Input> open_input(const InputOptions& asked) {
   if (!options.base.empty()) return keep(name_of_file(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
     std::vector<std::string> files = options.files;
-    (void)sort_listed(files);  // the order of find_frames()
+    (void)sort_listed(files);  // sorts like find_frames()
     return keep(name_of_files(files), read_several(options));
   }
 

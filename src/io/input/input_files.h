@@ -68,7 +68,7 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
 /// Gives the first and the last chosen keyframe their end_velocities, if vertices move on curves and the velocities
-/// depend on keyframes beyond these ends. If every N-th keyframe is chosen, the keyframes beyond are every N-th, too.
+/// depend on keyframes beyond these ends. If every N-th keyframe is chosen, the keyframes beyond are N apart, too.
 /// `times` are the times of all keyframes of the sequence, and read(k) returns the positions of keyframe k.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,

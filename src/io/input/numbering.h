@@ -32,7 +32,7 @@ struct FileTimes {
   /// Seconds, or frames from the first file on: 0, 1, 2, ... if the steps from one number to the next are even, or if
   /// numbers do not tell.
   std::vector<double> times;
-  std::optional<FileSeries> series;  ///< set if numbers tell
+  std::optional<FileSeries> series;  ///< set if numbers in the names determine the times
 };
 [[nodiscard]] FileTimes times_of_files(const std::vector<std::string>& files);
 

@@ -151,7 +151,7 @@ class BlendTerms::Term {
   Places first_;
   std::optional<Places> second_;
   bool is_linear_;
-  // In ascending order; computing these again for each of their elements would take too long.
+  // The large faces in ascending order. Computing their terms again for each of their elements would take too long.
   std::vector<std::uint32_t> large_faces_;
   std::vector<Rounded> of_large_faces_;
   std::vector<Rounded> of_all_faces_;       // empty if contributions are not kept

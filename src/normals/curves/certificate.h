@@ -80,8 +80,8 @@ inline constexpr double kDeterminantRounding = 0x1p-44;
 inline constexpr double kSmallestLength = 0x1p-400;      ///< squares of larger lengths stay in range
 inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< its square is far above the rounding of the proof
 
-/// Returns true if n(t) stays above that share at every t, so that double suffices. One determinant usually shows this:
-/// n(t) never leaves the plane of the three control normals, and is never nearer to zero than that plane.
+/// Returns true if n(t) stays above the share `certain` at every t, so that double suffices. One determinant usually
+/// shows this: n(t) never leaves the plane of the three control normals, and is never nearer to zero than that plane.
 [[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
   if (largest == 0) return true;

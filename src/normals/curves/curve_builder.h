@@ -30,8 +30,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// The same curves, bit for bit, built on one thread in slices, for MeshNormals::prepare(). The segment and the groups
-/// must outlive the object.
+/// A builder of the same curves, bit for bit, on one thread in slices, for MeshNormals::prepare(). The segment and the
+/// groups must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);

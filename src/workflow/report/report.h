@@ -68,8 +68,8 @@ struct ReportPart {
 };
 
 struct Report {
-  std::string input;  ///< its name without folders
-  Audit audit;        ///< for a glTF file, with all viewers
+  std::string input;  ///< name of the input without folders
+  Audit audit;        ///< errors of the input; for a glTF file, with all viewers
   std::optional<GltfBake> plan;
   std::string plan_message;                   ///< why a requested plan is missing
   std::optional<NamedComparison> comparison;  ///< errors of schemes, on vertices, unless the input is glTF

@@ -126,7 +126,7 @@ struct ModelPart {
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // These members are for motions other than glTF. Vectors are values; missing vectors are as in keyframe 0.
+  // The next members are for motions other than glTF. Vectors are values; missing vectors are as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;

@@ -193,7 +193,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The function must not answer "undecided" too often either.
+        // The function must not answer "undecided" without a root.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },

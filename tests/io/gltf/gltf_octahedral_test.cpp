@@ -86,7 +86,7 @@ TEST(GltfOctahedral, normals_of_16_bits_are_the_nearest_but_for_float) {
   EXPECT_LE(worst_rounding(kManyOf16Bits), 0.5 + 0.004);
 }
 
-// These constants are the results of npm meshoptimizer 1.3.0, computed in tests/viewers/filters.test.mjs.
+// The constants are the results of npm meshoptimizer 1.3.0, computed in tests/viewers/filters.test.mjs.
 TEST(GltfOctahedral, normals_are_bit_for_bit_those_of_browsers) {
   EXPECT_EQ(hash(decoded(kEveryOf8Bits)), 4083453700U);
   EXPECT_EQ(hash(decoded(kManyOf16Bits)), 995496109U);

@@ -36,7 +36,7 @@ constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
 constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;  // unit and size of coordinates near the origin, which have 22 bits
 
-// The same mesh at two places, in one segment: a closed surface, or a soup with collapses, slivers and planes.
+// A mesh at two places, in one segment: a closed surface, or a soup with collapses, slivers and planes.
 struct Twins {
   Motion near, far;
 };
@@ -268,7 +268,7 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
     twins.far.topology = twins.near.topology;
     twins.near.connect_as_sequence();
     twins.far.connect_as_sequence();
-    // These weightings are computed in blocks, and vertex by vertex.
+    // All weightings here are computed in blocks, and vertex by vertex.
     for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {
       AuditOptions options;
       options.weighting = weighting;

@@ -112,7 +112,7 @@ void Parser::parse_animation(const JsonView& item) {
   if (complaint_.first()) return;
   const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
   if (complaint_.first()) return;
-  // The same accessors give the same weights only with the same interpolation and number of targets.
+  // Equal accessors give the same weights only with the same interpolation and number of targets.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
     GltfTrack& track = animation.tracks[t];

@@ -113,7 +113,7 @@ HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t first, std::uint32_t elements,
                                    const UnitLimits& limits, const VectorView<float>& result) {
   const Doubles square = Dot(n, n);
-  // These comparisons are false for NaN.
+  // Both comparisons are false for NaN.
   const auto is_usual = hn::And(hn::Ge(square, hn::Set(kDoubles, limits.smallest_square)),
                                 hn::Le(square, hn::Set(kDoubles, limits.largest_square)));
   const Doubles most = hn::Mul(hn::Set(kDoubles, limits.largest_error * limits.largest_error), square);

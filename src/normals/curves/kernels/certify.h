@@ -20,9 +20,9 @@ struct TileCertificates {
   std::uint32_t known = 0;  ///< the others must be examined one by one: they are huge, tiny, or hardly more than noise
   std::uint32_t flagged = 0;             ///< the known elements for which float32 does not suffice
   std::uint32_t needs_exact = 0;         ///< the flagged elements for which double does not suffice at every t
-  Precision precision = Precision::k11;  ///< suffices for all known elements that are not flagged
+  Precision precision = Precision::k11;  ///< the precision of all known elements that are not flagged
 
-  /// Makes nothing known.
+  /// Forgets all knowledge about the elements.
   void clear() noexcept {
     known = flagged = needs_exact = 0;
     precision = Precision::k11;

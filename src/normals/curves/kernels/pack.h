@@ -37,9 +37,9 @@ struct PrecisionLimits {
 /// The result of the quick test of a tile.
 struct TileSummary {
   std::uint32_t uncertain = 0;           ///< bit i is set if element i must be examined in double
-  std::uint32_t moving = 0;              ///< bit i: its degree is 1 or 2
-  std::uint32_t bending = 0;             ///< bit i: its degree is 2
-  Precision precision = Precision::k11;  ///< suffices for all other elements
+  std::uint32_t moving = 0;              ///< bit i is set if element i has degree 1 or 2
+  std::uint32_t bending = 0;             ///< bit i is set if element i has degree 2
+  Precision precision = Precision::k11;  ///< a precision that suffices for all other elements
 
   void set_degree(std::size_t lane, int degree) noexcept {
     const std::uint32_t bit = 1u << lane;

@@ -14,7 +14,7 @@
 ///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
 ///     unit        in double, and rounded to float32 at the end    2^-24
 ///
-/// These errors are small enough if the error of n is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are
+/// Both errors are small enough if the error of n is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are
 /// *doubtful*, and left to the caller, which examines them one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_

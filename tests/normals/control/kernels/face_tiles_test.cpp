@@ -146,7 +146,7 @@ std::vector<Motion> motions_of_every_degree() {
   };
   std::vector<Motion> motions = {start};
   motions.push_back(moved([](float v, std::size_t) { return v; }));
-  // Not exactly a degree of one, because of rounding.
+  // The degree is not exactly one, because of rounding.
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
