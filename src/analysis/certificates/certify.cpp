@@ -109,8 +109,8 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
   }
 }
 
-// An arc that runs in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x). That is again a
-// quadratic, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
+// An arc that runs in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x). This normal is
+// again a quadratic, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
 struct Warp {
   double share;
 

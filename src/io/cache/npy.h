@@ -40,7 +40,7 @@ struct Array {
   }
   /// Returns the byte after the last element.
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
-  /// Return the element that is so many items after the first.
+  /// Return the element at index `item`.
   [[nodiscard]] double real(std::size_t item) const noexcept;           ///< kFloat
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< other kinds; 2^64 - 1 if negative
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger

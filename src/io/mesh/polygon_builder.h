@@ -13,7 +13,7 @@
 
 namespace chronormal::inline internal {
 
-/// Builds the faces. It keeps no offsets until the first face that is not a triangle: most meshes never need them.
+/// A builder of faces. It keeps no offsets until the first face that is not a triangle, since most meshes need none.
 class PolygonBuilder {
  public:
   static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();

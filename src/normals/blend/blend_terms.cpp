@@ -327,7 +327,7 @@ bool BlendTerms::Term::of_face(std::uint32_t face, Rounded& result) const {
 
 bool BlendTerms::Term::find_face(std::uint32_t face, Rounded& result) const {
   if (!of_all_faces_.empty()) {
-    const std::size_t place = face - std::size_t{first_face_};  // large if the face is before the first
+    const std::size_t place = face - std::size_t{first_face_};  // a large number if the face is before the first face
     const std::uint32_t n = place < face_places_.size() ? face_places_[place] : kNoPlace;
     if (n != kNoPlace) result = of_all_faces_[n];
     return n != kNoPlace;

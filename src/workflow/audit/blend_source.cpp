@@ -230,7 +230,7 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// Returns the weights of the placed moment and of the next ones in its segment.
+// Returns the weights of the placed moment and of the next moments in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
   // There may be a million samples, so the search starts near t_. Samples are evenly spaced, so no sample after t_ is

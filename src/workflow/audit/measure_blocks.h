@@ -35,7 +35,7 @@ struct SegmentsOfRun {
   [[nodiscard]] auto keys() const {
     return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
   }
-  /// Returns the segments that determine the facts about all of them.
+  /// Returns the segments that determine the facts about all segments.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
   /// Returns the segments to measure. Only a sequence, which is one subject, is divided between shards.
   [[nodiscard]] IndexRange rest() const noexcept {

@@ -1,4 +1,4 @@
-/// Writes morph targets over a base as a new GLB file: a mesh with a target each and their names. Private to io.
+/// Writes morph targets over a base as a new GLB file, whose mesh has these targets and their names. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
 #define CHRONORMAL_IO_GLTF_GLB_GLB_TARGETS_H_
 

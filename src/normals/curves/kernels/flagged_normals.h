@@ -60,7 +60,7 @@ inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 /// The unit normals of a tile.
 struct alignas(64) FlaggedUnits {
   float xyz[3 * kTile];     ///< (kTile, 3)
-  std::uint32_t uncertain;  ///< bit i: n(t) of element i is not certain
+  std::uint32_t uncertain;  ///< bit i is set if n(t) of element i is uncertain
 
   [[nodiscard]] Vec3f operator[](std::size_t lane) const noexcept {
     return {xyz[3 * lane], xyz[3 * lane + 1], xyz[3 * lane + 2]};
