@@ -115,7 +115,7 @@ TEST(Validate, refuses_segments_that_lead_nowhere) {
   expect_invalid(motion, "segment 0", "does not exist");
   motion = two_frames();
   motion.keyframes[1].time = 0;
-  expect_invalid(motion, "segment 0", "time");
+  expect_invalid(motion, "segment 0", "must be later");
   motion.segments.clear();
   expect_invalid(motion, "", "two keyframes");
 }

@@ -151,7 +151,9 @@ TEST(BakeUndriven, a_pose_for_a_target_that_is_not_there_is_refused_by_its_place
   BakeOptions options = smallest();
   for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
            {R"([{"smile": 1}, {"smlie": 1}])", "p.json, /1/smlie: no mesh has a target 'smlie'; did you mean 'smile'?"},
-           {"[[1, 2]]", "p.json, /0: 2 weights stand here, and no mesh has so many targets"}}) {
+           {"[[1, 2]]",
+            "p.json, /0: the pose has 2 weights, but no mesh has as many targets; give weights by the names of "
+            "targets"}}) {
     options.poses = parse_poses(text, "p.json").value();
     EXPECT_EQ(test::bake_document(builder, options).error, message);
   }

@@ -333,7 +333,7 @@ TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
   options.elements.kind = ElementKind::kVertices;
   EXPECT_TRUE(compare(motion, options).ok());
   options.certify = true;
-  EXPECT_NE(compare(motion, options).error().text().find("area-weighted"), std::string::npos);
+  EXPECT_NE(compare(motion, options).error().text().find("weighted by area"), std::string::npos);
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
