@@ -146,7 +146,7 @@ Status CommandRun::finish() {
 }
 
 std::vector<Option> RunArguments::options(const std::string& of_what) {
-  return {{"--shard I/N", &shard, of_what},
+  return {{"--shard I/N", &shard, of_what, {.rare = true}},
           {"--resume",
            &resume,
            "go on where an interrupted run of this command ended\nWhat is done is kept in OUT.journal. The result has "
