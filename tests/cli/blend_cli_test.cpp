@@ -160,7 +160,7 @@ TEST_F(BlendCli, wrong_usage_is_exit_2_and_says_what_to_do) {
   expect_misuse("sheet.glb --blend 10001", {"--blend", "1 to 10,000"});
   expect_misuse("sheet.glb --blend many", {"--blend"});
   expect_misuse("sheet.glb --blend -3", {"--blend"});
-  expect_misuse("base.obj smile.obj --blend 3", {"--blend", "sequence", "--base"});
+  expect_misuse("base.obj smile.obj --blend 3", {"--blend", "sequence", "only for blend shapes"});
   expect_misuse("--sample bend --blend 3", {"--blend", "sequence"});
   expect_misuse("--sample cloth --blend 3", {"--blend", "sequence"});
   expect_misuse("sheet.glb --active 1", {"--active", "--blend"});

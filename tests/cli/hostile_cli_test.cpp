@@ -236,7 +236,7 @@ TEST_F(HostileCli, messages_say_what_is_the_matter) {
   folder_.write("other.npz", test::zip({{"points.npy", "x"}, {"faces.npy", "y"}}));
   expect(run("inspect f.fbx"), 3, {".obj, ", ".glb", ".npz", ".md2", ".pc2", ".target.gz"});
   expect(run("inspect text.glb"), 3, {"text.glb, byte 0: this is not a glTF file"});
-  expect(run("inspect other.npz"), 3, {"positions: the file has no array of this name; only points, faces"});
+  expect(run("inspect other.npz"), 3, {"positions: the file has no array of this name, only points, faces"});
   const ProcessResult gltf = run("convert a.obj b.obj -o r.glb");
   expect(gltf, 2, {"r.glb: ", "bake"});
   EXPECT_EQ(gltf.err.find("%d"), std::string::npos);
