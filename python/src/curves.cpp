@@ -74,8 +74,8 @@ class Curves : public ZeroedObject {
                                    : normals.ndim() == 3 && normals.shape(0) == rows && normals.shape(1) == n &&
                                          normals.shape(2) == 3;
     if (!(fits))
-      refuse("normals", "the shape is " + shape_text(normals) + " and must be (" +
-                            (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) + ", 3)");
+      refuse("normals", "the shape must be (" + (times.is_one ? "" : std::to_string(rows) + ", ") + std::to_string(n) +
+                            ", 3), but is " + shape_text(normals));
     const std::size_t count = times.count() * size();
     std::vector<float> exact(3 * count), degrees(count);
     write(times, chosen.threads(), exact.data());
@@ -171,8 +171,8 @@ class Blend : public ZeroedObject {
     const auto k = static_cast<py::ssize_t>(targets_);
     const bool is_one = weights.ndim() == 1;
     if (!((is_one || weights.ndim() == 2) && weights.shape(weights.ndim() - 1) == k))
-      refuse("weights", "the shape is " + shape_text(weights) + " and must be (" + std::to_string(k) + ",) or (T, " +
-                            std::to_string(k) + ")");
+      refuse("weights", "the shape must be (" + std::to_string(k) + ",) or (T, " + std::to_string(k) + "), but is " +
+                            shape_text(weights));
     const ChosenThreads chosen(threads);
     const std::size_t rows = is_one ? 1 : static_cast<std::size_t>(weights.shape(0)), count = size();
     py::array result = result_array(out, is_one ? std::nullopt : std::optional(rows), count);
@@ -239,8 +239,8 @@ py::array result_array(const py::object& out, std::optional<std::size_t> rows, s
                                array.shape(1) == n && array.shape(2) == 3
                          : array.ndim() == 2 && array.shape(0) == n && array.shape(1) == 3;
   if (!fits) {
-    refuse("out", "the shape is " + shape_text(array) + " and must be (" + (rows ? std::to_string(*rows) + ", " : "") +
-                      std::to_string(n) + ", 3)");
+    refuse("out", "the shape must be (" + (rows ? std::to_string(*rows) + ", " : "") + std::to_string(n) +
+                      ", 3), but is " + shape_text(array));
   }
   require(array.writeable(), "out", "the array is read-only");
   return array;

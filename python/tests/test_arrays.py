@@ -178,10 +178,10 @@ class CurvesTest(unittest.TestCase):
         for t, place in ((-1e-9, "t"), (1.5, "t"), (float("nan"), "t"), (float("inf"), "t"),
                          ([0, 0.5, 2], r"t\[2\]"), (np.array([np.nan]), r"t\[0\]")):
             for call in (self.curves.unit_normals, lambda t: self.curves.errors(t, np.zeros(np.shape(t) + (len(self.faces), 3)))):
-                with self.assertRaisesRegex(ValueError, f"^{place}: it must lie between 0 and 1"):
+                with self.assertRaisesRegex(ValueError, f"^{place}: the value must be from 0 to 1"):
                     call(t)
         blend = cn.blend(self.positions[0], [self.positions[1]], self.faces)
-        with self.assertRaisesRegex(ValueError, "weight 0 is not finite"):
+        with self.assertRaisesRegex(ValueError, "weight 0 is NaN or infinite"):
             blend.unit_normals([float("nan")])
 
     def test_a_tuple_of_two_faces_is_two_faces(self):

@@ -236,7 +236,7 @@ class ArgumentTest(unittest.TestCase):
                 with self.assertRaises(OSError):
                     cn.read(sample="twist", base=None) and cn.read([path], base=path)
         for wrong in ("a\0.obj", "\ud800.obj", ["a.obj", "\ud800.obj"]):
-            with self.assertRaisesRegex(ValueError, "source.*is no name of a file"):
+            with self.assertRaisesRegex(ValueError, "source.*cannot be the name of a file"):
                 cn.read(wrong)
 
     def test_arguments_that_are_none_are_refused_in_words(self):
@@ -249,15 +249,15 @@ class ArgumentTest(unittest.TestCase):
                 (lambda: curves.errors(huge, p0), ValueError, "t: it is too large"),
                 (lambda: cn.cut([p0, p1], faces, times=[0, huge]), ValueError, "times: the type is object"),
                 (lambda: cn.contain([p0, p1], faces, [[huge, 0, 0]]), ValueError, "points: the type is object"),
-                (lambda: cn.read(sample=5), TypeError, "sample: it must be a string, not int"),
-                (lambda: cn.read(sample=["twist"]), TypeError, "sample: it must be a string, not list"),
+                (lambda: cn.read(sample=5), TypeError, "sample: the value must be a string, not int"),
+                (lambda: cn.read(sample=["twist"]), TypeError, "sample: the value must be a string, not list"),
                 (lambda: cn.read(sample="\ud800"), ValueError, "sample: .* is no text"),
                 (lambda: cn.read("a.glb", animation="\udcff"), ValueError, "animation: .* is no text"),
-                (lambda: cn.read("a.glb", base=5), TypeError, "base: it must be the name of a file, not int"),
-                (lambda: cn.read(5), TypeError, "source: it must be files, bytes or a Motion, not int"),
-                (lambda: cn.read(["a.obj", 5]), TypeError, r"source\[1\]: it must be the name of a file, not int"),
+                (lambda: cn.read("a.glb", base=5), TypeError, "base: the value must be the name of a file, not int"),
+                (lambda: cn.read(5), TypeError, "source: the value must be files, bytes or a Motion, not int"),
+                (lambda: cn.read(["a.obj", 5]), TypeError, r"source\[1\]: the value must be the name of a file, not int"),
                 (lambda: cn.read(sample="twist", fps=huge), ValueError, "fps: it is too large"),
-                (lambda: cn.read(sample="twist", fps=[1]), TypeError, "fps: it must be a number, not list")):
+                (lambda: cn.read(sample="twist", fps=[1]), TypeError, "fps: the value must be a number, not list")):
             with self.subTest(words=words), self.assertRaisesRegex(kind, words):
                 call()
 
