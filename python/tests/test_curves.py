@@ -206,11 +206,11 @@ class ErrorsTest(unittest.TestCase):
         float32 = np.float32
         for call, words in (
                 (lambda: cn.curves(p0[:5], p1, faces), "face 0, corner 2|face 2|keyframe"),
-                (lambda: cn.curves(p0, p1[:5], faces), "keyframe 1: there are 5 positions for 12 vertices"),
+                (lambda: cn.curves(p0, p1[:5], faces), "keyframe 1: the keyframe has 5 positions, but the mesh has 12 vertices"),
                 (lambda: cn.curves(p0[:, :2], p1, faces), r"p0: the shape must be \(n, 3\), but is \(12, 2\)"),
                 (lambda: cn.curves(p0.astype(complex), p1, faces), "p0: the type is complex128"),
                 (lambda: cn.curves(infinite, p1, faces), "keyframe 0, vertex 7: the position is NaN or infinite"),
-                (lambda: cn.curves(p0, p1, [[0, 1, 99]]), "face 0, corner 2: the corner names vertex 99"),
+                (lambda: cn.curves(p0, p1, [[0, 1, 99]]), "face 0, corner 2: the corner refers to vertex 99"),
                 (lambda: cn.curves(p0, p1, [[0, 1, -2]]), r"faces\[0, 2\]: -2 cannot be an index"),
                 (lambda: cn.curves(p0, p1, [[0, 1, 2 ** 40]]), r"faces\[0, 2\]: 1099511627776 cannot be an index"),
                 (lambda: cn.curves(p0, p1, [[0, 1]]), r"faces: the shape is \(1, 2\)"),
@@ -233,7 +233,7 @@ class ErrorsTest(unittest.TestCase):
                 (lambda: curves.unit_normals(0.5, out=[1, 2]), "out: out must be a C-cont"),
                 (lambda: curves.unit_normals(0.5, out=np.zeros((11, 3), float32)), r"out: the shape must be .*but is \(11, 3\)"),
                 (lambda: curves.unit_normals([0.5], out=np.zeros((12, 3), float32)), r"must be \(1, 12, 3\)"),
-                (lambda: curves.unit_normals(0.5, out=read_only), "out: it is read-only"),
+                (lambda: curves.unit_normals(0.5, out=read_only), "out: the array is read-only"),
                 (lambda: curves.errors(0.5, p0[:3]), r"normals: the shape must be \(12, 3\), but is \(3, 3\)")):
             with self.assertRaisesRegex(ValueError, words):
                 call()
