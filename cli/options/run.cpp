@@ -68,7 +68,7 @@ std::string quoted_value(const Json& run, const std::string& name) {
 
 // Returns the first difference between two runs in words, or an empty text if there is none.
 std::string difference(const Json& old, const Json& now) {
-  if (!old.is_object()) return "it does not describe a run";
+  if (!old.is_object()) return "its first line is damaged";
   std::vector<std::string> names;
   for (const auto& item : now.items()) names.push_back(item.key());
   for (const auto& item : old.items()) names.push_back(item.key());
