@@ -20,6 +20,7 @@
 #include "io/bytes/expansion.h"
 #include "io/system/names.h"
 #include "io/system/process.h"
+#include "workflow/audit/watched_audit.h"
 
 namespace chronormal::cli {
 namespace {
@@ -170,12 +171,13 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   if (!after) return after.error();
   AuditOptions audited_after = audited;
   audited_after.author = how.recompute_base ? nullptr : author;
-  Result<Audit> first = audit_before(audited), second = audit(after.value(), audited_after);
+  KnownAuthors known;
+  Result<Audit> first = audit_before(audited, known), second = audit(after.value(), audited_after, known);
   constexpr std::size_t kSamplesToCompare = 81;
   if (first && second && is_worse(second.value().error, first.value().error)) {
     audited.samples = kSamplesToCompare;
     audited.viewers.clear();
-    const Result<Audit> closer = audit_before(audited);
+    const Result<Audit> closer = audit_before(audited, known);
     if (closer) first.value().error.worst = std::max(first.value().error.worst, closer.value().error.worst);
   }
   if (!first && first.error().code == ErrorCode::kFailed) return first.error();
@@ -237,8 +239,9 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   if (const Status written = edit.write(output, options.common.force); !written) return written.error();
   warn(warnings);
   if (baked.value().changed && input.file_size() <= kMostAudited) {
-    auto audited =
-        audit_both(how, options, &document, [&](const AuditOptions& asked) { return audit(document, asked); });
+    auto audited = audit_both(how, options, &document, [&](const AuditOptions& asked, KnownAuthors& known) {
+      return audit(document, asked, known);
+    });
     if (!audited) return audited.error();
     told.audit = std::move(audited).value();
   }
@@ -318,7 +321,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   // An audit judges the triangles of a file. If the input has larger polygons, results would differ.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
-    auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked) -> Result<Audit> {
+    auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked, KnownAuthors&) -> Result<Audit> {
       asked.rule = AuditRule::kNlerp;
       if (!stored.has_more) return audit(stream, stored, asked);
       if (!whole) {

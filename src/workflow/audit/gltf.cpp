@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -101,8 +102,8 @@ void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, Auth
 }
 
 // Records the angles between base normals and the geometry, if there are base normals.
-void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::optional<Weighting> asked, Audit& result) {
-  const AuthoredWeighting authored = find_authored_weighting(shading);
+void note_offset(const GltfShading& shading, const AuthorTruth& truth, const AuthoredWeighting& authored,
+                 std::optional<Weighting> asked, Audit& result) {
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
                                       [](std::uint32_t e) { return e != GltfShading::kNoElement; });
   AuthoredOffset offset = authored_offset(authored, truth.rule().weighting);
@@ -115,14 +116,22 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, std::opti
   result.offsets.push_back(offset);
 }
 
-// Reads the mesh as it was before the bake. Returns nothing if the original is not known.
-Result<std::optional<GltfShading>> shading_of_author(const AuditOptions& options, const GltfShading& baked) {
-  if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return std::optional<GltfShading>();
-  Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});
-  if (!read) return read.error();
-  const bool is_same = read.value().set.base == baked.set.base && !read.value().mark &&
-                       read.value().set.targets.size() <= baked.set.targets.size();
-  return is_same ? std::optional(std::move(read).value()) : std::nullopt;
+// Finds the mesh as it was before the bake, from an earlier audit if that audit had the same normals. Returns nothing
+// if the original is not known.
+Result<std::shared_ptr<AuthorOfMesh>> original_of(const AuditOptions& options, const GltfShading& baked,
+                                                  const KnownAuthors* known) {
+  std::shared_ptr<AuthorOfMesh> author;
+  if (options.author == nullptr || baked.mesh >= options.author->meshes().size()) return author;
+  if (known != nullptr && known->contains(baked.mesh)) author = known->at(baked.mesh);
+  if (author == nullptr || author->shading.normals != baked.normals) {
+    Result<GltfShading> read = read_gltf_shading(*options.author, baked.mesh, {.weld = options.weld});
+    if (!read) return read.error();
+    author = std::make_shared<AuthorOfMesh>(std::move(read).value(), options.weighting);
+  }
+  const GltfShading& before = author->shading;
+  const bool is_same =
+      before.set.base == baked.set.base && !before.mark && before.set.targets.size() <= baked.set.targets.size();
+  return is_same ? author : nullptr;
 }
 
 // The targets that take part in a motion, in ascending order.
@@ -540,8 +549,12 @@ Result<Audit> audit(const GltfDocument& document, const AuditOptions& options) {
   return watched_audit(document, options, {});
 }
 
+Result<Audit> internal::audit(const GltfDocument& document, const AuditOptions& options, KnownAuthors& known) {
+  return watched_audit(document, options, {}, &known);
+}
+
 Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditOptions& options,
-                                      const AuditWatch& watch) {
+                                      const AuditWatch& watch, KnownAuthors* known) {
   if (const Status status = check_samples(options); !status) return status.error();
   if (!(options.weights[0] < options.weights[1] && std::isfinite(options.weights[1] - options.weights[0])))
     return Error{ErrorCode::kUsage, "", "the second weight must be larger than the first, such as 0:1"};
@@ -571,16 +584,23 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;
     Result<GltfShading> read = read_gltf_shading(document, m, {.weld = options.weld});
     if (!read) return read.error();
-    GltfShading& shading = read.value();
-    Result<std::optional<GltfShading>> original = shading_of_author(options, shading);
+    Result<std::shared_ptr<AuthorOfMesh>> original = original_of(options, read.value(), known);
     if (!original) return original.error();
-    GltfShading& of_author = original.value() ? *original.value() : shading;
-    const AuthorTruth truth = author_truth(of_author, options.weighting);
-    if (original.value()) {
-      shading.groups = of_author.groups;
-      shading.element_of_vertex = of_author.element_of_vertex;
+    std::shared_ptr<AuthorOfMesh> author = original.value();
+    const bool is_baked = author != nullptr;
+    if (!is_baked) {
+      author = std::make_shared<AuthorOfMesh>(std::move(read).value(), options.weighting);
+      if (known != nullptr && options.author == nullptr) (*known)[m] = author;
     }
-    note_offset(shading, truth, options.weighting, result);
+    GltfShading& shading = is_baked ? read.value() : author->shading;
+    const AuthorTruth& truth = author->truth;
+    if (is_baked) {
+      shading.groups = author->shading.groups;
+      shading.element_of_vertex = author->shading.element_of_vertex;
+    }
+    const bool is_known = shading.normals == author->shading.normals;
+    note_offset(shading, truth, is_known ? author->weighting : find_authored_weighting(shading), options.weighting,
+                result);
     if (truth.rule().weighting == Weighting::kArea) shading.groups.forget_corners();
     for (const AuditFinding& note : notes_of(document, shading)) result.findings.push_back(note);
     for (const AuditFinding& note : notes_of_truth(shading, truth)) result.findings.push_back(note);

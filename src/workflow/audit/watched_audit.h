@@ -5,7 +5,11 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <memory>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "chronormal/core/result.h"
@@ -16,6 +20,9 @@
 #include "chronormal/workflow/audit.h"
 #include "workflow/audit/judged_part.h"
 #include "workflow/segments/segment_run.h"
+#include "workflow/shading/authored_weighting.h"
+#include "workflow/shading/gltf_shading.h"
+#include "workflow/truth/author_truth.h"
 
 namespace chronormal::inline internal {
 
@@ -56,10 +63,27 @@ struct AuditSample {
 
 using AuditWatch = std::function<void(const AuditSample&)>;
 
+/// A mesh as its author left it, with the truth of it. It must not be moved.
+struct AuthorOfMesh {
+  AuthorOfMesh(GltfShading read, std::optional<Weighting> asked)
+      : shading(std::move(read)), truth(author_truth(shading, asked)), weighting(find_authored_weighting(shading)) {}
+
+  GltfShading shading;
+  AuthorTruth truth;
+  AuthoredWeighting weighting;  ///< of the base normals
+};
+
+/// The meshes of an audited file, by their indices.
+using KnownAuthors = std::map<std::size_t, std::shared_ptr<AuthorOfMesh>>;
+
+/// Audits a file and keeps what is known of its author or, if options.author is that file, uses it. Both audits must
+/// have the same weighting and weld the same points.
+[[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options, KnownAuthors& known);
+
 /// Run the audits of workflow/audit.h and report each sample, subject after subject. Tracks with the same keys are
 /// reported once, as the first of their subjects. If the watch is empty, nothing is reported.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
-                                          const AuditWatch& watch);
+                                          const AuditWatch& watch, KnownAuthors* known = nullptr);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 

@@ -106,6 +106,26 @@ float CompareNormals(const std::array<const float*, 3>& rendered, const std::arr
   return std::sqrt(*std::max_element(lanes, lanes + kLanes));
 }
 
+float LargestOpenness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b, std::size_t count) {
+  const Floats zero = hn::Zero(kFloats), one = hn::Set(kFloats, 1.0F), two = hn::Set(kFloats, 2.0F);
+  Floats largest = zero;
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const auto load = [i](const std::array<const float*, 3>& planes) HWY_ATTR {
+      return Lanes3{hn::LoadU(kFloats, planes[0] + i), hn::LoadU(kFloats, planes[1] + i),
+                    hn::LoadU(kFloats, planes[2] + i)};
+    };
+    const Lanes3 u = load(a), v = load(b), aside = Cross(u, v);
+    const Floats across = Dot(aside, aside), along = Dot(u, v), both = hn::Add(across, hn::Mul(along, along));
+    const auto any = hn::Gt(both, zero);
+    const Floats square = hn::IfThenElseZero(any, hn::Div(across, hn::IfThenElse(any, both, one)));
+    const Floats open = hn::IfThenElse(hn::Lt(along, zero), hn::Sub(two, square), square);
+    largest = hn::IfThenElse(hn::Gt(open, largest), open, largest);
+  }
+  float lanes[kLanes];
+  hn::StoreU(largest, kFloats, lanes);
+  return *std::max_element(lanes, lanes + kLanes);
+}
+
 }  // namespace chronormal::inline internal::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -114,6 +134,7 @@ namespace chronormal::inline internal {
 
 HWY_EXPORT(AddWeighted);
 HWY_EXPORT(CompareNormals);
+HWY_EXPORT(LargestOpenness);
 
 void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, float* sums, std::size_t stride) noexcept {
   assert(stride % kPosePadding == 0);
@@ -123,6 +144,12 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
 float compare_normals(const std::array<const float*, 3>& rendered, const std::array<const float*, 3>& right,
                       std::span<float> degrees, const std::array<float*, 3>& errors) noexcept {
   return HWY_DYNAMIC_DISPATCH(CompareNormals)(rendered, right, degrees, errors);
+}
+
+float largest_openness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b,
+                       std::size_t count) noexcept {
+  assert(count % kPosePadding == 0);
+  return HWY_DYNAMIC_DISPATCH(LargestOpenness)(a, b, count);
 }
 
 }  // namespace chronormal::inline internal

@@ -40,6 +40,11 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
                                     const std::array<const float*, 3>& right, std::span<float> degrees,
                                     const std::array<float*, 3>& errors) noexcept;
 
+/// Returns the largest openness of pairs of vectors, given as planes: the squared sine of their angle up to a right
+/// angle, and 2 minus it beyond; 0 if one vector is zero. All planes have a multiple of kPosePadding finite floats.
+[[nodiscard]] float largest_openness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b,
+                                     std::size_t count) noexcept;
+
 }  // namespace chronormal::inline internal
 
 #endif  // CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_

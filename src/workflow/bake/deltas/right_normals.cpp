@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "analysis/quality/kernels/shown_angles.h"
+
 namespace chronormal::inline internal {
 namespace {
 
@@ -50,10 +52,29 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
   return to_double(Vec3f{n[0], n[1], n[2]});
 }
 
-Vec3d RightNormals::judged(std::uint32_t element, const Vec3d& normal) const noexcept {
-  const double of_base = base_lengths_[element], size = length(normal);
-  if (!(size > kLeastTerms * std::max(of_base, largest_[element]))) return {};
-  return (VertexTerms::has_base(of_base, largest_[element]) ? size / of_base : 1) * unit(normal);
+bool RightNormals::is_judged(std::uint32_t element, const Vec3d& normal) const noexcept {
+  const double least = kLeastTerms * std::max(base_lengths_[element], largest_[element]);
+  return max_abs(normal) > least || length(normal) > least;  // the first mostly tells
+}
+
+std::vector<Vec3d> RightNormals::normals_of(std::span<const double> pose,
+                                            std::span<const std::uint32_t> elements) const {
+  if (terms_.is_fitted()) return terms_.weighted_at(pose, elements);
+  std::vector<double> positions(shading_.set.base.size());
+  blend_positions(shading_.set, pose, positions);
+  std::vector<Vec3d> result(elements.size());
+  parallel_each(elements.size(), kRightBlock,
+                [&](std::size_t n) { result[n] = normal_from_positions(shading_, positions, elements[n]); });
+  return result;
+}
+
+std::vector<Vec3d> RightNormals::directions_of(std::span<const double> pose,
+                                               std::span<const std::uint32_t> elements) const {
+  std::vector<Vec3d> result = normals_of(pose, elements);
+  for (std::size_t n = 0; n < result.size(); ++n)
+    if (!is_judged(elements[n], result[n])) result[n] = {};
+  make_units(result);
+  return result;
 }
 
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const {
@@ -62,16 +83,16 @@ std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose) const
 
 std::vector<Vec3d> RightNormals::of_elements(std::span<const double> pose,
                                              std::span<const std::uint32_t> elements) const {
-  std::vector<Vec3d> result(elements.size());
-  if (terms_.is_fitted()) {
-    const std::vector<Vec3d> weighted = terms_.weighted_at(pose, elements);
-    parallel_each(elements.size(), kRightBlock, [&](std::size_t n) { result[n] = judged(elements[n], weighted[n]); });
-    return result;
-  }
-  std::vector<double> positions(shading_.set.base.size());
-  blend_positions(shading_.set, pose, positions);
-  parallel_each(elements.size(), kRightBlock, [&](std::size_t n) {
-    result[n] = judged(elements[n], normal_from_positions(shading_, positions, elements[n]));
+  std::vector<Vec3d> result = normals_of(pose, elements);
+  parallel_each(result.size(), kRightBlock, [&](std::size_t n) {
+    const std::uint32_t e = elements[n];
+    const double of_base = base_lengths_[e];
+    if (!is_judged(e, result[n])) {
+      result[n] = {};
+    } else {
+      const double size = VertexTerms::has_base(of_base, largest_[e]) ? length(result[n]) / of_base : 1;
+      result[n] = size * unit(result[n]);
+    }
   });
   return result;
 }

@@ -41,27 +41,32 @@ class RightNormals {
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
   /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: `right` has the unit normals of
-  /// the vertex in the poses from number `first` on, a multiple of 16. Different n are visited at once, the batches one after the other.
+  /// the vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
   /// Cost: for each pose all positions, and the normals of these vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
-    constexpr std::size_t kBytes = std::size_t{32} << 20, kSome = 16, kVertices = 64;
+    constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kTogether = 8, kVertices = 64;
     const Places places(shading_, vertices);
     const std::size_t elements = places.elements.size();
-    const std::size_t batch = kSome * std::max<std::size_t>(1, kBytes / (kSome * sizeof(Vec3d) * (elements + 1)));
+    const std::size_t batch = std::max(kFewest, kBytes / (sizeof(Vec3d) * (elements + 1)));
     std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
     for (std::size_t first = 0; first < poses.size(); first += batch) {
       const std::size_t count = std::min(batch, poses.size() - first);
-      parallel_for(count, [&](std::size_t p) {
-        const std::vector<Vec3d> of_pose = of_elements(std::span(poses[first + p]).first(targets()), places.elements);
-        for (std::size_t e = 0; e < elements; ++e) of_elements_in_poses[e * count + p] = of_pose[e];
+      // Some poses are written at once, so that they fill whole lines of memory.
+      parallel_blocks(count, std::min(batch, kTogether), [&](IndexRange some) {
+        std::vector<std::vector<Vec3d>> directions;
+        for (std::size_t p = some.first; p < some.end(); ++p)
+          directions.push_back(directions_of(std::span(poses[first + p]).first(targets()), places.elements));
+        for (std::size_t e = 0; e < elements; ++e)
+          for (std::size_t p = 0; p < some.count; ++p)
+            of_elements_in_poses[e * count + some.first + p] = directions[p][e];
       });
       parallel_blocks(vertices.size(), kVertices, [&](IndexRange range) {
         std::vector<Vec3f> right(count);
         for (std::size_t n = range.first; n < range.first + range.count; ++n) {
           const ShownTurn& turn = turns_[vertices[n]];
           const Vec3d* const of_element = of_elements_in_poses.data() + places.of_vertices[n] * count;
-          for (std::size_t p = 0; p < count; ++p) right[p] = to_float(turn(unit(of_element[p])));
+          for (std::size_t p = 0; p < count; ++p) right[p] = to_float(turn(of_element[p]));
           visit(n, first, std::span<const Vec3f>(right));
         }
       });
@@ -75,7 +80,13 @@ class RightNormals {
     std::vector<std::uint32_t> elements;
     std::vector<std::size_t> of_vertices;
   };
-  [[nodiscard]] Vec3d judged(std::uint32_t element, const Vec3d& normal) const noexcept;
+  // Returns n(w) of some elements.
+  [[nodiscard]] std::vector<Vec3d> normals_of(std::span<const double> pose,
+                                              std::span<const std::uint32_t> elements) const;
+  // Returns the unit vectors of of_elements().
+  [[nodiscard]] std::vector<Vec3d> directions_of(std::span<const double> pose,
+                                                 std::span<const std::uint32_t> elements) const;
+  [[nodiscard]] bool is_judged(std::uint32_t element, const Vec3d& normal) const noexcept;
 
   const GltfShading& shading_;
   const NormalTerms& terms_;

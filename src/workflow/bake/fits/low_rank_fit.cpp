@@ -9,6 +9,7 @@
 
 #include "analysis/fits/kernels/products.h"
 #include "analysis/fits/leading_vectors.h"
+#include "analysis/quality/kernels/blended_normals.h"
 #include "core/blocks.h"
 #include "core/cholesky.h"
 
@@ -228,14 +229,13 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   const StridedMatrix a{x.data(), basis.columns, 3, 1, basis.padded};
   const StridedMatrix b{basis.by_column.data(), basis.columns, basis.stride, basis.stride, 1};
   add_products(a, b, course.shown.data(), basis.stride);
-  const auto vector_at = [&](const std::vector<float>& planes, std::size_t n) {
-    return Vec3f{planes[n], planes[basis.stride + n], planes[2 * basis.stride + n]};
-  };
-  float worst = 0;
   for (std::size_t n = 0; n < basis.instants; ++n)
-    if (course.is_known[n] != 0)
-      worst = std::max(worst, openness(vector_at(course.shown, n), vector_at(course.right, n)));
-  return static_cast<float>(degrees_of(worst));
+    if (course.is_known[n] == 0)
+      for (std::size_t axis = 0; axis < 3; ++axis) course.right[axis * basis.stride + n] = 0;
+  const auto planes = [&](const std::vector<float>& of) {
+    return std::array<const float*, 3>{of.data(), of.data() + basis.stride, of.data() + 2 * basis.stride};
+  };
+  return static_cast<float>(degrees_of(largest_openness(planes(course.shown), planes(course.right), basis.stride)));
 }
 
 // Returns the places between nodes where the right normal of a point is much shorter than at the nodes around, and

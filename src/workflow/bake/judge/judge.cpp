@@ -44,7 +44,7 @@ class PoseWeights {
   explicit PoseWeights(std::span<const SeenPose> poses)
       : stride_(padded(poses.size())),
         active_(poses.empty() ? 0 : poses[0].weights.size()),
-        weights_(stride_ * active_.size()) {
+        weights_(stride_ * active_.size() + kPosePadding) {  // whole vectors are read from any pose on
     for (std::size_t p = 0; p < poses.size(); ++p) {
       for (std::size_t c = 0; c < active_.size(); ++c) {
         const auto weight = static_cast<float>(poses[p].weights[c]);
@@ -80,19 +80,17 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
 // Holds the sums of one vertex in many poses.
 class Sums {
  public:
-  // Adds up `count` poses from number `first` on, a multiple of kPosePadding.
-  void add_up(const Viewer& viewer, const Vec3f& normal, std::span<const VertexColumns::Entry> entries,
-              const PoseWeights& weights, std::size_t first, std::size_t count) {
-    const Vec3f base = kept_normal(viewer, normal);
+  // Adds up `count` poses from number `first` on. The normal and its deltas are as a viewer keeps them.
+  void add_up(const Vec3f& normal, std::span<const VertexColumns::Entry> entries, const PoseWeights& weights,
+              std::size_t first, std::size_t count) {
     terms_.clear();
     no_sums_.clear();
     const auto add = [&](std::uint32_t column, const Vec3f& delta) {
       const IndexRange& active = weights.active(column);
       const std::size_t begin = std::max(active.first, first), end = std::min(active.end(), first + count);
       if (begin >= end) return;
-      const Vec3f kept = kept_delta(viewer, normal, base, delta);
-      if (is_finite(to_double(kept)))
-        terms_.push_back({weights.of(column) + first, begin - first, end - first, kept});
+      if (is_finite(to_double(delta)))
+        terms_.push_back({weights.of(column) + first, begin - first, end - first, delta});
       else
         no_sums_.push_back({begin - first, end - begin});
     };
@@ -108,7 +106,7 @@ class Sums {
     }
     stride_ = padded(count);
     planes_.resize(3 * stride_);
-    add_weighted(base, terms_, planes_.data(), stride_);
+    add_weighted(normal, terms_, planes_.data(), stride_);
     for (const IndexRange& range : no_sums_)
       std::fill_n(planes_.data() + range.first, range.count, std::numeric_limits<float>::quiet_NaN());
   }
@@ -215,7 +213,7 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
     thread_local Sums sums;
     thread_local std::vector<float> degrees;
     thread_local std::vector<float> errors, planes;
-    sums.add_up(Viewer{}, to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
+    sums.add_up(to_float(rights_.stored(vertices_[n])), columns.of(n), weights, first, right.size());
     degrees.resize(right.size());
     errors.resize(3 * right.size());
     planes.resize(3 * right.size());
@@ -229,6 +227,17 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
 std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth, bool with_rounding) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
+  std::vector<std::pair<Viewer, VertexColumns>> of_viewers;  // as viewers keep them, if not as they are
+  const auto kept_by = [&](const Viewer& viewer) -> const VertexColumns& {
+    if (viewer.normals == NormalRule::kSum && !viewer.keeps_halves()) return columns;
+    auto found = std::find_if(of_viewers.begin(), of_viewers.end(),
+                              [&](const auto& of_other) { return shows_alike(of_other.first, viewer, false); });
+    if (found == of_viewers.end()) {
+      of_viewers.emplace_back(viewer, kept_columns(viewer, columns));
+      found = of_viewers.end() - 1;
+    }
+    return found->second;
+  };
   for (const KnownSet& known : sets_) {
     if (candidate.animations_only && known.set.kind != PoseKind::kFile) continue;
     const std::size_t count = known.set.poses.size();
@@ -242,13 +251,22 @@ std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth dept
       auto found = std::find_if(measured.begin(), measured.end(),
                                 [&](const auto& of_other) { return shows_alike(of_other.first, viewer, is_skinned); });
       if (found == measured.end()) {
-        measured.emplace_back(viewer, errors_of(known, viewer, columns, poses, step));
+        measured.emplace_back(viewer, errors_of(known, viewer, kept_by(viewer), poses, step));
         found = measured.end() - 1;
       }
       result[v][static_cast<std::size_t>(known.set.kind)].add(found->second);
     }
   }
   return result;
+}
+
+VertexColumns Judge::kept_columns(const Viewer& viewer, VertexColumns columns) const {
+  parallel_each(vertices_.size(), kMostOfBlock, [&](std::size_t n) {
+    const Vec3f normal = to_float(rights_.stored(vertices_[n])), kept = kept_normal(viewer, normal);
+    for (std::size_t k = columns.first[n]; k < columns.first[n + 1]; ++k)
+      columns.entries[k].delta = kept_delta(viewer, normal, kept, columns.entries[k].delta);
+  });
+  return columns;
 }
 
 JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
@@ -262,7 +280,8 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
     looked_at.push_back(all[p]);
     places.push_back(p);
   }
-  Differences differences{std::vector<float>(), std::vector<float>(count), 0};
+  Differences& differences = differences_;
+  differences.largest.resize(count);
   for (std::size_t first = 0; first < looked_at.size(); first += at_once) {
     const std::size_t poses = std::min(at_once, looked_at.size() - first);
     const std::span<const SeenPose> some = std::span(looked_at).subspan(first, poses);
@@ -270,7 +289,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
     const SkinsInPoses skins(some);
     differences.poses = poses;
     result.poses += poses;
-    differences.planes.resize(3 * count * poses);
+    if (differences.planes.size() < 3 * count * poses) differences.planes.resize(3 * count * poses);
     const auto measure_vertex = [&](std::size_t at, ErrorSpread& spread) {
       thread_local Sums sums;
       thread_local std::vector<float> degrees, right;
@@ -286,7 +305,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
         planes = planes_at(right.data(), poses);
       }
       degrees.resize(poses);
-      sums.add_up(viewer, to_float(rights_.stored(vertex)), columns.of(n), weights, 0, poses);
+      sums.add_up(kept_normal(viewer, to_float(rights_.stored(vertex))), columns.of(n), weights, 0, poses);
       if (skins.any()) {
         const SkinsInPoses::Vertex carrying(skins, vertex, 0, poses);
         sums.carry(carrying, viewer.skins, poses);

@@ -9,7 +9,7 @@
 ///
 /// Shapes     n = number of a vertex in the list of those that are judged
 /// Units      degrees
-/// Threads    on all cores; the same bits on any number of them.
+/// Threads    on all cores, one measurement after the other; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 
@@ -90,6 +90,7 @@ class Judge {
     std::size_t poses = 0;
   };
 
+  [[nodiscard]] VertexColumns kept_columns(const Viewer& viewer, VertexColumns columns) const;
   [[nodiscard]] JudgedErrors errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
                                        std::span<const SeenPose> poses, std::size_t step) const;
   [[nodiscard]] TearCounts tears_of(const KnownSet& known, const Differences& differences) const;
@@ -99,6 +100,7 @@ class Judge {
   std::span<const Viewer> viewers_;
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
+  mutable Differences differences_;  // memory of the last measurement, which the next one writes over
 };
 
 }  // namespace chronormal::inline internal
