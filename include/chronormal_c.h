@@ -28,7 +28,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
+#if defined(_WIN32) && defined(chronormal_c_EXPORTS)
+#define CHRONORMAL_API __declspec(dllexport)
+#elif defined(_WIN32)
 #define CHRONORMAL_API
 #else
 #define CHRONORMAL_API __attribute__((visibility("default")))

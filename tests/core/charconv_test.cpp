@@ -1,5 +1,5 @@
 // Tests conversions of numbers: <charconv> or its replacement must write the same text as the C library, and read the
-// same number back. This also runs under Node.js (wasm_bits), where the replacement is used.
+// same number back. This also runs under Node.js (cmake/bits.cmake), where the replacement is used.
 #include "core/charconv.h"
 
 #include <gtest/gtest.h>

@@ -83,8 +83,8 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// Checks a hash of results that must be the same on every machine and with every compiler; wasm_bits runs this in the
-// wasm module, too.
+// Checks a hash of results that must be the same on every machine and with every compiler; cmake/bits.cmake builds this
+// for other machines, too.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

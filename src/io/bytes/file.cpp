@@ -11,11 +11,12 @@ namespace chronormal {
 namespace {
 
 // Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure.
-bool read_all(int descriptor, bool waits, std::size_t most, std::string& bytes) {
-  constexpr std::size_t kFirstBlock = std::size_t{1} << 16;
+// `expected` is what the file has now.
+bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most, std::string& bytes) {
+  const std::size_t first_block = std::max(std::size_t{1} << 16, expected + 1);
   std::size_t size = 0;
   while (size <= most) {
-    if (size == bytes.size()) bytes.resize(std::min(size == 0 ? kFirstBlock : 2 * size, most + 1));
+    if (size == bytes.size()) bytes.resize(std::min(size == 0 ? first_block : 2 * size, most + 1));
     const std::optional<std::size_t> count = read_some(descriptor, std::span(bytes).subspan(size), waits);
     if (!count) return false;
     if (*count == 0) break;
@@ -66,7 +67,7 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
       return file;
     }
   }
-  if (!read_all(descriptor, !has_no_size, most_of_stream, file.owned_)) {
+  if (!read_all(descriptor, !has_no_size, status->is_file() ? status->size : 0, most_of_stream, file.owned_)) {
     if (has_no_size && errno == EAGAIN)
       return Error{ErrorCode::kFailed, place,
                    "this is a file of the system whose data may never end; name another file"};

@@ -1,0 +1,14 @@
+# `bits`: the tests of bits as a program for a machine of another kind, which has neither GoogleTest nor anything else. They
+# expect the same constants everywhere.
+set(gtest /usr/src/googletest/googletest)
+add_executable(bits EXCLUDE_FROM_ALL ${gtest}/src/gtest-all.cc ${gtest}/src/gtest_main.cc tests/core/charconv_test.cpp
+                    tests/core/portable_math_test.cpp tests/normals/curves/golden_bits_test.cpp)
+target_include_directories(bits PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/src)
+target_include_directories(bits SYSTEM PRIVATE ${gtest} ${gtest}/include)
+target_link_libraries(bits PRIVATE chronormal chronormal_flags)
+if(EMSCRIPTEN)
+  # Makes one file: this version of Emscripten would fetch a second one, which fails in Node.js since it has fetch().
+  target_link_options(bits PRIVATE -sSINGLE_FILE=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=4MB -sEXIT_RUNTIME=1)
+else()
+  target_link_options(bits PRIVATE -static)
+endif()
