@@ -142,7 +142,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "None chosen means right in the first four, and worse in none")
+        _hint(column, "With none chosen: right in the first four, no worse in the other two")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")

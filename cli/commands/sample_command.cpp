@@ -76,7 +76,7 @@ std::vector<std::vector<Option>> tables(SampleArguments& options) {
             "is npy",
             {.rare = true}}},
           options.run.options("write only share I of N equal shares of the times\nchronormal merge puts .npy shards "
-                              "together. Files .ply and .obj have the numbers that they would have without --shard"),
+                              "together. .ply and .obj files are numbered as they would be without --shard"),
           options.common.table(true)};
 }
 

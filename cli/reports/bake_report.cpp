@@ -398,9 +398,9 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   std::size_t fitted = 0;
   for (const BakedMesh& mesh : bake.meshes) fitted += mesh.fitted_elements;
   if (fitted > 0)
-    text += counted(fitted, "normal that several targets move at once was fitted",
-                    "normals that several targets move at once were fitted") +
-            " to the weights of the file\n";
+    text += "the deltas of " +
+            counted(fitted, "normal that several targets move at once", "normals that several targets move at once") +
+            " were fitted to the weights that the file uses\n";
   std::size_t tangents = 0;
   for (const BakedMesh& mesh : bake.meshes) tangents += mesh.new_tangents;
   if (tangents > 0)

@@ -33,7 +33,8 @@ InputOptions options_of(const py::dict& source) {
       if (name == kBytes) return view;
       return Error{
           ErrorCode::kFailed, name,
-          "the file refers to another file, which cannot be found from bytes; give the name of the file instead"};
+          "the input refers to this file, which cannot be found because the input was given as bytes; give the name of "
+          "the input file instead"};
     };
   }
   return options;
@@ -496,10 +497,11 @@ void add_files(py::module_& module) {
       .def("unit_normals", &ReadMotion::unit_normals, py::arg("times") = py::none(), py::arg("weights") = py::none(),
            py::arg("elements") = "vertices", py::arg("crease") = 180.0, py::arg("weighting") = "area",
            py::arg("weld") = true, py::arg("scheme") = "",
-           R"(Return the unit normals at chosen moments: (T, n, 3) float32, the bits of `chronormal sample`.
+           R"(Return the unit normals at chosen moments: (T, n, 3) float32, bit for bit as `chronormal sample`
+writes them.
 
 times    (T,) seconds of a sequence or an animation
-weights  (T, K) of K targets
+weights  (T, K) weights of K targets
 scheme   a name of schemes(), which interpolates between the exact normals at keyframes; "": exact at every time
 A mesh that does not move takes neither.)")
       .def("__repr__", &ReadMotion::text);

@@ -25,7 +25,7 @@ inline constexpr double kFloatUnitRoundoff = 0x1p-24;
   return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z);
 }
 
-/// Returns v, or zero if no component is above an error that all of them share.
+/// Returns v, or zero if the absolute value of no component is larger than `error`.
 [[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, double error) noexcept {
   return max_abs(v) > error ? v : Vec3d{};
 }

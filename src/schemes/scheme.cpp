@@ -18,7 +18,9 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"linear", "straight line between the unit end normals"},
     SchemeDescription{"quadratic", "parabola through 3 exact unit normals"},
     SchemeDescription{"cubic", "cubic through 4 exact unit normals"},
-    SchemeDescription{"lagrange:K", "degree K through K + 1 exact normals, K = 1 to 64 (float32 limits it from 16 on)"},
+    SchemeDescription{"lagrange:K",
+                      "polynomial of degree K through K + 1 exact unit normals, K = 1 to 64 (from about "
+                      "K = 16 on, float32 limits the accuracy)"},
     SchemeDescription{"linear:scaled", "straight line, with the length of one end chosen to err least"},
     SchemeDescription{"slerp", "shortest arc between the end normals"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},

@@ -152,8 +152,10 @@ TEST_F(BakeCli, a_baked_file_is_copied_as_it_is) {
 TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   const ProcessResult baked = run("moving.glb -o out.glb --encode endpoint");
   EXPECT_EQ(baked.exit_code, 0) << baked.err;
-  expect_words(baked.out, {"hills  endpoint", "0 targets and ",
-                           "24 normals that several targets move at once were fitted to the weights of the file\n"});
+  expect_words(
+      baked.out,
+      {"hills  endpoint", "0 targets and ",
+       "the deltas of 24 normals that several targets move at once were fitted to the weights that the file uses\n"});
   EXPECT_EQ(Json::parse(run("moving.glb -o json.glb --encode endpoint --json").out)["meshes"][0]["fitted_normals"], 24);
   const auto audit = [&](const std::string& name) {
     return run_shell(std::string(kProgram) + " audit " + name, folder_.path()).out;

@@ -162,7 +162,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
-  // The program finds its files in its own folder /work (js/src/task.js), and its outputs in /work/out.
+  // The program reads its inputs from its own folder /work (js/src/task.js) and writes its outputs to /work/out.
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
   }

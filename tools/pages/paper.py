@@ -507,7 +507,8 @@ def measure_slips(page):
     singular = np.mean(np.abs(dot(whole.exact(0), whole.corners[0][:, 0]) - 1) < 1e-6)
     page.says(f"to {scientific(from_library['right'])} degrees on 2,000 faces of twist", f"its determinant is {determinant:.0f}",
               f"is {ratio(sums['literal'] / linear)} instead of {ratio(sums['right'] / linear)}", f"misses n1 by {at_end:.1f} degrees on average",
-              f"with {ratio(sums['turned'] / linear)}", f"({scientific(from_library['point'])} degrees apart at most on 2,000 faces of bend)",
+              f"but a wrong one: the sum relative to linear is {ratio(sums['turned'] / linear)}",
+              f"({scientific(from_library['point'])} degrees apart at most on 2,000 faces of bend)",
               f"for {percent(singular)} of the faces")
     half = np.linalg.norm(twist.normals(0.5), axis=1)[0]
     a, b, c = (np.linalg.norm(0.7 * (bend.corners[0][:, i] - bend.corners[0][:, j]) + 0.3 * (bend.corners[1][:, i] - bend.corners[1][:, j]), axis=1)

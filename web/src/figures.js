@@ -235,15 +235,15 @@ export function graphFigure(figure, title, unitName, lines, sample, inks) {
 }
 
 /** Draws Figure 2: the lengths of interpolated normals before they are made unit vectors. The length of the exact
- * normal, twice the area, is a share of its maximum. */
+ * normal, twice the area, is a share of its maximum, also for schemes that compute this normal. */
 export function lengthFigure(figure, { sample, shown, inks }) {
   const most = Math.max(...figure.lengths) || 1;
   const lines = figure.schemes.filter(({ scheme, lengths }) => shown.has(scheme) && lengths).map(({ scheme, lengths }) => {
-    const { colour, dashes } = lookOf(scheme, inks.isDark);
-    return { name: scheme, values: lengths, colour, dashes, width: 1.7 };
+    const { colour, dashes } = lookOf(scheme, inks.isDark), unit = scheme === 'polynomial' || scheme === 'recompute' ? most : 1;
+    return { name: scheme, values: lengths.map((l) => l / unit), colour, dashes, width: 1.7 };
   });
   lines.unshift({ name: 'exact', values: figure.lengths.map((l) => l / most), colour: inks.ink, width: 2.2 });
-  return graphFigure(figure, 'length before it is made 1 (thick: the area)', '', lines, sample, inks);
+  return graphFigure(figure, 'length before normalisation (thick: exact, scaled)', '', lines, sample, inks);
 }
 
 /** Draws the angle between the normals of each scheme and the exact normals. */

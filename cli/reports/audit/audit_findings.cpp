@@ -88,7 +88,7 @@ std::string group_words(const Audited& input, const Group& group) {
     case Kind::kMissingNormals:
       return formatted("{} {} positions without normals{}; {}", who, is_one ? "moves" : "move",
                        is_one ? " (" + counted(found.count, "primitive", "primitives") + ")" : "",
-                       found.is_fault() ? "errors of up to " + worst + " degrees" : "but no normal has to turn");
+                       found.is_fault() ? "errors of up to " + worst + " degrees" : "no normal has to turn");
     case Kind::kWrongAtKeys:
       return formatted("{}: {} have errors of up to {} degrees at {}", who,
                        input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals", worst,

@@ -17,7 +17,7 @@ constexpr std::endian kMayaOrder = std::endian::big;
 struct Chunk {
   std::string_view tag;
   std::size_t begin = 0, end = 0;  // range of the content
-  std::size_t next = 0;            // byte of the chunk that follows
+  std::size_t next = 0;            // offset of the next chunk
 };
 
 class ChunkReader {

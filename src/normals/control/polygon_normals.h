@@ -46,7 +46,9 @@ struct BoundedNormals {
 };
 
 struct PolygonNormals : BoundedNormals {  ///< the normals, as face_control_normals() writes them
-  double magnitude = 0;  ///< the largest sum of absolute products of any component, of both products in m
+  /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, those of both cross products are
+  /// added.
+  double magnitude = 0;
 };
 
 /// Returns the control normals of a polygon. face has its vertices.

@@ -57,7 +57,8 @@ class ControlNormalsSum {
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {
-  // Each face is within 2^-26 of its length, and the additions round far less.
+  // The error of each control normal of a face is at most 2^-26 (kLargestRounding) of its largest component, and the
+  // additions round far less.
   constexpr double kOfFace = kLargestRounding + 0x1p-40, kMostCancelled = 4;
   ControlNormalsSum sum;
   std::array<double, 3> sizes{};

@@ -169,7 +169,7 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
        {"largest_error", "largest possible error of a mean normal, in its own units",
         *std::max_element(rows.error.begin(), rows.error.end())},
        {"mean_ends_off", "degrees, average error of the normal half way between both ends", mean_off(rows)},
-       {"largest_ends_off", "degrees, largest error of it", rows.largest_off}},
+       {"largest_ends_off", "degrees, largest error of the normal half way between both ends", rows.largest_off}},
       {}};
   answer.tables.push_back(std::move(rows).table(
       "", "mean normals while the shutter is open, and those half way between the ends", elements.kind, true));

@@ -26,7 +26,9 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-constexpr double kLargestStepError = 1e-7;  // error of a local t; there are at most a million steps
+// A local t counts as a step if it is this near to one. The command line allows at most a million steps, so steps are
+// 1e-6 apart or more.
+constexpr double kLargestStepError = 1e-7;
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }

@@ -183,7 +183,7 @@ TEST(BakeKeys, collapses_are_left_out_and_counted) {
   const Keys keys = keys_of(motion, 0.5);
   EXPECT_EQ(keys.report.keys->beyond, 3U) << "three vertices in one segment";
   ASSERT_FALSE(keys.report.warnings.empty());
-  EXPECT_NE(keys.report.warnings.front().find("3 times a normal vanishes or turns too fast"), std::string::npos);
+  EXPECT_NE(keys.report.warnings.front().find("in 3 cases, a normal vanishes or turns too fast"), std::string::npos);
 }
 
 TEST(BakeKeys, other_weights_and_no_tolerance_at_all_are_refused) {

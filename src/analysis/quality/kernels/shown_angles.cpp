@@ -64,7 +64,8 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// Adds four numbers of a row at once. The sums are then transposed to columns, one element per lane.
+// Adds up the normals of each element's faces, with x, y, z and the fourth value of a face as one row. The sums are
+// then transposed to columns, one element per lane.
 void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
   alignas(64) double rows[kDoubleLanes][4];

@@ -43,8 +43,11 @@ constexpr double kLeastCorrection = 1e-5;
 constexpr double kRight = 1e-5;
 // Limits for the lengths of n(w) that are stored, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
-// A pair with a smaller product everywhere in the file would need weights beyond 1 elsewhere.
-constexpr double kMostScale = 4, kLeastProduct = 1e-6, kStrongest = 0.95;
+// With unit lengths, the product of both weights, which drives the correction target of a pair, is scaled up so that
+// its largest value in the file becomes kStrongest, but at most by kMostScale.
+constexpr double kMostScale = 4, kStrongest = 0.95;
+// Weights and products of pairs below this count as zero.
+constexpr double kLeastProduct = 1e-6;
 // Limits for the targets whose pairs are all examined, the pairs that are remembered, and the poses at which they are
 // measured.
 constexpr std::size_t kMostSampled = 400;

@@ -22,7 +22,7 @@ constexpr int kRounds = 12;
 constexpr double kStandstill = 0.99;
 // If a sum points away from the right normal, the fit asks it to have this much of its length along the normal.
 constexpr double kLeastPart = 0.1;
-// Below this part of its terms, the direction of a normal is not judged.
+// A normal that is shorter than this share of its longest term is not judged.
 constexpr double kLeastLine = 1e-4;
 // The pull towards the best delta of each target alone, relative to what the weights tell on average: weights that
 // differ by a thousandth of themselves do not tell deltas apart, and weights of a thousandth tell nothing.

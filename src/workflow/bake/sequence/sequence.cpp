@@ -295,8 +295,8 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
   report.keys->left_out = segments + 1 + report.keys->in_between - report.keys->count;
   if (keys.beyond > 0)
     report.warnings.push_back(
-        std::to_string(keys.beyond) +
-        " times a normal vanishes or turns too fast between two keyframes, and exceeds the tolerance there");
+        "in " + std::to_string(keys.beyond) + (keys.beyond == 1 ? " case" : " cases") +
+        ", a normal vanishes or turns too fast between two keyframes, and its error exceeds the tolerance there");
   return times;
 }
 
