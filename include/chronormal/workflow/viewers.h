@@ -117,7 +117,7 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
      .tracks = TrackRule::kSplinesWithoutDuration,
      .skins = SkinRule::kByJoint,
      .most_targets = 256,
-     .beyond = "the program ends",
+     .beyond = "the viewer exits",
      .source =
          "Filament 1.53, shaders/src/surface_getters.vs (morphNormal, skinNormal), libs/gltfio/src/TangentsJob.cpp, "
          "libs/geometry/src/SurfaceOrientation.cpp, libs/math/include/math/mat3.h (packTangentFrame), "

@@ -447,7 +447,7 @@ TEST(CheckWeights, asks_for_one_finite_weight_for_each_target) {
     EXPECT_EQ(status.ok() ? ErrorCode::kFailed : status.error().code, ErrorCode::kUsage);
     return status.ok() ? "" : status.error().message;
   };
-  EXPECT_NE(message(star(0), {1}).find("2 targets, but 1 weight"), std::string::npos);
+  EXPECT_NE(message(star(0), {1}).find("2 targets, but the pose has 1 weight"), std::string::npos);
   EXPECT_NE(message(star(0), {1, std::nan("")}).find("target 1"), std::string::npos);
   EXPECT_NE(message(three_keyframes(), {1, 0}).find("blend shapes"), std::string::npos);
 }

@@ -214,10 +214,10 @@ TEST(SchemeNormals, what_has_no_meaning_is_refused) {
   EXPECT_NE(message(by_scheme("linear", ElementKind::kFaces, Stepping{0})).find("at least 1"), std::string::npos);
   SampleOptions weighted = by_scheme("linear", ElementKind::kVertices);
   weighted.weighting = Weighting::kAngle;
-  EXPECT_NE(message(weighted).find("area-weighted"), std::string::npos);
+  EXPECT_NE(message(weighted).find("the weighting area and the length unit"), std::string::npos);
   SampleOptions of_areas = by_scheme("linear", ElementKind::kFaces);
   of_areas.length = NormalLength::kArea;
-  EXPECT_NE(message(of_areas).find("area-weighted"), std::string::npos);
+  EXPECT_NE(message(of_areas).find("the weighting area and the length unit"), std::string::npos);
   motion.segments.clear();
   motion.keyframes.resize(1);
   EXPECT_NE(message(by_scheme("linear", ElementKind::kFaces)).find("does not move"), std::string::npos);
