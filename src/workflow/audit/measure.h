@@ -215,10 +215,31 @@ struct RightOutput {
   bool has_area = false;    ///< whether a face around the output is drawn: faces without area are not drawn
 };
 
+/// The true normals of all placed outputs, in 25 bytes each.
+class RightOutputs {
+ public:
+  void resize(std::size_t count) {
+    directions_.resize(count);
+    flags_.resize(count);
+  }
+  void set(std::size_t i, const RightOutput& output) noexcept {
+    directions_[i] = output.direction;
+    flags_[i] = static_cast<std::uint8_t>((output.is_hidden ? kHidden : 0) | (output.has_normal ? kNormal : 0) |
+                                          (output.has_area ? kArea : 0));
+  }
+  [[nodiscard]] RightOutput operator[](std::size_t i) const noexcept {
+    return {directions_[i], (flags_[i] & kHidden) != 0, (flags_[i] & kNormal) != 0, (flags_[i] & kArea) != 0};
+  }
+
+ private:
+  static constexpr int kHidden = 1, kNormal = 2, kArea = 4;
+  std::vector<Vec3d> directions_;
+  std::vector<std::uint8_t> flags_;
+};
+
 /// Writes the true normals of all placed outputs.
 template <class Source>
-void find_right(const Source& source, const PlacedPart& placed, std::span<const double> largest,
-                std::vector<RightOutput>& result) {
+void find_right(const Source& source, const PlacedPart& placed, std::span<const double> largest, RightOutputs& result) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   result.resize(outputs.size());
   parallel_blocks(outputs.size(), kOutputsAtOnce, [&](IndexRange range) {
@@ -231,8 +252,8 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
       const Vec3d& normal = placed.normals.elements[output.element];
       const double least = kVanished * largest[output.element];
       const bool has_normal = max_abs(normal) > least || length(normal) > least;  // the first mostly tells
-      result[range.first + k] = {some[k], source.hides(output, normal), has_normal,
-                                 placed.normals.sizes[output.element] > least};
+      result.set(range.first + k,
+                 {some[k], source.hides(output, normal), has_normal, placed.normals.sizes[output.element] > least});
     }
   });
 }
@@ -242,7 +263,7 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
 /// degrees, and NaN for outputs that are not judged.
 template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
-                                   double t, const Shown& shown, std::span<const RightOutput> right,
+                                   double t, const Shown& shown, const RightOutputs& right,
                                    std::span<float> each = {}) {
   const std::span<const JudgedOutput> outputs = placed.part.outputs();
   const bool has_edges = !placed.part.edges().empty();
@@ -256,7 +277,7 @@ template <class Source, class Shown>
       const std::span<double> of_some = std::span(degrees).subspan(from - first, count);
       shown(from, std::span(is_shown).first(count));
       for (std::size_t k = 0; k < count; ++k) {
-        const RightOutput& is = right[from + k];
+        const RightOutput is = right[from + k];
         const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
         // A skin may collapse a true normal.
         of_some[k] = is.is_hidden                                                        ? kNotJudged
@@ -285,7 +306,7 @@ template <class Source, class Shown>
           if (normal != Vec3d{} && source.hides(output, normal)) return kNotJudged;
           Vec3d now;
           shown(first + i, std::span(&now, 1));
-          const RightOutput& is = right[first + i];
+          const RightOutput is = right[first + i];
           const double faint = normal == Vec3d{}
                                    ? kNotJudged
                                    : faint_degrees(now, is.direction, length(normal),
@@ -319,9 +340,9 @@ struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
   const PlacedPart& placed;
-  std::span<const double> largest;     ///< the result of largest_control_normals()
-  std::span<const double> next;        ///< the places of the next samples in the segment
-  std::span<const RightOutput> right;  ///< of all outputs
+  std::span<const double> largest;  ///< the result of largest_control_normals()
+  std::span<const double> next;     ///< the places of the next samples in the segment
+  const RightOutputs& right;        ///< of all outputs
   const MotionError& error;
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
@@ -346,7 +367,7 @@ template <class Source, class Segments, class EachSample>
     for (std::size_t k = 0; k < normals.size(); ++k)
       normals[k] = source.seen(from + k, placed.normals.faces[part.outputs()[from + k].face]);
   };
-  std::vector<RightOutput> right;
+  RightOutputs right;
   MotionError error;  // error of the last sample
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Status measured = segments.over(subject, [&](std::size_t s) {

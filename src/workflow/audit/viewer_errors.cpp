@@ -112,12 +112,12 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
       }
       StoredSums& kept = kept_[kept_by_[other]];
       const SeenByViewer by_viewer{source, kept.viewer().skins};
-      std::span<const RightOutput> right = sample.right;
+      const RightOutputs* right = &sample.right;
       if (where != &sample.placed || (is_skinned_ && by_viewer.rule != SkinRule::kBlended)) {
         if (!is_right_for || (is_skinned_ && *is_right_for != by_viewer.rule))
           find_right(by_viewer, *where, sample.largest, right_);
         is_right_for = by_viewer.rule;
-        right = right_;
+        right = &right_;
       }
       if (kept.find(now_[other]).empty()) kept.add_up(now_and_next(other, sample));
       const std::span<const float> sums = kept.find(now_[other]);
@@ -127,7 +127,7 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
           for (std::size_t k = 0; k < normals.size(); ++k)
             normals[k] = source.seen(first + k, normals[k], by_viewer.rule);
       };
-      last_[other] = {error_at(by_viewer, *where, false, sample.segment, sample.t, shown_at, right), displaced};
+      last_[other] = {error_at(by_viewer, *where, false, sample.segment, sample.t, shown_at, *right), displaced};
       known = &last_[other].error;
     }
   }

@@ -52,7 +52,7 @@ class ViewerErrors {
   std::vector<Weights> weights_;
   std::vector<StoredSums> kept_;          // normals and deltas as some viewers keep them
   std::vector<std::size_t> kept_by_;      // for each viewer, its index in kept_
-  std::vector<RightOutput> right_;        // true normal of each output, as some viewers see it, if not as in the sample
+  RightOutputs right_;                    // true normal of each output, as some viewers see it, if not as in the sample
   double size_ = 0;                       // size of the mesh
   std::optional<PlacedPart> elsewhere_;   // the part at weights other than the specified ones, once needed
   std::size_t placed_ = 0;                // source.placed() at the last sample; 0 before any

@@ -55,7 +55,7 @@ TEST(Weighting, names_lead_there_and_back) {
   ASSERT_FALSE(unknown.ok());
   EXPECT_EQ(unknown.error().code, ErrorCode::kUsage);
   EXPECT_EQ(unknown.error().text(),
-            "the file has a weighting that does not exist, 'areal'; there are area, angle, uniform, area-angle, max, "
+            "there is no weighting 'areal'; choose one of area, angle, uniform, area-angle, max, "
             "inverse-edges, inverse-roots");
 }
 

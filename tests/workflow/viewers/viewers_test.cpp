@@ -85,7 +85,7 @@ TEST(Viewers, an_unknown_name_is_told_all_names_and_the_nearest) {
     ASSERT_FALSE(viewers) << wrong;
     EXPECT_EQ(viewers.error().code, ErrorCode::kUsage);
     EXPECT_EQ(viewers.error().message,
-              "there is no viewer 'gdot'; did you mean godot? There are three, babylon, playcanvas, godot, filament, "
+              "there is no viewer 'gdot'; did you mean godot? Choose from three, babylon, playcanvas, godot, filament, "
               "bevy, gltfpack, quantize, meshopt, and all");
   }
   for (const char* wrong : {"", ",", "three,", "Three.js 187", "unreal"}) {
