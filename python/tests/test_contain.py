@@ -32,7 +32,7 @@ class ContainTest(unittest.TestCase):
         self.assertEqual((later["inside"].tolist(), later["crossing_inward"].tolist()), ([True], [False]))
 
     def test_what_does_not_fit_is_a_value_error(self):
-        for message, arguments in [("the mesh is not closed: 4 edges are boundaries", (KEYFRAMES, QUADS[1:], CUBE)),
+        for message, arguments in [("4 edges have a face on one side only", (KEYFRAMES, QUADS[1:], CUBE)),
                                    (r"points: the shape must be .*but is \(3,\)", (KEYFRAMES, QUADS, [1, 2, 3])),
                                    (r"points\[1\]: a coordinate", (KEYFRAMES, QUADS, [[1, 2, 3], [1, np.nan, 3]])),
                                    (r"positions: the shape must be .*but is \(8, 3\)", (CUBE, QUADS, CUBE))]:

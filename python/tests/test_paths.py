@@ -78,13 +78,13 @@ class PathsTest(unittest.TestCase):
     def test_what_is_wrong_is_said_with_its_place(self):
         keys = turning_sheet()
         for call, words in ((lambda: cn.cut(keys, FACES, path="round"), "path: there is no path 'round'"),
-                            (lambda: cn.cut(keys, FACES, path="hermite"), "no keyframe has velocities"),
+                            (lambda: cn.cut(keys, FACES, path="hermite"), "no keyframe has them"),
                             (lambda: cn.cut(keys, FACES, velocities=keys[:2]), r"velocities: the shape must be .*but is \(2, 12, 3\)"),
                             (lambda: cn.cut(keys, FACES, TIMES[::-1]), "keyframe|time"),
                             (lambda: cn.cut(keys[0], FACES), r"positions: the shape"),
                             (lambda: cn.cut(keys, FACES, velocities=keys * np.nan, path="hermite"), "velocity"),
                             (lambda: cn.audit(sample="twist", path="round"), "path: there is no path 'round'"),
-                            (lambda: cn.read(sample="bumps", path="catmull-rom"), "weights of targets"),
+                            (lambda: cn.read(sample="bumps", path="catmull-rom"), "only for sequences of keyframes"),
                             (lambda: cn.audit(cn.bake(sample="twist")[0], path="catmull-rom"), "glTF")):
             with self.subTest(words=words), self.assertRaisesRegex(ValueError, words):
                 call()

@@ -141,7 +141,7 @@ class SignalTest(unittest.TestCase):
             # is doubled.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
-        self.assertIn("a handler of signals cannot use what it interrupts", said[1])
+        self.assertIn("the object is in use by the computation that this signal handler interrupts", said[1])
 
 
 @unittest.skipUnless(hasattr(os, "fork"), "this system has no fork()")
@@ -244,19 +244,19 @@ class ArgumentTest(unittest.TestCase):
         p0, p1, faces = sheet()
         huge = 2**2000
         for call, kind, words in (
-                (lambda: curves.unit_normals(huge), ValueError, "t: it is too large"),
-                (lambda: curves.unit_normals(-huge), ValueError, "t: it is too large"),
-                (lambda: curves.errors(huge, p0), ValueError, "t: it is too large"),
-                (lambda: cn.cut([p0, p1], faces, times=[0, huge]), ValueError, "times: the type is object"),
-                (lambda: cn.contain([p0, p1], faces, [[huge, 0, 0]]), ValueError, "points: the type is object"),
+                (lambda: curves.unit_normals(huge), ValueError, "t: the number is too large"),
+                (lambda: curves.unit_normals(-huge), ValueError, "t: the number is too large"),
+                (lambda: curves.errors(huge, p0), ValueError, "t: the number is too large"),
+                (lambda: cn.cut([p0, p1], faces, times=[0, huge]), ValueError, "times: the type must be float64"),
+                (lambda: cn.contain([p0, p1], faces, [[huge, 0, 0]]), ValueError, "points: the type must be float64"),
                 (lambda: cn.read(sample=5), TypeError, "sample: the value must be a string, not int"),
                 (lambda: cn.read(sample=["twist"]), TypeError, "sample: the value must be a string, not list"),
-                (lambda: cn.read(sample="\ud800"), ValueError, "sample: .* is no text"),
-                (lambda: cn.read("a.glb", animation="\udcff"), ValueError, "animation: .* is no text"),
+                (lambda: cn.read(sample="\ud800"), ValueError, "sample: .* cannot be written as UTF-8"),
+                (lambda: cn.read("a.glb", animation="\udcff"), ValueError, "animation: .* cannot be written as UTF-8"),
                 (lambda: cn.read("a.glb", base=5), TypeError, "base: the value must be the name of a file, not int"),
                 (lambda: cn.read(5), TypeError, "source: the value must be files, bytes or a Motion, not int"),
                 (lambda: cn.read(["a.obj", 5]), TypeError, r"source\[1\]: the value must be the name of a file, not int"),
-                (lambda: cn.read(sample="twist", fps=huge), ValueError, "fps: it is too large"),
+                (lambda: cn.read(sample="twist", fps=huge), ValueError, "fps: the number is too large"),
                 (lambda: cn.read(sample="twist", fps=[1]), TypeError, "fps: the value must be a number, not list")):
             with self.subTest(words=words), self.assertRaisesRegex(kind, words):
                 call()

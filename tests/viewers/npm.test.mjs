@@ -106,9 +106,10 @@ test('a sequence on curved paths has the report and the bytes of the command lin
 });
 
 test('sampled normals are those that the command line writes', async () => {
+  const [first, second, third] = [[0.5, 0.25], [1, 0], [-0.5, 2]].map((two) => [...two, ...Array(10).fill(0)]); // bumps has 12 targets
   for (const [options, flags] of [
-    [{ weights: [0.5, 0.25] }, ['--weights', '0.5,0.25']],
-    [{ weights: [[1, 0], [0, 1], [-0.5, 2]], elements: 'faces' }, ['--weights', '1,0', '--weights', '0,1', '--weights', '-0.5,2', '--elements', 'faces']],
+    [{ weights: first }, ['--weights', `${first}`]],
+    [{ weights: [first, second, third], elements: 'faces' }, ['--weights', `${first}`, '--weights', `${second}`, '--weights', `${third}`, '--elements', 'faces']],
     [{ animation: 0, times: [0, 0.25, 0.5], scheme: 'quaternion:matrix' }, ['--animation', '0', '--times', '0,0.25,0.5', '--scheme', 'quaternion:matrix']],
     [{ animation: 0, times: 'keys', elements: 'corners', crease: 30 }, ['--animation', '0', '--times', 'keys', '--elements', 'corners', '--crease', '30']],
   ]) {

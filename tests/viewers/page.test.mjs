@@ -237,7 +237,7 @@ test('what cannot be used gets a message that says what to do, and the page goes
   const large = openSync(path('large.glb'), 'w');
   ftruncateSync(large, 300e6);
   closeSync(large);
-  for (const [name, words] of [['face.png', /is a picture \(PNG\).*Export the model/s], ['cut.glb', /is cut off.*only 5,000 are there.*once more/s],
+  for (const [name, words] of [['face.png', /is a picture \(PNG\).*Export the model/s], ['cut.glb', /is cut off.*only 5,000 are there.*again/s],
                                ['large.glb', /has 300 MB.*up to 268 MB.*without its textures/s]]) {
     await drop(path(name));
     assert.match(await said(), words);

@@ -14,7 +14,6 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
-constexpr double kExactly = 0.003;                                  // degrees
 constexpr double kOff = 0.001;                                      // degrees: above, a normal does not follow the rule
 constexpr double kNothingLeft = 180;                                // degrees, where both sides of a sheet add up to 0
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
@@ -59,7 +58,7 @@ class Sides {
   std::vector<char> other_;
 };
 
-// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of these edges.
+// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of them.
 template <class ForEdges>
 std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges& for_edges) {
   std::vector<OffsetEdge> edges;
@@ -71,11 +70,11 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// The angles between candidates and stored normals, in degrees.
+// Holds the angles between candidates and stored normals, in degrees.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of these follow no candidate
+  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of them follow no candidate
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -194,7 +193,7 @@ class Mending {
   // explain; if no key turns the element, the distance in the base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
-    // Each corner of a polygon counts once, even if it belongs to several triangles.
+    // Each corner of a polygon counts once, however many triangles have a part in it.
     std::vector<Part> parts;
     const auto corners = shading_.set.topology.corners();
     for (const std::uint32_t c : corners_of(element, whole)) {
@@ -264,9 +263,9 @@ class Mending {
   }
 
   // Counts how many more elements nearby follow their sums if a run of triangles is one polygon. Elements that only
-  // come nearer do not count, since that may be chance.
+  // come nearer do not count: that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run would dissolve
+    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run takes apart
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
     if (!polygons_.join(first, count)) return 0;
@@ -296,7 +295,7 @@ class Mending {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<StoredKey> keys_;
-  std::vector<char> whole_;  // for each element, whether it adds up its whole point
+  std::vector<char> whole_;  // of each element
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
   std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
@@ -347,8 +346,8 @@ class Candidates {
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
   // Returns the candidate at the smallest distance, by keys or, if no key tells, by the base. The distance of a
-  // candidate is the angle within which this share of the normals follow it. Returns nothing if the smallest distance
-  // is beyond `follows`, or more than `clear` times the distance of area; with or_area, the second case returns area.
+  // candidate is the angle that this share of the normals is within. Returns nothing if it is beyond `follows`, or more
+  // than `clear` times the distance of area; or_area accepts area in the second case.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -363,27 +362,24 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      const std::size_t found = most_followed(*of, [&](std::size_t c) {
-        return weighting_of(c) == weighting_of(best) && distance[c] <= distance[best] + kExactly;
-      });
-      note(*of, found, distance[found]);
-      return found;
-    }
-    return std::nullopt;
-  }
-
-  // Returns the candidate that the most normals follow exactly, by keys or, if no key tells, by the base: the rule of
-  // the mesh even if most of it was cut or bent later. Returns nothing if less than a tenth of the normals follow any,
-  // or nearly as many follow area.
-  [[nodiscard]] std::optional<std::size_t> followed() {
-    constexpr double kTenth = 0.1, kClearly = 1.5, kThird = 1.0 / 3;
-    for (Distances* of : {&keys_, &of_base_}) {
-      if (of->told[0].empty()) continue;
-      const std::size_t found = most_followed(*of, [](std::size_t) { return true; });
-      const double most = following(*of, found), by_area = following(*of, area());
-      const bool is_clear = most > kClearly * by_area || 1 - most < kThird * (1 - by_area);
-      if (most < kTenth || !is_clear) continue;
-      note(*of, found, quantile(of->told[found], kTenth));
+      // Among candidates that are equally near, takes the one that most normals follow exactly. If several do, it
+      // prefers quads if the file was cut from them and has keys, and otherwise triangles and own corners.
+      constexpr double kAlike = 0.003, kAsMany = 0.005, kMostOfAll = 0.75;
+      std::size_t found = best;
+      double most = -1;
+      for (std::size_t c = 0; c < count(); ++c) {
+        if (distance[c] > distance[best] + kAlike) continue;
+        const auto near = std::count_if(of->told[c].begin(), of->told[c].end(), [](float d) { return d <= kAlike; });
+        const double following = static_cast<double>(near) / static_cast<double>(of->told[c].size());
+        if (weighting_of(c) != weighting_of(best) && following < kMostOfAll) continue;
+        const bool is_cut = of == &keys_ && is_of_quads_ && is_of_polygons(c) && !is_of_polygons(found);
+        if (following < most + (is_cut ? -kAsMany : kAsMany)) continue;
+        most = std::fmax(most, following);
+        found = c;
+      }
+      distance_ = distance[found];
+      telling_ = of->told[0].size();
+      spread_ = quantile(of->spread, 0.5);
       return found;
     }
     return std::nullopt;
@@ -394,7 +390,7 @@ class Candidates {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns true if all examined elements follow a candidate exactly, so that there is nothing to mend.
+  // Returns whether all elements that are asked follow a candidate exactly, so that there is nothing to mend.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
     const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
@@ -415,37 +411,7 @@ class Candidates {
   [[nodiscard]] double spread() const { return spread_; }
 
  private:
-  // Returns the share of normals that follow a candidate exactly.
-  [[nodiscard]] static double following(const Distances& of, std::size_t c) {
-    const auto near = std::count_if(of.told[c].begin(), of.told[c].end(), [](float d) { return d <= kExactly; });
-    return static_cast<double>(near) / static_cast<double>(of.told[c].size());
-  }
-
-  // Returns the candidate that the most normals follow, among those that may be. If several are followed alike, prefers
-  // quads if the file was cut from them and has keys, and otherwise triangles and own corners.
-  template <class MayBe>
-  [[nodiscard]] std::size_t most_followed(const Distances& of, const MayBe& may_be) const {
-    constexpr double kAlike = 0.005;
-    std::optional<std::size_t> found;
-    double most = -1;
-    for (std::size_t c = 0; c < count(); ++c) {
-      if (!may_be(c)) continue;
-      const double share = following(of, c);
-      const bool is_cut = &of == &keys_ && is_of_quads_ && is_of_polygons(c) && found && !is_of_polygons(*found);
-      if (found && share < most + (is_cut ? -kAlike : kAlike)) continue;
-      most = std::fmax(most, share);
-      found = c;
-    }
-    return *found;
-  }
-
-  void note(Distances& of, std::size_t found, double distance) {
-    distance_ = distance;
-    telling_ = of.told[found].size();
-    spread_ = quantile(of.spread, 0.5);
-  }
-
-  // Returns true if several elements show parts of one point.
+  // Returns whether several elements show parts of one point.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
     for (const std::uint32_t v : shading_.set.topology.corners()) {
@@ -495,8 +461,8 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
-  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees, or 0 if the
-  // element has no normal.
+  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees; 0 if there
+  // is none.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
@@ -552,7 +518,7 @@ class Candidates {
   std::vector<std::size_t> sums_of_kind_;  // whole points are the same as own corners if no point has several elements
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
-  std::vector<std::vector<std::uint32_t>> followers_;  // for each key, the elements that must all follow a rule
+  std::vector<std::vector<std::uint32_t>> followers_;  // of each key: the elements that must all follow a rule
   Distances of_base_, keys_;
   bool is_of_quads_ = false;
   double distance_ = 0, spread_ = 0;
@@ -593,7 +559,10 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    std::optional<std::size_t> found = candidates.followed();
+    // A rule that a tenth of the normals follow exactly is the rule of the mesh, even if most of it was cut or bent
+    // later.
+    constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
+    std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {
       found = candidates.closest(0.5, kFollowsRule, kClear, true);
       if (candidates.are_quads_as_good() && !Candidates::is_of_polygons(found.value_or(candidates.area())))

@@ -7,8 +7,9 @@
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
 ///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees: elsewhere all agree
 ///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored normal
-///     found        the candidate that the most normals follow to 0.003 degrees, if a tenth of them do, and clearly more
-///                  than follow triangles by area: much of the mesh may be bent by hand. Else the candidate with the
+///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
+///                  triangles by area, even if much of the mesh was bent by hand; among several, the one that three
+///                  quarters of the normals follow exactly, if any does. Else the candidate with the
 ///                  smallest median, if that is at most a degree, and two thirds of the median of triangles by area;
 ///                  else triangles by area, which are exact at every time
 ///
