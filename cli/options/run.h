@@ -8,7 +8,7 @@
 ///     run->join(compare_part(...), merge_compare_parts);         // on several ranks
 ///     run->finish(text);
 ///
-/// With --resume, the file OUT.journal describes the run (version, command, options, input files with their sizes and
+/// The file OUT.journal of --resume describes the run (version, command, options, input files with their sizes and
 /// modification times) and records the results so far. The journal stays if the run ends too early for any reason, and
 /// is removed when OUT is complete.
 #ifndef CLI_OPTIONS_RUN_H_

@@ -288,7 +288,7 @@ def _motion_of_state(state):
     return made
 
 
-# With its protocols 0 and 1, pickle would make an object of the base class, and the extension would end the process.
+# The protocols 0 and 1 of pickle would make an object of the base class, and the extension would end the process.
 Motion.__reduce_ex__ = lambda self, protocol: (_motion_of_state, (self.__getstate__(),))
 Motion.__reduce__ = lambda self: self.__reduce_ex__(0)
 

@@ -436,7 +436,7 @@ class Packaging(Unpacked):
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # With io, as users get it by default, the build takes minutes longer.
+        # The build would take minutes longer with io, which users get by default.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

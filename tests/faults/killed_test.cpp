@@ -52,7 +52,7 @@ class Killed : public testing::TestWithParam<Command> {
   // Runs the command. `layer` is the text before the path of the fault layer, or empty for none.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
-    // With a further command, the shell runs the program in a child process, and can report how the program ended.
+    // A further command makes the shell run the program in a child process, so that it can report how the program ended.
     return run_shell(before + kProgram + " " + GetParam().arguments + more + "; exit $?", folder_.path());
   }
   [[nodiscard]] ProcessResult run_to(std::size_t call, int signal) const {

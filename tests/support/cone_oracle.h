@@ -1,6 +1,6 @@
 /// Decides without rounding whether a normal with integer components is inside a cone of four floats.
 ///
-/// With the axis a and the sine s exactly as stored, n is inside the cone if n.a >= 0 and (n.a)^2 >= (1 - s^2) |n|^2
+/// A normal n is inside the cone of the stored axis a and sine s if n.a >= 0 and (n.a)^2 >= (1 - s^2) |n|^2
 /// |a|^2. Clear cases are decided in double with a margin of 1e-12, and the others in integers of any size.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CONE_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_CONE_ORACLE_H_

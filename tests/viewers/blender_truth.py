@@ -303,7 +303,7 @@ def animate(o, keys, draw, how):
         slopes = [(after - before) / 24 for before, after in zip(values[:1] + values, values[1:] + values[-1:])]
         for point, slope in zip(points, slopes):
             point.interpolation = CUBIC if how == CUBIC else LINEAR
-            # With handles at a third of the gap, the curve is a cubic in time, which glTF can represent.
+            # Handles at a third of the gap make the curve a cubic in time, which glTF can represent.
             point.handle_left_type = point.handle_right_type = "FREE"
             point.handle_left = point.co - Vector((4, 4 * slope))
             point.handle_right = point.co + Vector((4, 4 * slope))

@@ -122,7 +122,7 @@ bool remove_file(const char* path) noexcept;
 [[nodiscard]] bool rename_file(const char* from, const char* to, bool replace) noexcept;
 
 /// Maps all bytes of a file into memory, to be read once from the first to the last. Returns nullptr where that fails.
-/// Where the file becomes shorter or its disk fails, reading it ends the program (io/system/process.h).
+/// Reading ends the program if the file becomes shorter or its disk fails (io/system/process.h).
 [[nodiscard]] const char* map_file(int descriptor, std::size_t size) noexcept;
 void unmap(const char* bytes, std::size_t size) noexcept;
 /// Releases the memory of a mapping; its bytes are read again when they are looked at again.

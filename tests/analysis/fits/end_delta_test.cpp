@@ -162,7 +162,7 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta to_zero = best_end_delta({x, y, {}});
   EXPECT_NEAR(to_zero.scale, 2, 1e-9);
   EXPECT_LT(to_zero.error, 1e-9);
-  // With only a middle control normal, n(w) has a single direction.
+  // A middle control normal alone gives n(w) a single direction.
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);

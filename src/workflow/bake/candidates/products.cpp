@@ -43,7 +43,7 @@ constexpr double kLeastCorrection = 1e-5;
 constexpr double kRight = 1e-5;
 // Limits for the lengths of n(w) that are stored, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
-// With unit lengths, the product of both weights, which drives the correction target of a pair, is scaled up so that
+// The product of both weights drives the correction target of a pair. At unit lengths the product is scaled up so that
 // its largest value in the file becomes kStrongest, but at most by kMostScale.
 constexpr double kMostScale = 4, kStrongest = 0.95;
 // Weights and products of pairs below this count as zero.
