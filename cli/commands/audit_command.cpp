@@ -43,7 +43,7 @@ struct AuditArguments {
 
 // The message for a tolerance and an input in which nothing moves: a build that has lost its animations must not pass.
 constexpr const char* kNothingMoves =
-    "nothing could be judged, since no target and no animation moves stored normals; perhaps the export lost them";
+    "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 
 constexpr const char* kDividesSequences =
     "only a sequence of keyframes can be divided, not a glTF file; leave this option out";
@@ -245,7 +245,7 @@ std::string why_torn(const Audited& audited, const MotionError& error) {
 
 // Explains why normals that cancel do not pass.
 std::string why_cancelled(const MotionError& error) {
-  return formatted("{} no true normal, since the normals of the faces around cancel, and cannot be judged",
+  return formatted("{} no true normal, since the normals of the faces around cancel, so they cannot be judged",
                    counted(error.cancelled, "sample has", "samples have"));
 }
 
@@ -262,15 +262,16 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
     return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}", error.worst, *tolerance,
                      at(worst_label));
   if (tolerance && error.faint_worst > *tolerance) return why_faint(audited, error, at(faint_label));
-  if (tolerance && error.cancelled > 0) return why_cancelled(error) + at(cancelled_label);
+  if (tolerance && error.cancelled > 0)
+    return why_cancelled(error) + at(cancelled_label) + "; give each side of a sheet its own vertices";
   return why_torn(audited, error);
 }
 
 // Explains why a viewer does not pass.
 std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
-    return formatted("{}: a mesh has {} too many; {}", found.viewer.title, counted(found.beyond, "target", "targets"),
-                     found.viewer.beyond);
+    return formatted("{}: a mesh has {} than this viewer supports; {}", found.viewer.title,
+                     counted(found.beyond, "target more", "targets more"), found.viewer.beyond);
   return formatted("{}: {}", found.viewer.title,
                    why_beyond(audited, found.error, worst_label(audited, found), "", "", ""));
 }

@@ -50,7 +50,8 @@ void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
 
 std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
 
-// Returns "worst 12.3000 -> 0.0010, mean 3.2000 -> 0.0001 degrees", and the number of normals that cannot be lit.
+// Returns "on average 3.2000 -> 0.0001, at worst 12.3000 -> 0.0010 degrees", and the number of normals that cannot be
+// lit.
 std::string change_words(const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text = formatted("on average {}, at worst {} degrees", change(before.mean(), after.mean()),
@@ -74,8 +75,9 @@ std::string weighting_lines(const GltfBake& bake) {
     }
     if (count == 0 || info.weighting == Weighting::kArea) continue;
     if (count > kMostNamed) names += formatted(" and {} more", count - kMostNamed);
-    text += formatted("{}: normals are {}-weighted, which can only be approximated (area can be exact)\n", names,
-                      info.name);
+    text +=
+        formatted("{}: normals are {}-weighted, and could only be approximated; area-weighted normals can be exact\n",
+                  names, info.name);
   }
   return text;
 }
@@ -162,7 +164,7 @@ std::string torn(double edges) {
 
 // Returns words for the poses that a table of viewers covers.
 std::string poses_words(bool of_animations) {
-  return of_animations ? "in the animations of the file (not with single sliders, which --animations-only gives up)"
+  return of_animations ? "in the animations of the file (--animations-only does not correct single sliders)"
                        : "in the animations of the file, and with each slider alone";
 }
 
@@ -243,7 +245,7 @@ std::string left_over(const GltfBake& bake) {
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
   return formatted(
-      "errors of up to {:.3g} degrees remain in places; add --tolerance {} to correct them in a larger file\n", worst,
+      "errors of up to {:.3g} degrees remain in places; to correct them in a larger file, add --tolerance {}\n", worst,
       kHarmlessTolerance);
 }
 
@@ -254,8 +256,8 @@ std::string left_text(const GltfBake& bake) {
   std::string text;
   if (left_out > 0)
     text += counted(
-        left_out, "correction that would gain least is left out, since one of these viewers has no room for more\n",
-        "corrections that would gain least are left out, since one of these viewers has no room for more\n");
+        left_out, "correction that would help least was left out, since one of these viewers has no room for more\n",
+        "corrections that would help least were left out, since one of these viewers has no room for more\n");
   return text;
 }
 
@@ -302,8 +304,8 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\n{}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// Lists the respects in which a result is worse or better with their figures: "on average (normals are off by 0.6400
-// degrees, before by 3.3200)".
+// Lists the respects in which a result is worse or better with their figures: "on average (0.6400 degrees, before
+// 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;
@@ -350,7 +352,7 @@ std::string worse_text(const BeforeAndAfter& audit, bool of_animations) {
   std::string text = "the result is ";
   if (better.any()) text += "better than the input " + respects_text(better, audit) + ", but ";
   text += (better.any() ? "worse " : "worse than the input ") + respects_text(worse, audit);
-  if (of_animations) text += "; these errors include single sliders, which --animations-only gives up";
+  if (of_animations) text += "; these errors include single sliders, which --animations-only does not correct";
   return text;
 }
 
@@ -364,11 +366,13 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
     bool any_baked = false;
     for (const BakedMesh& mesh : bake.meshes) any_baked |= mesh.already_baked;
     if (any_baked) {
-      return text + "nothing was changed, since this file was baked before. To get closer, bake the ORIGINAL file\n";
+      return text +
+             "nothing was changed, since this file was baked before. For smaller errors, bake the ORIGINAL file\n";
     }
     if (bake.meshes.empty()) return text + "nothing was changed, since no morph target moves a face\n";
-    return text + (are_all_within(bake) ? "nothing was changed, since all normals are within the tolerance\n"
-                                        : "nothing was changed, since nothing better was found for these viewers\n");
+    return text + (are_all_within(bake)
+                       ? "nothing was changed, since all normals are within the tolerance\n"
+                       : "nothing was changed, since bake found nothing better for the named viewers\n");
   }
   text += verdict(bake, report);
   Table table;
@@ -428,7 +432,7 @@ std::string plan_text(const GltfBake& bake, const BakeReport& report) {
                                      : ""});
     }
   }
-  return formatted("{}: candidates for --for, --encode and --tolerance; nothing is written\n\n",
+  return formatted("{}: these are the candidates that bake can choose from; --plan writes nothing\n\n",
                    printable(report.input)) +
          table.text() + plan_of_viewers(bake, false) + plan_of_viewers(bake, true);
 }
@@ -444,7 +448,7 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   if (bake.has_offsets)
     text += "where the stored normals of keyframe 0 differ from the surface, that difference is kept\n";
   if (bake.keys) {
-    text += formatted("{}, {} of them between keyframes; {} left out; {} if all segments were cut alike\n",
+    text += formatted("{}, {} of them between keyframes; {} left out; equal steps would need {} keys\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
                       counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",

@@ -71,7 +71,7 @@ std::string table_of(const BlendSubject& subject) {
   Table table;
   table.add_column("active", "targets", Align::kRight);
   table.add_column("deltas", "", Align::kLeft);
-  for (const char* const title : {"mean", "rms", "max"}) table.add_column(title, "degrees", Align::kRight);
+  for (const char* const title : {"average", "rms", "worst"}) table.add_column(title, "degrees", Align::kRight);
   const bool several = is_several_primitives(subject);
   if (several) table.add_column("worst at", "primitive", Align::kRight);
   table.add_column(several ? "" : "worst at", std::string(one_element(subject.kind)), Align::kRight);
@@ -96,13 +96,13 @@ std::string notes(const BlendSubject& subject) {
   std::string text;
   for (const BlendErrors& errors : subject.errors) {
     for (const BlendError& error : errors.deltas) {
-      const std::string pairs = formatted(", {} active: ", grouped(errors.active));
+      const std::string active = formatted(", {} active: ", grouped(errors.active));
       if (error.quality.missing > 0)
-        text += formatted("{}{}{} without a direction, counted as 180 degrees\n", name_of(error.deltas), pairs,
-                          counted(error.quality.missing, "normal", "normals"));
+        text += formatted("{}{}{} zero, infinite or NaN, and counted as an error of 180 degrees\n",
+                          name_of(error.deltas), active, counted(error.quality.missing, "normal was", "normals were"));
       if (error.quality.degenerate > 0 && error.deltas == BlendDeltas::kExact)
-        text += formatted("no normal{}{} left out, since the faces there have no area\n", pairs,
-                          counted(error.quality.degenerate, "normal", "normals"));
+        text += formatted("exact{}{} left out, since faces without area have no normal\n", active,
+                          counted(error.quality.degenerate, "normal was", "normals were"));
     }
   }
   return text;
@@ -111,10 +111,11 @@ std::string notes(const BlendSubject& subject) {
 std::string notes(const BlendComparison& comparison) {
   std::string text;
   if (comparison.still > 0)
-    text += formatted("{} left out, since no target moves a normal\n", counted(comparison.still, "mesh", "meshes"));
+    text += formatted("{} left out, since no target moves a normal\n",
+                      counted(comparison.still, "mesh was", "meshes were"));
   if (comparison.flat > 0)
     text += formatted("{} left out, since no normals are stored; add --elements vertices to compare smooth ones\n",
-                      counted(comparison.flat, "mesh", "meshes"));
+                      counted(comparison.flat, "mesh was", "meshes were"));
   return text;
 }
 

@@ -63,18 +63,19 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     const auto add = [&](std::size_t count, const std::string& what) {
       if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
     };
-    add(row.flagged, share(row.flagged) + " computed in double precision");
-    add(row.fallbacks, share(row.fallbacks) + " where the scheme is undefined and another is used");
+    add(row.flagged, share(row.flagged) + " were computed in double precision");
+    add(row.fallbacks, share(row.fallbacks) + " used another scheme, since this one is undefined there");
     if (row.certified)
       add(row.certified->unbounded,
-          share(row.certified->unbounded) + " without a bound, since a normal vanishes on the way");
+          share(row.certified->unbounded) + " have no bound, since a normal vanishes on the way");
     add(row.quality.missing,
-        counted(row.quality.missing, "sample", "samples") + " left out, since the scheme has no normal there");
+        counted(row.quality.missing, "sample was", "samples were") + " left out, since the scheme has no normal there");
   }
-  if (!played.empty()) text += formatted("{}played step by step: {}\n", prefix, played);
+  if (!played.empty())
+    text += formatted("{}computed step by step, each moment from the one before: {}\n", prefix, played);
   if (degenerate > 0)
-    text += formatted("{}no normal: {} left out, since the faces there have no area\n", prefix,
-                      counted(degenerate, "sample", "samples"));
+    text += formatted("{}{} left out, since faces without area have no normal\n", prefix,
+                      counted(degenerate, "sample was", "samples were"));
   if (comparison.tolerance && comparison.cheapest) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
     text += formatted("{}the cheapest scheme that is always within {:g} degrees is {}, with an error of at most {}\n",
@@ -172,9 +173,9 @@ std::string compare_table(const NamedComparison& input, TableColumns columns) {
   table.add_column("scheme", "", Align::kLeft);
   table.add_column("sum", "degrees", Align::kRight);
   table.add_column("vs linear", "ratio", Align::kRight);
-  table.add_column("mean", "degrees", Align::kRight);
+  table.add_column("average", "degrees", Align::kRight);
   table.add_column("rms", "degrees", Align::kRight);
-  table.add_column("max", "degrees", Align::kRight);
+  table.add_column("worst", "degrees", Align::kRight);
   const bool several_segments = input.comparison.segments > 1;
   if (several_segments && is_of_targets(input.comparison))
     table.add_column("worst at", "target", Align::kLeft);

@@ -31,14 +31,14 @@ std::string remarks(const TruthComparison& c) {
   const TruthRow* const curved = find_row(c, "catmull-rom", "exact");
   if (linear != nullptr && exact != nullptr && exact->quality.mean() > kAsGood * linear->quality.mean())
     text += formatted(
-        "\nThe exact normals of straight motion (polynomial) are {} to this motion than linear, with {} and {} "
-        "degrees\non average, since its vertices did not move straight between the keyframes that were kept.\n",
+        "\nExact normals of straight motion (polynomial) are {} to this motion than linear ones: their errors are {} "
+        "and\n{} degrees on average. The vertices did not move straight between the keyframes that were kept.\n",
         exact->quality.mean() < linear->quality.mean() ? "hardly closer" : "not closer", mean_of(*exact),
         mean_of(*linear));
   if (is_too_sparse(c.bend))
     text += formatted(
         "\nThe keyframes are too far apart for curves through them, which bend by {:.2f} of their length (at most "
-        "{:.2f} is\nreliable). More keyframes help; no scheme does.\n",
+        "{:.2f} is\nreliable). Add keyframes; no scheme can make up for them.\n",
         up_to_hundredths(c.bend), kTooSparse);
   if (curved == nullptr)
     text += find_row(c, "hermite", "exact") == nullptr
@@ -47,8 +47,8 @@ std::string remarks(const TruthComparison& c) {
   std::size_t degenerate = 0;
   for (const TruthRow& row : c.rows) degenerate = std::max(degenerate, row.quality.degenerate);
   if (degenerate > 0)
-    text += formatted("\nno normal: {} left out, since the faces there have no area\n",
-                      counted(degenerate, "sample", "samples"));
+    text += formatted("\n{} left out, since faces without area have no normal\n",
+                      counted(degenerate, "sample was", "samples were"));
   return text;
 }
 
@@ -67,7 +67,7 @@ std::string truth_table(const NamedTruthComparison& input) {
   const std::string element(one_element(c.kind));
   table.add_column("path", "", Align::kLeft);
   table.add_column("scheme", "", Align::kLeft);
-  for (const char* title : {"mean", "rms", "worst"}) table.add_column(title, "degrees", Align::kRight);
+  for (const char* title : {"average", "rms", "worst"}) table.add_column(title, "degrees", Align::kRight);
   table.add_column("worst at", "segment", Align::kRight);
   table.add_column("", element, Align::kRight);
   table.add_column("", "t", Align::kRight);

@@ -65,10 +65,11 @@ TEST_F(AuditCli, verdict_comes_first_and_what_to_do_last) {
   EXPECT_EQ(text.find("hinge.glb: errors of 28.33 degrees on average, 90.00 at worst, 3 torn edges on average\n"), 0U)
       << text;
   expect_words(
-      text, {"vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n",
-             "checked 126 samples in 2 motions, by the rule gltf from stored normals\n", "animation 0 (swing), node 0",
-             "90 and more",
-             "target 0 (fold\\x1b[2J) of Hinge moves positions without normals (1 primitive); errors of up to 90.00"});
+      text,
+      {"vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n",
+       "checked 126 samples (vertices at moments) in 2 motions, by the rule gltf from stored normals\n",
+       "animation 0 (swing), node 0", "90 and more",
+       "target 0 (fold\\x1b[2J) of Hinge moves positions but has no normals (1 primitive); errors of up to 90.00"});
   const std::string last =
       "\nchronormal bake hinge.glb -o baked.glb corrects these normals to within 0.5 degrees where it can, and makes "
       "no viewer worse; for viewers that add up targets "
@@ -284,7 +285,7 @@ TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_no_gate_alon
   mesh.targets.clear();
   folder_.write("still.glb", mesh.file().glb());
   EXPECT_EQ(text_of("still.glb"),
-            "still.glb: nothing to judge, since no target and no animation moves stored normals\n");
+            "still.glb: there is nothing to judge, since no target and no animation moves stored normals\n");
   const ProcessResult gate = run("still.glb --tolerance 180 --json"),
                       several = run("still.glb still.glb --tolerance 1");
   EXPECT_EQ(gate.exit_code, 4);
@@ -295,7 +296,8 @@ TEST_F(AuditCli, file_without_motion_is_nothing_to_judge_and_passes_no_gate_alon
   mesh = test::hinge();
   mesh.normals.clear();
   folder_.write("flat.glb", mesh.file().glb());
-  expect_words(text_of("flat.glb"), {"nothing to judge", "has no normals, and is rendered flat, which is right"});
+  expect_words(text_of("flat.glb"),
+               {"there is nothing to judge", "has no normals, and is rendered flat, which is right"});
 }
 
 TEST_F(AuditCli, motion_of_which_no_pair_can_be_judged_passes_no_gate) {
@@ -427,10 +429,10 @@ TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
   const std::size_t faults = text.find("\nFaults:\n");
   ASSERT_NE(faults, std::string::npos);
   const std::string much =
-      "\n  20 targets of Much move positions without normals; errors of up to 90.00 degrees "
+      "\n  20 targets of Much move positions but have no normals; errors of up to 90.00 degrees "
       "(worst: target 17 of Much, vertex 3 of Much, primitive 0)\n";
   EXPECT_EQ(text.find(much, faults), faults + 8) << text;
-  expect_words(text, {"\n  target 0 of Little moves positions without normals (1 primitive); errors of up to "});
+  expect_words(text, {"\n  target 0 of Little moves positions but has no normals (1 primitive); errors of up to "});
   const Json json = json_of("two.glb");
   EXPECT_EQ(json["findings"].size(), 21U);
 }
@@ -445,7 +447,7 @@ TEST_F(AuditCli, targets_together_are_a_fault_of_their_own_where_they_are_worse_
   builder.add_track(builder.add_animation("both"), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   folder_.write("both.glb", builder.glb());
   expect_words(text_of("both.glb"),
-               {"2 targets of mesh 0 move positions without normals; errors of up to 7.13",
+               {"2 targets of mesh 0 move positions but have no normals; errors of up to 7.13",
                 "animation 0 (both), node 0: errors of up to 14.04 degrees where targets mix, and of up to 7.13"});
 }
 
@@ -590,8 +592,9 @@ TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
   }
   mesh.targets = {{{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}, {}, {}}};
   folder_.write("uniform.glb", mesh.file().glb());
-  expect_words(text_of("uniform.glb"), {"\n  true normals are uniform-weighted, as the base normals of the file are\n",
-                                        "from uniform-weighted normals, which they follow; by area it would be "});
+  expect_words(text_of("uniform.glb"),
+               {"\n  true normals are uniform-weighted, as the base normals of the file are\n",
+                "from uniform-weighted normals, which they follow; from area-weighted ones it would be "});
   const Json detected = json_of("uniform.glb"), asked = json_of("uniform.glb --weighting area");
   EXPECT_EQ(detected["weighting"], "uniform");
   EXPECT_EQ(detected["subjects"][0]["weighting"], "uniform");

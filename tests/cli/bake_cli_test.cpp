@@ -232,7 +232,7 @@ TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
     }
   }
   EXPECT_GT(worse, 0U);
-  expect_words(run("huge.glb -o other.glb").out, {"nothing better was found for these viewers"});
+  expect_words(run("huge.glb -o other.glb").out, {"bake found nothing better for the named viewers"});
   EXPECT_EQ(run("moving.glb -o fine.glb").err.find("worse"), std::string::npos);
 }
 
@@ -260,15 +260,15 @@ TEST_F(BakeCli, a_result_that_is_better_in_one_respect_and_worse_in_another_is_t
     if (grown("mean_degrees") > -0.01 || grown("worst_degrees") < 0.1) continue;
     ++mixed;
     EXPECT_EQ(audit["worse"], true);
-    expect_words(result.err, {"the result is better than the input on average (" + figure("mean_degrees_after") +
-                                  " degrees, before " + figure("mean_degrees_before") + ")",
-                              ", but worse in its worst error (" + figure("worst_degrees_after") + " degrees, before " +
-                                  figure("worst_degrees_before") +
-                                  "); these errors include single sliders, which --animations-only gives up\n"});
+    expect_words(result.err,
+                 {"the result is better than the input on average (" + figure("mean_degrees_after") +
+                      " degrees, before " + figure("mean_degrees_before") + ")",
+                  ", but worse in its worst error (" + figure("worst_degrees_after") + " degrees, before " +
+                      figure("worst_degrees_before") +
+                      "); these errors include single sliders, which --animations-only does not correct\n"});
     // The tables of viewers name the poses that they cover.
     const std::string both = "in the animations of the file, and with each slider alone:",
-                      tracks =
-                          "in the animations of the file (not with single sliders, which --animations-only gives up";
+                      tracks = "in the animations of the file (--animations-only does not correct single sliders";
     const std::string text = run("talk.glb -o out.glb --force --animations-only --for three").out;
     expect_words(text, {tracks});
     EXPECT_EQ(text.find(both), std::string::npos);
@@ -416,7 +416,7 @@ TEST_F(BakeCli, a_plan_lists_the_forms_and_writes_nothing) {
   const std::size_t entries = folder_.entry_count();
   const ProcessResult plan = run("moving.glb --plan --for three"), json = run("moving.glb --plan --json");
   EXPECT_EQ(plan.exit_code, 0) << plan.err;
-  expect_words(plan.out, {"nothing is written", "as it is", "own deltas", "low rank", "recommended"});
+  expect_words(plan.out, {"--plan writes nothing", "as it is", "own deltas", "low rank", "recommended"});
   EXPECT_EQ(Json::parse(json.out)["meshes"][0]["candidates"][0]["name"], "as it is");
   EXPECT_EQ(plan.out.find("animations only"), std::string::npos);
   const ProcessResult alone = run("moving.glb --plan --for three --animations-only");

@@ -528,7 +528,7 @@ TEST_F(Cli, compare_prints_an_aligned_table_and_nothing_else) {
   EXPECT_EQ(line, "a.obj ... b.obj: 3 vertices, 1 face, 1 segment x 21 samples");
   std::getline(lines, line);
   std::getline(lines, line);
-  const std::size_t mean = line.find("mean") + 4;
+  const std::size_t mean = line.find("average") + 7;
   std::getline(lines, line);
   EXPECT_EQ(line.substr(mean - 7, 7), "degrees");
   int rows = 0;
@@ -591,7 +591,7 @@ TEST_F(Cli, sequential_access_is_nearly_random_access_and_says_who_has_it) {
   EXPECT_EQ(played["schemes"][0]["operations"]["trigonometric"], 0);
   EXPECT_NEAR(played["schemes"][0]["mean_degrees"], random["schemes"][0]["mean_degrees"].get<double>(), 1e-4);
   EXPECT_LT(played["schemes"][2]["max_degrees"], 5e-6 * 57.3);
-  EXPECT_NE(run("compare --sample twist --access sequential").out.find("played step by step: linear"),
+  EXPECT_NE(run("compare --sample twist --access sequential").out.find("each moment from the one before: linear"),
             std::string::npos);
   expect_error(run("compare --sample twist --access reverse"), 2, {"--access"});
 }

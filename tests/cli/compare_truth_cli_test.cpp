@@ -123,7 +123,7 @@ TEST_F(CompareTruth, calls_exact_hardly_nearer_where_it_is_a_little_nearer) {
       if (row["scheme"] == "polynomial") exact = row["mean_degrees"];
     }
     const std::string text = run("--truth 2").out;
-    EXPECT_EQ(text.find("are no nearer to this motion than linear") != std::string::npos, exact >= linear) << text;
+    EXPECT_EQ(text.find("are not closer to this motion than linear") != std::string::npos, exact >= linear) << text;
     EXPECT_EQ(text.find("are hardly closer to this motion than linear") != std::string::npos,
               exact < linear && exact > 0.98 * linear)
         << text;

@@ -113,13 +113,14 @@ std::string original_words(const Audited& input) {
   }
   const std::string baked = "the wrong meshes were baked before, and bake does not change them again; ";
   if (any_harmless && any_driven)
-    return baked + "to get closer, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
+    return baked +
+           "for smaller errors, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
   if (any_harmless) return baked + "nothing better is possible for targets that no animation moves";
   if (!all_single && all_fitted)
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
   if (!all_single)
-    return baked + "they were changed after that, or --weighting was another; bake the ORIGINAL file again";
+    return baked + "since then they were changed, or --weighting is another; bake the ORIGINAL file again";
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
@@ -142,8 +143,9 @@ std::string advice(const Audited& input) {
       return "\nthe normals are right but the tangents are not, which bake does not correct; export tangents for all "
              "targets, or for\nnone, so that viewers compute them\n";
     case Remedy::kViewers:
-      return formatted("\nthe normals are right in viewers that add up targets as glTF says, which these do not: {}\n",
-                       wrong_viewers(input));
+      return formatted(
+          "\nthe normals are right in viewers that add up targets as glTF says; these viewers do not: {}\n",
+          wrong_viewers(input));
     case Remedy::kRule:
       return formatted("\nviewers do not show a glTF file by the rule {}; leave --rule out to see what bake can do\n",
                        audit_rule_name(input.audit.rule));
@@ -164,7 +166,7 @@ std::string verdict(const Audited& input) {
     case Remedy::kNone:
       return "right";
     case Remedy::kUnknown:
-      return "unknown";
+      return "could not be judged";
     case Remedy::kTangents:
       return "tangents wrong";
     case Remedy::kViewers:

@@ -57,7 +57,8 @@ std::string audit_files_text(const std::vector<AuditedFile>& files) {
     cells.push_back(file.verdict);
     table.add_row(std::move(cells));
   }
-  return headline(files) + '\n' + table.text() + "\nchronormal audit FILE tells where, and what to do about it\n";
+  return headline(files) + '\n' + table.text() +
+         "\nTo see where a file is wrong, and what to do, run chronormal audit FILE.\n";
 }
 
 std::string audit_files_json(std::vector<AuditedFile> files, const AuditLimits& limits) {

@@ -84,11 +84,12 @@ std::string group_words(const Audited& input, const Group& group) {
   const std::string who = subject_of(input, group), worst = degrees(found.degrees);
   switch (found.kind) {
     case Kind::kUnlit:
-      return formatted("{}: {} would be zero, infinite or NaN in a viewer", who, pairs(group.count));
+      return formatted("{}: {} would be zero, infinite or NaN in a viewer", who, samples(group.count));
     case Kind::kMissingNormals:
-      return formatted("{} {} positions without normals{}; {}", who, is_one ? "moves" : "move",
+      return formatted("{} {} positions but {} no normals{}; {}", who, is_one ? "moves" : "move",
+                       is_one ? "has" : "have",
                        is_one ? " (" + counted(found.count, "primitive", "primitives") + ")" : "",
-                       found.is_fault() ? "errors of up to " + worst + " degrees" : "no normal has to turn");
+                       found.is_fault() ? "errors of up to " + worst + " degrees" : "no normal has to change");
     case Kind::kWrongAtKeys:
       return formatted("{}: {} have errors of up to {} degrees at {}", who,
                        input.audit.rule == AuditRule::kFlat ? "faces" : "stored normals", worst,
@@ -110,11 +111,13 @@ std::string group_words(const Audited& input, const Group& group) {
                                     of_mesh(input, found), worst)
                         : formatted("{}: errors of up to {} degrees in the poses", of_mesh(input, found), worst);
     case Kind::kStaleKeys:
-      return formatted("{}: stored normals do not turn with the surface ({}), so the rule of the base decides there",
-                       who, counted(group.count, "vertex", "vertices"));
+      return formatted(
+          "{}: stored normals do not turn with the surface ({}), so true normals are computed as for the base", who,
+          counted(group.count, "vertex", "vertices"));
     case Kind::kUnknownRule:
       return formatted(
-          "{}: its normals follow no known weighting, so area is used; others differ by {} degrees at the median",
+          "{}: its normals follow no known weighting, so area weights are used; other weights would change "
+          "true normals by {} degrees (median)",
           of_mesh(input, found), degrees(found.degrees));
     case Kind::kStaleTangents:
       return formatted("{}: {} up to {} degrees away from a right angle to the true normal", who,
@@ -133,14 +136,14 @@ std::string group_words(const Audited& input, const Group& group) {
                        counted(found.count, "correction target", "correction targets"));
     case Kind::kEmptied:
       return formatted(
-          "{}: {} of an earlier bake lost normals, since another program has replaced them; bake the ORIGINAL file "
+          "{}: {} of an earlier bake lost normals, since another program has computed new ones; bake the ORIGINAL file "
           "again",
           who, counted(found.count, "correction target", "correction targets"));
     case Kind::kSequenceTargets:
       return formatted("{}: {} keyframes of a baked sequence, so only animations were judged", who,
                        counted(found.count, "target is one of the", "targets are"));
     case Kind::kBeyondViewer:
-      return formatted("{}: {} too many for {}; {}", who, counted(found.count, "target", "targets"),
+      return formatted("{}: {} than {} supports; {}", who, counted(found.count, "target more", "targets more"),
                        found.viewer->title, found.viewer->beyond);
   }
   return "";

@@ -62,7 +62,8 @@ std::string weighting_words(const Audited& input) {
 std::string headline(const Audited& input) {
   const Audit& audit = input.audit;
   std::string text = heading(printable(input.name())) + ": ";
-  if (audit.subjects.empty()) return text + "nothing to judge, since no target and no animation moves stored normals\n";
+  if (audit.subjects.empty())
+    return text + "there is nothing to judge, since no target and no animation moves stored normals\n";
   text += formatted("errors of {} degrees on average, {} at worst", degrees(audit.error.mean()),
                     judged_degrees(audit.error.worst));
   if (audit.error.samples > 0)
@@ -74,7 +75,7 @@ std::string headline(const Audited& input) {
   const char* source =
       audit.stored ? "stored normals" : "normals that a viewer computes at keyframes, since none are stored";
   if (audit.rule == AuditRule::kFlat) source = "the normals of faces";
-  text += formatted("  checked {} in {}, by the rule {} from {}\n", pairs(audit.error.judged),
+  text += formatted("  checked {} (vertices at moments) in {}, by the rule {} from {}\n", samples(audit.error.judged),
                     counted(audit.subjects.size(), "motion", "motions"), audit_rule_name(audit.rule), source);
   text += weighting_words(input);
   if (audit.still > 0)
@@ -82,11 +83,11 @@ std::string headline(const Audited& input) {
                       counted(audit.still, "target or track moves", "targets or tracks move"));
   if (audit.error.no_normal > 0)
     text +=
-        formatted("  {} cannot be judged, since the faces there have almost no area\n", pairs(audit.error.no_normal));
+        formatted("  {} cannot be judged, since the faces there have almost no area\n", samples(audit.error.no_normal));
   if (audit.error.cancelled > 0)
     text += formatted(
-        "  {} of these cannot be judged because normals of faces cancel, as of two sides that share vertices. No "
-        "--tolerance\n  allows it. The first is at {}\n",
+        "  {} of these cannot be judged because normals of faces cancel, as on a sheet whose sides share "
+        "vertices.\n  No --tolerance allows it. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text +=
@@ -94,7 +95,7 @@ std::string headline(const Audited& input) {
                   grouped(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
     text += formatted("  {} would be zero, infinite or NaN in a viewer, and count as 180 degrees. The first is at {}\n",
-                      pairs(audit.error.unlit), unlit_label(input));
+                      samples(audit.error.unlit), unlit_label(input));
   return text;
 }
 
@@ -198,7 +199,7 @@ std::string offset_line(const Audited& input, const AuthoredOffset& offset) {
                 degrees(offset.worst), weighting, offset.of_polygons ? " of polygons" : "");
   if (offset.worst >= kSeen) text += " (" + vertex_words(input, offset.worst_at) + ")";
   if (offset.is_detected && offset.weighting != Weighting::kArea)
-    text += formatted(", which they follow; by area it would be {}", degrees(offset.area_mean));
+    text += formatted(", which they follow; from area-weighted ones it would be {}", degrees(offset.area_mean));
   else if (!offset.is_detected && offset.mean() >= kSeen && offset.closest_mean < offset.mean() / 2)
     text += formatted("; --weighting {} is closer, {} on average, {} at worst", weighting_name(offset.closest),
                       degrees(offset.closest_mean), degrees(offset.closest_worst));
@@ -216,8 +217,10 @@ std::string offset_lines(const Audited& input) {
       ++more;
   }
   if (more > 0) text += formatted("  ... and {} more (--json has all)\n", grouped(more));
-  return text.empty() ? text
-                      : "\nDifference of your normals at rest from smooth ones, which is normal and no error:\n" + text;
+  return text.empty()
+             ? text
+             : "\nDifference between your normals at rest and smooth ones (intended by authors, and no error):\n" +
+                   text;
 }
 
 // Names the place of the first sample of a count.

@@ -24,7 +24,7 @@ std::string degrees(double value) {
 
 std::string judged_degrees(double value) { return value > kAuditFault ? alarming(degrees(value)) : degrees(value); }
 
-std::string pairs(std::size_t count) { return counted(count, "sample", "samples"); }
+std::string samples(std::size_t count) { return counted(count, "sample", "samples"); }
 
 std::string vertex_words(const Audited& input, const AuditPlace& place) {
   if (!place.mesh || input.document() == nullptr) return formatted("vertex {}", place.vertex);

@@ -19,8 +19,8 @@ inline constexpr std::size_t kMostAuditRows = 16;
 /// Formats degrees in the same way, with emphasis if the value is a fault.
 [[nodiscard]] std::string judged_degrees(double value);
 
-/// Returns "1 pair", "12 pairs": samples of a vertex at a moment.
-[[nodiscard]] std::string pairs(std::size_t count);
+/// Returns "1 sample", "12 samples".
+[[nodiscard]] std::string samples(std::size_t count);
 
 /// Return "vertex 17 of Head, primitive 1", "node 3 (eye)", "target 0 (smile)", "animation 1 (talk)".
 [[nodiscard]] std::string vertex_words(const Audited& input, const AuditPlace& place);
