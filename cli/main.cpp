@@ -18,7 +18,7 @@ int main(int argument_count, char** arguments) {
                         merge_command(), query_command(), report_command(), sample_command()},
                        arguments_of_program(argument_count, arguments));
   } catch (const std::bad_alloc&) {
-    say_ending("out of memory");
+    say_ending("out of memory; close other programs, or choose a smaller part of the input");
   } catch (const std::exception& error) {
     say("", std::string("internal error: ").append(error.what()), Tone::kError);
   }

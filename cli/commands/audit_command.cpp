@@ -80,33 +80,34 @@ const std::vector<RefusedOption> kRefusedByAudit = {
     {"--world", "errors do not depend on where nodes put a mesh, so audit judges each mesh in its own space"}};
 
 std::vector<std::vector<Option>> tables(AuditArguments& options) {
-  return {input_table(options.input, kRefusedByAudit),
-          {{"--rule NAME",
-            &options.rule,
-            "how normals between keyframes are interpolated\nOne of gltf (default for glTF), lerp, nlerp (default for "
-            "all other inputs), slerp, step and flat",
-            {.rare = true}}},
-          options.judge.table("judge what these viewers show"),
-          {{"--tolerance DEG", &options.limits.degrees,
-            "exit with code 4 if an error is larger than DEG degrees\nErrors count in every viewer of --for"},
-           {"--tears N", &options.limits.torn_edges,
-            "exit with code 4 if more than N edges are torn at a moment\nAn edge of a glTF file is torn if errors jump "
-            "by more than 10 degrees across it, so that a fold shows that is not there"},
-           {"--poses FILE|random", &options.poses,
-            "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
-            "judges random poses"},
-           {"--weights LO:HI",
-            &options.weights,
-            "judge each target alone from weight LO to HI\nThe default is 0:1",
-            {.rare = true}},
-           {"--errors FILE", &options.errors,
-            "write the error of every vertex at every sample\nEither .npz for programs, or .ply with the largest error "
-            "of each vertex as its quality, for MeshLab and Blender"},
-           {"--no-weld", &options.no_weld, "do not merge vertices that are always at one point", {.rare = true}}},
-          options.run.options("judge only share I of N equal shares of a sequence\nOUT is a shard, and chronormal "
-                              "merge puts all shards together"),
-          {{"--json", &options.json, "print JSON, for programs"}},
-          options.common.table(false)};
+  return {
+      input_table(options.input, kRefusedByAudit),
+      {{"--rule NAME",
+        &options.rule,
+        "how normals between keyframes are interpolated\nOne of gltf (default for glTF), lerp, nlerp (default for "
+        "all other inputs), slerp, step and flat",
+        {.rare = true}}},
+      options.judge.table("judge the normals that these viewers show"),
+      {{"--tolerance DEG", &options.limits.degrees,
+        "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names"},
+       {"--tears N", &options.limits.torn_edges,
+        "exit with code 4 if more than N edges are torn at a moment\nAn edge of a glTF file is torn if errors jump "
+        "by more than 10 degrees across it, so that a fold shows that is not there"},
+       {"--poses FILE|random", &options.poses,
+        "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
+        "judges random poses"},
+       {"--weights LO:HI",
+        &options.weights,
+        "judge each target alone from weight LO to HI\nThe default is 0:1",
+        {.rare = true}},
+       {"--errors FILE", &options.errors,
+        "write the error of every vertex at every sample\nEither .npz for programs, or .ply with the largest error "
+        "of each vertex as its quality, for MeshLab and Blender"},
+       {"--no-weld", &options.no_weld, "do not merge vertices that are always at one point", {.rare = true}}},
+      options.run.options("judge only share I of N equal shares of a sequence\nOUT is a shard, and chronormal "
+                          "merge puts all shards together"),
+      {{"--json", &options.json, "print JSON, for programs"}},
+      options.common.table(false)};
 }
 
 // Audits an input that is not glTF. The result is empty on a rank that has nothing to print.

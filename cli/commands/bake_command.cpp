@@ -57,7 +57,9 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   if (!options.encode.empty()) {
     how.encoding = find_bake_encoding(options.encode);
     if (!how.encoding)
-      return misuse("--encode", "the encoding must be smallest, harmless, exact or endpoint, or for a sequence keys");
+      return misuse("--encode",
+                    "the encoding must be smallest, harmless, exact or endpoint; for a sequence, harmless, exact, "
+                    "endpoint or keys");
   }
   if (!options.viewers.empty()) {
     Result<std::vector<Viewer>> viewers = find_viewers(options.viewers);
@@ -412,18 +414,20 @@ Command bake_command() {
   auto options = std::make_shared<BakeArguments>();
   const std::vector<RefusedOption> refused = {
       {"--base", "write a .glb of the base and its targets with convert first, and bake that file"},
-      {"--animation", "bake corrects all animations of a glTF file at once"},
-      {"--world", "normals are stored in the space of each mesh"}};
+      {"--animation", "bake corrects all animations of a glTF file at once, so leave it out"},
+      {"--world", "bake writes normals in the space of each mesh, so leave it out"}};
   return {
       "bake",
       "Correct the normals of a glTF file, or make a glTF file from a sequence",
       {input_table(options->input, refused),
        {{"--for VIEWER,...", &options->viewers,
          "the viewers that the result is made for, such as three\nViewers and compressors are " + viewer_names() +
-             "; all names all viewers. The default is three, babylon, playcanvas and bevy, and no worse in all others"},
+             "; all names all viewers. The default is three, babylon, playcanvas and bevy; the result is then no worse "
+             "in the others"},
         {"--encode HOW", &options->encode,
-         "how the new normals are stored (default: smallest)\nsmallest: the best result for the size, at most 2.5 "
-         "times as large a file, or with --tolerance the fewest bytes that reach it. harmless: unit normals that "
+         "how the new normals are stored (default: smallest)\nsmallest: the smallest errors in a file of at most 2.5 "
+         "times "
+         "the size, or with --tolerance the fewest bytes that keep it. harmless: unit normals that "
          "look the same in every viewer and after any compression. exact: correction targets that make normals "
          "exact in viewers that add up targets as glTF says. endpoint: the best single delta for each target, "
          "without correction targets. keys, only for sequences: the fewest keys that stay within the tolerance at "
@@ -447,7 +451,7 @@ Command bake_command() {
         {"--max-bytes N",
          &options->most_bytes,
          "spend at most N bytes on the normals of each mesh\nFor a sequence, and with another --encode than "
-         "smallest, the limit is on all new arrays, and the command fails if they are larger",
+         "smallest, the limit applies to all new arrays together, and the command fails if they are larger",
          {.check = check_whole(0)}},
         {"--max-targets N",
          &options->most_targets,
@@ -455,21 +459,22 @@ Command bake_command() {
          "viewers can show. Only with --encode smallest",
          {.check = check_whole(0)}},
         {"--animations-only", &options->animations_only,
-         "make only the animations right, not single sliders\nNormals are fitted to the animations of the file. "
+         "correct only the animations, not single sliders\nNormals are fitted to the animations of the file. "
          "Moving a slider by hand may then look wrong. Only with --encode smallest"},
         {"--poses FILE|random", &options->poses,
-         "make poses right that a program sets\nFILE has poses as JSON, such as [{\"smile\": 1, \"jaw\": 0.5}, "
+         "correct the poses that a program sets\nFILE has poses as JSON, such as [{\"smile\": 1, \"jaw\": 0.5}, "
          "...]; random uses random poses. Meshes that no animation drives then get correction targets, which the "
          "program has to drive as the file says. Only with --encode smallest"},
         {"--plan", &options->plan,
-         "print what each candidate would give, and write nothing\nOnly with --encode smallest"},
+         "list the candidates with their errors, and write nothing\nOnly with --encode smallest"},
         {"--dense-zeros",
          &options->dense_zeros,
-         "write zeros as bytes, for readers that need them (Assimp)",
+         "write zeros in full, for programs that need them (Assimp)",
          {.rare = true}},
         {"--tolerance DEG", &options->tolerance,
-         "the largest error allowed along the animations\nWith harmless and exact it is how far correction targets "
-         "that are left out may turn a normal. The default is 0.5, and 0.001 with exact"},
+         "the largest error allowed along the animations\nWith harmless and exact, correction targets that turn no "
+         "normal "
+         "by more than DEG degrees are left out. The default is 0.5, and 0.001 with exact"},
         {"--drivers FILE",
          &options->drivers,
          "also write how to drive correction targets, as JSON\nThe extras of the result say the same",

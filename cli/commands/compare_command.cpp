@@ -396,8 +396,7 @@ Result<int> run(const CompareArguments& options) {
                   "bounds can only be computed for random access; leave --access out");
   if (const Status output = options.run.check_output(options.common); !output) return output.error();
 
-  if (options.run.shard && options.each)
-    return misuse("--shard", "--shard is only for a single motion; leave --each out");
+  if (options.run.shard && options.each) return misuse("--shard", "--shard divides a single motion; leave --each out");
   if (options.run.shard && options.errors)
     return misuse("--errors", "a run with --shard cannot write single errors; leave --errors or --shard out");
   if (options.run.shard && (options.json || options.csv))
@@ -408,7 +407,9 @@ Result<int> run(const CompareArguments& options) {
     return misuse("--table", options.csv ? "--table and --csv cannot be used together; leave one of the two out"
                                          : "a shard cannot be printed as a table; leave --table out");
   if (options.run.resume && (options.each || options.errors))
-    return misuse("--resume", "--resume is only for sums of a single motion; leave --each and --errors out");
+    return misuse("--resume",
+                  "--resume cannot be used with --each or --errors, since it keeps only the sums of one motion; leave "
+                  "--resume out");
   if (options.errors) {
     if (options.each) return misuse("--errors", "--errors is only for a single motion; leave --each out");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)

@@ -7,8 +7,8 @@ namespace chronormal::cli {
 std::vector<Option> TruthArguments::table() {
   return {{"--truth N",
            &every,
-           "keep every Nth keyframe, and compare with the others\nThe keyframes of a sequence that are left out show "
-           "what really happened. Curved paths are compared, too",
+           "keep every Nth keyframe, and compare with the others\nThe keyframes that are left out show how the mesh "
+           "really moved. Only for sequences. Curved paths are compared, too",
            {.check = check_whole(2)}}};
 }
 

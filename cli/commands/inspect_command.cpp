@@ -55,7 +55,7 @@ Command inspect_command() {
            options->common.table(false)},
           "INPUT is a motion or a single mesh. inspect lists what makes normals go wrong, such as faces without area, "
           "faces\nthat turn far, edges of more than two faces, vertices at the same point, and normals that do not "
-          "follow a target.\nThe exit code does not depend on it.\n"
+          "follow a target.\nThese findings do not change the exit code.\n"
           "\nExamples:\n"
           "  chronormal inspect head.glb\n"
           "  chronormal inspect walk/ --json\n"

@@ -11,7 +11,7 @@ Question cones_question() {
   return {"cones",
           "the cones that contain all normals of a face, and bounds of meshlets",
           {{"--meshlets N", meshlets.get(),
-            "also build meshlets of up to N triangles\nTheir bounds have the format of meshoptimizer"}},
+            "also build meshlets (small groups) of up to N triangles\nTheir bounds have the format of meshoptimizer"}},
           [meshlets] {
             return Result<Ask>(
                 [meshlets](const Motion& motion, const QuerySpan& span, const QueryProgress& progress,

@@ -6,7 +6,7 @@ namespace chronormal::cli {
 
 Question shutter_question() {
   return {"shutter",
-          "mean normals while a shutter is open, for motion blur",
+          "average normals while a shutter is open, for motion blur",
           {},
           [] { return Result<Ask>(query_shutter); },
           true};

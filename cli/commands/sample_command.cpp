@@ -41,7 +41,7 @@ std::string sample_footer() {
   return text +
          "\nThe name of OUT chooses the format: .npy is an array (times, elements, 3) of float32; .npz has normals, "
          "times,\npositions and faces; .ply or .obj is the mesh with its normals, a file for each time, with %d in the "
-         "name for\nits number. (0, 0, 0) stands where there is no normal.\n"
+         "name for\nits number. An element without a normal gets (0, 0, 0).\n"
          "\nExamples:\n"
          "  chronormal sample walk/ --times 0:0.25:12 -o normals.npy\n"
          "  chronormal sample body.obj walk.pc2 --times 1.5 --elements corners --crease 60 -o shaded.obj\n"
@@ -95,7 +95,7 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
   const auto weighting = make_weighting(options.weighting);
   if (!weighting) return misuse("--weighting", weighting.error().message);
   if (options.length != "unit" && options.length != "area")
-    return misuse("--length", "the length must be unit or area");
+    return misuse("--length", "the length must be unit (1) or area (twice the area of a face)");
   const bool by_area = weighting.value() == Weighting::kArea;
   if (options.length == "area" && !by_area)
     return misuse("--length", "the length area needs --weighting area; leave one of the two out");

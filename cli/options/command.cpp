@@ -30,8 +30,8 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
         counted(cut.pieces, "straight piece", "straight pieces"), cut.path.tolerance, cut.rounding));
   if (cut.beyond > 0)
     warn(
-        formatted("{} of {} times a face in a segment is not that close to its curve, since it almost vanishes between "
-                  "two keyframes, or would need more pieces than --max-expansion allows",
+        formatted("in {} of {} cases (a face in a segment), normals are not that close to the curve, since the face "
+                  "almost vanishes between two keyframes, or would need more pieces than --max-expansion allows",
                   grouped(cut.beyond), grouped(faces * cut.segments)));
   if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
     warn("there are only two keyframes, so vertices move straight between them, as with --path linear");
@@ -45,7 +45,7 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const bool is_reversed = fit.direction < 0 && fit.length > 0;
   warn(is_reversed
            ? std::string("the velocities point against the motion of the vertices, so that hermite paths swing back "
-                         "and forth; perhaps they are reversed, or the keyframes too far apart")
+                         "and forth; check whether they are reversed, or give more keyframes")
            : formatted("the velocities do not fit the motion, since vertices would go {:.3g} times as far as they do; "
                        "velocities are per second, so check --fps, without which keyframes are one second apart",
                        fit.length));

@@ -117,7 +117,8 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   run.journal = &*journal_;
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
-    say(command_, formatted("going on after {} {} of an earlier run", grouped(done), things), Tone::kWarning);
+    say(command_, formatted("going on after {} {}, which an earlier run has finished", grouped(done), things),
+        Tone::kWarning);
   return Success{};
 }
 

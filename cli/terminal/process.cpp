@@ -52,7 +52,7 @@ void end_by_lost_input() {
 // then.
 void end_for_want_of_memory() {
   remove_temporaries();
-  end_line_and_say("out of memory");
+  end_line_and_say("out of memory; close other programs, or choose a smaller part of the input");
   end_now(kExitFailed);
 }
 

@@ -118,7 +118,7 @@ const OPTIONS = [
   ['weighting', '--weighting <RULE>', 'how much each face counts in a vertex normal'],
   ['maxTargets', '--max-targets <N>', 'at most N morph targets for each mesh', Number],
   ['maxBytes', '--max-bytes <N>', 'at most N bytes of normals for each mesh', Number],
-  ['animationsOnly', '--animations-only', 'make only the animations right, not single sliders'],
+  ['animationsOnly', '--animations-only', 'correct only the animations, not single sliders'],
 ];
 
 /**

@@ -21,14 +21,14 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"lagrange:K",
                       "polynomial of degree K through K + 1 exact unit normals, K = 1 to 64 (from about "
                       "K = 16 on, float32 limits the accuracy)"},
-    SchemeDescription{"linear:scaled", "straight line, with the length of one end chosen to err least"},
+    SchemeDescription{"linear:scaled", "straight line, with the length of one end chosen for the smallest error"},
     SchemeDescription{"slerp", "shortest arc between the end normals"},
     SchemeDescription{"decasteljau:K", "spherical de Casteljau over K exact normals, K = 2 to 32 (default 4)"},
     SchemeDescription{"quaternion:matrix", "quaternion slerp, frames by the matrix of the paper"},
     SchemeDescription{"quaternion:edge", "quaternion slerp, tangent along the first edge"},
     SchemeDescription{"quaternion:polar", "quaternion slerp, frames by polar decomposition"},
     SchemeDescription{"quaternion:random:SEED", "quaternion slerp, random frames (SEED default 1)"},
-    SchemeDescription{"quaternion:optimal", "quaternion slerp, the frames with the least mean error"},
+    SchemeDescription{"quaternion:optimal", "quaternion slerp, with the frames that give the smallest average error"},
     SchemeDescription{"circle", "circle through the exact normal in the middle"},
     SchemeDescription{"circle:timed", "the same circle, meeting the middle at t = 1/2"},
 };

@@ -166,21 +166,22 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
       "shutter",
       {{"segments", "segments examined", number(parts.value().size())},
        {all, all + " in each segment", number(asked)},
-       {"largest_error", "largest possible error of a mean normal, in its own units",
+       {"largest_error", "largest possible error of an average normal (length of the difference)",
         *std::max_element(rows.error.begin(), rows.error.end())},
        {"mean_ends_off", "degrees, average error of the normal half way between both ends", mean_off(rows)},
        {"largest_ends_off", "degrees, largest error of the normal half way between both ends", rows.largest_off}},
       {}};
   answer.tables.push_back(std::move(rows).table(
-      "", "mean normals while the shutter is open, and those half way between the ends", elements.kind, true));
+      "", "average normals while the shutter is open, and normals half way between the ends", elements.kind, true));
   if (parts.value().size() > 1 && motion.kind != MotionKind::kTargets) {
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
     answer.facts.push_back(
-        {"span_mean_ends_off", "degrees, average of this error over the whole time", mean_off(whole)});
-    answer.facts.push_back(
-        {"span_largest_ends_off", "degrees, largest of this error over the whole time", whole.largest_off});
-    answer.tables.push_back(std::move(whole).table("span", "mean normals over the whole time", elements.kind, false));
+        {"span_mean_ends_off", "degrees, average of this error for one exposure of the whole time", mean_off(whole)});
+    answer.facts.push_back({"span_largest_ends_off",
+                            "degrees, largest of this error for one exposure of the whole time", whole.largest_off});
+    answer.tables.push_back(
+        std::move(whole).table("span", "average normals over the whole time", elements.kind, false));
   }
   return answer;
 }
