@@ -65,8 +65,8 @@ def before_export(export_settings: dict[str, Any]) -> None:
         return
     module = writer()
     if module is None:
-        say("WARNING", "Normals were not corrected: this version of the glTF exporter is unknown to the add-on. The plain file "
-                       "stands; correct it with the program: chronormal bake FILE")
+        say("WARNING", "Normals were not corrected: this version of the glTF exporter is unknown to the add-on. Your plain "
+                       "export was kept; correct it with the program: chronormal bake FILE")
         return
     original = getattr(module, _WRITE)
 
@@ -91,7 +91,7 @@ def _bake_or_say_why(path: Path) -> tuple[str, str]:
     try:
         return bake_in_place(path)
     except Exception as error:  # pylint: disable=broad-except
-        return "WARNING", f"Normals were not corrected; the plain file stands. {type(error).__name__}: {error}"
+        return "WARNING", f"Normals were not corrected; your plain export was kept. {type(error).__name__}: {error}"
 
 
 def bake_in_place(path: Path) -> tuple[str, str]:
@@ -100,10 +100,10 @@ def bake_in_place(path: Path) -> tuple[str, str]:
         found = program.find(settings.program_path())
         outcome = program.bake(found, path, path, settings.get().options())
     except program.Unavailable as error:
-        return "WARNING", f"Normals were not corrected; the plain file stands. {error}"
+        return "WARNING", f"Normals were not corrected; your plain export was kept. {error}"
     if not outcome.wrote:
         why = " ".join(outcome.said) or f"the program ended with exit code {outcome.code}"
-        return "WARNING", f"Normals were not corrected; the plain file stands. {why}"
+        return "WARNING", f"Normals were not corrected; your plain export was kept. {why}"
     level = "INFO" if outcome.code == 0 else "WARNING"
     return level, " ".join([verdict(outcome.report), *(said + "." for said in outcome.said)])
 

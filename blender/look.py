@@ -185,7 +185,7 @@ class State(bpy.types.PropertyGroup):
 
     judged: bpy.props.EnumProperty(
         name="File",
-        description="Which file is held against Blender's normals",
+        description="The file that is compared with Blender's normals",
         items=[("PLAIN", "As exported", "The file as Blender exports it"),
                ("BAKED", "Corrected", "The file with right normals, by the settings of the export panel")],
     )
@@ -306,7 +306,7 @@ class CHRONORMAL_OT_look(_Looking, bpy.types.Operator):
 
     over: bpy.props.EnumProperty(
         name="Over",
-        items=[("NOW", "The sliders now", "The shape keys at the values that they have now"),
+        items=[("NOW", "The sliders now", "The shape keys at their current values"),
                ("TIME", "The timeline", "All frames of the timeline: the worst error of each corner"),
                ("KEYS", "Keys and pairs", "Each key by itself, and pairs of keys that turn the same normals")],
     )

@@ -115,5 +115,5 @@ def bake(path: Path, source: Path, result: Path, options: list[str]) -> Outcome:
         try:
             outcome.report = json.loads(run.stdout)
         except ValueError as error:
-            raise Unavailable(f"{path} does not answer as chronormal does. Is it another program?") from error
+            raise Unavailable(f"{path} does not answer as chronormal does. Check the path of the program in the preferences.") from error
     return outcome

@@ -13,12 +13,12 @@ dist() {
   done
   dist=$root/dist version=$(sed -n 's/^project(chronormal VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")
   if ! SOURCE_DATE_EPOCH=$(git -C "$root" log -1 --format=%ct); then
-    say "a release is made of a commit: this is no clone of the repository"
+    say "this folder is no clone of the repository, but a release is made from a commit; clone the repository first"
     return 1
   fi
   # The time of all files in archives, so that an archive that is made again has the same bytes.
   export SOURCE_DATE_EPOCH
-  [ -z "$(git -C "$root" status --porcelain)" ] || say "the archive has the files of the commit, and some here are others"
+  [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit; the archive has the files of the commit"
   mkdir -p "$dist"
   [ $# -gt 0 ] || { rm -f "$dist"/*; set -- "${dist_steps[@]}"; }
   for step in "${dist_steps[@]}"; do

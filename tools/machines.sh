@@ -8,7 +8,7 @@ fetch_arm64() {
   local folder=$1 listed package
   listed=$(listed_packages machines-arm64 | xargs)
   [ "$(cat "$folder/.fetched" 2>/dev/null)" = "$listed" ] && return 0
-  say "getting the ARM packages" $listed
+  say "downloading the packages for ARM:" $listed
   rm -rf "$folder" && mkdir -p "$folder/.apt/lists/partial" "$folder/.apt/cache/archives/partial"
   cat >"$folder/.apt/sources.list" <<'LIST'
 deb [arch=arm64 signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main

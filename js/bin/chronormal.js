@@ -5,7 +5,7 @@
 const LEAST = 18; // the "engines" of package.json
 
 if (parseInt(process.versions.node, 10) < LEAST) {
-  console.error(`chronormal: needs Node.js ${LEAST} or later; this is ${process.versions.node}`);
+  console.error(`chronormal: this program needs Node.js ${LEAST} or later, and this is ${process.versions.node}; install a newer version`);
   process.exitCode = 1;
 } else {
   import('../src/cli.js')

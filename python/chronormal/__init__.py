@@ -357,7 +357,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
         for name, given in {"access": access != "random", "elements": elements != "faces", "crease": crease != 180, "weld": not weld,
                             "times": times, "certify": certify, "tolerance": tolerance is not None}.items():
             if given:
-                raise ValueError(f"{name}: it does not go with face, which looks at one face")
+                raise ValueError(f"{name}: this option cannot be used with face, which examines a single face")
         number, segment = face if isinstance(face, tuple) else (face, 0)
         return _json.loads(_chronormal.figure_of_face(opened, list(schemes), samples, number, segment))
     text, _ = _chronormal.compare(opened, list(schemes), samples, access == "sequential", elements, crease, weld, times,
@@ -514,7 +514,7 @@ def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *
 
 def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
             end: float | None = None, elements: _Elements = "faces", crease: float | None = None, weld: bool = True) -> dict[str, NDArray[Any]]:
-    """Return mean normals while a shutter is open: a dict of arrays with a row for each segment and face.
+    """Return average normals while a shutter is open: a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()
     elements, crease, weld   as for curves()

@@ -278,7 +278,7 @@ n(t) is (1 - t)**2 * n0 + 2 * t * (1 - t) * m + t**2 * n1; the unit normal is n(
       .def_property_readonly("bytes", &Curves::bytes, "Memory that the curves keep, in bytes.")
       .def_property_readonly("elements", &Curves::elements, "\"faces\", \"vertices\" or \"corners\".")
       .def_property_readonly("fit_bound", &Curves::fit_bound,
-                             "Radians: how far the fit of another weighting than area may be off; 0 for area.")
+                             "The largest error, in radians, of the fit for another weighting than area; 0 for area.")
       .def("__len__", &Curves::size)
       .def("__repr__", &Curves::text);
   py::class_<Blend> blend(module, "Blend", R"(Unit normals of blend shapes, exact at any weights.

@@ -103,7 +103,7 @@ class MotionTest(unittest.TestCase):
         self.assertEqual(figure["schemes"][1]["scheme"], "quaternion:edge")
         with self.assertRaisesRegex(ValueError, "there is no face"):
             cn.compare(self.motion, face=10**6)
-        with self.assertRaisesRegex(ValueError, "^certify: it does not go with face"):
+        with self.assertRaisesRegex(ValueError, "^certify: this option cannot be used with face"):
             cn.compare(self.motion, face=0, certify=True)
 
     def test_is_pickled_and_copied_with_all_it_has(self):

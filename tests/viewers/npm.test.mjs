@@ -41,7 +41,7 @@ test('an older Node.js is told which one the program needs, and the least of pac
     return node(['--require', older, command, '--version']);
   };
   for (const version of ['10.24.1', `${least - 1}.99.0`]) {
-    const message = `chronormal: needs Node.js ${least} or later; this is ${version}\n`;
+    const message = `chronormal: this program needs Node.js ${least} or later, and this is ${version}; install a newer version\n`;
     assert.deepEqual(runAs(version), { status: 1, stdout: '', stderr: message });
   }
   assert.deepEqual(runAs(`${least}.0.0`), native(['--version']));

@@ -72,7 +72,7 @@ def owners(paths):
         return set()
     found = subprocess.run(["dpkg", "-S", *sorted(paths)], capture_output=True, text=True)
     if found.returncode != 0:
-        sys.exit(f"components.py: of no package: {found.stderr}")
+        sys.exit(f"components.py: a linked library belongs to no Debian package: {found.stderr}")
     packages = {owner.strip() for line in found.stdout.splitlines() if not line.startswith("diversion")
                 for owner in line.split(": ")[0].split(",")}
     return {package for package in packages if package.split(":")[0] not in NO_CODE}
@@ -89,7 +89,7 @@ class Component:
             files = re.search(r"^Files:\s*\*.*?^License:\s*(.+?)$", Path(copyright).read_text(), re.M | re.S)
             self.licence = SPDX_NAMES.get(files.group(1).strip()) if files else None
         if self.licence is None:
-            sys.exit(f"components.py: {copyright} does not say by a name that is known which licence {name} has")
+            sys.exit(f"components.py: {copyright} names no licence for {name} that this script knows; add it to SPDX_NAMES")
 
     @staticmethod
     def of_package(package):
@@ -213,7 +213,7 @@ def sbom(version, folder):
                     }
                     relations.append((this, relation, that))
     if left:
-        sys.exit(f"components.py: of no kind that is known: {', '.join(sorted(path.name for path in left))}")
+        sys.exit(f"components.py: dist has files of a kind that this script does not know: {', '.join(sorted(path.name for path in left))}")
     time = datetime.fromtimestamp(int(os.environ["SOURCE_DATE_EPOCH"]), timezone.utc)
     json.dump({
         "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT",

@@ -29,7 +29,7 @@ export function makeFacePanel(report, player, view, compute) {
   const words = h('p', { className: 'note', role: 'status' }), body = h('div', { className: 'figures', hidden: true });
   const places = h('div', { className: 'acts' });
   const save = h('button', { type: 'button', className: 'plain save', onclick: download }, 'Save as SVG');
-  const back = h('button', { type: 'button', className: 'plain', hidden: true, onclick: () => face && choose(face) }, 'Corners back');
+  const back = h('button', { type: 'button', className: 'plain', hidden: true, onclick: () => face && choose(face) }, 'Reset the corners');
   const slider = h('input', { type: 'range', min: 0, step: 1, 'aria-label': 't of the figures', oninput: () => go(Number(slider.value)) });
   const moment = h('output', { className: 'moment' });
   const build = h('select', { 'aria-label': 'construction on the sphere', onchange: () => ((construction = build.value), draw()) });
@@ -86,7 +86,7 @@ export function makeFacePanel(report, player, view, compute) {
       figure = undefined;
       body.hidden = true;
       save.disabled = true;
-      words.textContent = `The figures of face ${face.number.toLocaleString('en')} are not in this file, which has those of some of the worst places. The page with the program inside shows any face.`;
+      words.textContent = `This file has figures for some of the worst places only, and none for face ${face.number.toLocaleString('en')}. The page with the program inside shows any face.`;
       places.replaceChildren(...stored.map((one, i) => h('button', { type: 'button', className: 'plain', onclick: () => showStored(i) }, `face ${one.face.toLocaleString('en')}`)));
       return;
     }
@@ -160,7 +160,7 @@ export function makeFacePanel(report, player, view, compute) {
     rows.replaceChildren(table('the schemes on this face', ['scheme', 'q ', 'at t ', 'length '], figure.schemes.map((one) => ({
       'data-scheme': one.scheme, 'data-sum': one.sum_degrees,
       cells: [tick(one.scheme), `${one.sum_degrees.toFixed(one.sum_degrees < 10 ? 2 : 1)}°`, degreesText(one.degrees[sample] ?? NaN), one.lengths ? one.lengths[sample].toFixed(3) : '1'],
-    }))), h('p', { className: 'note' }, `q is the sum of the angles at ${figure.t.length} samples, as in the paper. All numbers are the program's.`));
+    }))), h('p', { className: 'note' }, `q is the sum of the angles at ${figure.t.length} samples, as in the paper. The program computed all numbers.`));
     if (focused >= 0) rows.querySelectorAll('input')[focused]?.focus();
   }
   const swatch = ({ colour, dashes }) => s('svg', { viewBox: '0 0 30 8', class: 'swatch' }, s('line', { x1: 0, x2: 30, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.5, 'stroke-dasharray': dashes }));
@@ -303,7 +303,7 @@ export function makeFacePanel(report, player, view, compute) {
       face = figure = undefined;
       body.hidden = true;
       save.disabled = true;
-      words.textContent = compute ? 'Click a face of the mesh, or type its number.' : 'Click a face of the mesh, or type its number. This file has the figures of some of the worst places.';
+      words.textContent = compute ? 'Click a face of the mesh, or type its number.' : 'Click a face of the mesh, or type its number. This file has figures for some of the worst places only.';
       places.replaceChildren(...ofPart().map((one) => h('button', { type: 'button', className: 'plain', onclick: () => showStored(stored.indexOf(one)) }, `face ${one.face.toLocaleString('en')}`)));
     },
     restyle: draw,

@@ -75,7 +75,7 @@ function explain(error) {
   if (!(error instanceof EngineError)) return say(error.message);
   if (/memory/i.test(error.message)) return say(TOO_LARGE, error.message);
   if (/nothing to show/.test(error.message)) return say(NOTHING_MOVES, error.message);
-  say(error.code === 3 ? UNUSABLE : 'The program could not do this.', error.message);
+  say(error.code === 3 ? UNUSABLE : 'The program failed. Its message below says why.', error.message);
 }
 
 async function reportOf(call, { args, bytes }) {
@@ -106,7 +106,7 @@ async function load({ args, files }, bytes) {
 }
 
 async function add(list) {
-  if (abort) return say('The page is still working. Wait until it is done, or cancel.');
+  if (abort) return say('The page is still working. Wait until it is done, or click Cancel.');
   say();
   const faults = [];
   for (const input of inputsOf(list)) {
@@ -180,7 +180,7 @@ async function make(input) {
   if (!found) return;
   input.baked = found;
   show(input, 'baked');
-  const text = found.within ? 'The file is baked, with these notes.' : 'The file is baked, but your tolerance could not be reached within these limits.';
+  const text = found.within ? 'The file is baked, with these notes.' : 'The file is baked, but its errors exceed your tolerance. Accept a larger error, or allow more targets or bytes.';
   if (found.warnings) remark(text, found.warnings);
 }
 

@@ -128,7 +128,7 @@ export function choiceTable({ plan, plan_message: message }) {
   });
   if (tables.length === 0) return null;
   return panel('What a bake would write', false, tables,
-    h('p', { className: 'note' }, 'The errors are in degrees, along the animations of the file. Bake writes the candidate with the mark.'));
+    h('p', { className: 'note' }, 'Errors are in degrees, over the animations of the file. Bake writes the marked candidate.'));
 }
 
 /** Makes a table of the errors of each scheme on this motion. A click on a scheme shows its normals. */
@@ -152,7 +152,7 @@ export function verdict({ audit }) {
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;
   if (judged === 0 && !audit.cancelled) return 'Nothing in this file moves by morph targets.';
   if (audit.cancelled > 0 && worst < 0.5) {
-    return `Normals of ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel at some moment and cannot be right; all others are right within ${degreesText(worst)}.`;
+    return `At some moment, the normals of the faces around ${plural(audit.cancelled, 'drawn vertex', 'drawn vertices')} cancel, so no normal is right there. All others are right within ${degreesText(worst)}.`;
   }
   if (worst < 0.5) return `Normals are right within ${degreesText(worst)} wherever this file moves.`;
   const torn = tornText(audit);

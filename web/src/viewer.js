@@ -9,7 +9,7 @@ import { makePlot } from './plot.js';
 import { makeView } from './view.js';
 
 const KEYS = [
-  ['Space', 'play, pause'], ['← →', 'one sample back, on; with Shift ten'], ['1 2 3', 'lit, normals as colours, error'],
+  ['Space', 'play, pause'], ['← →', 'one moment back or on; ten with Shift'], ['1 2 3', 'lit, normals as colours, error'],
   ['W', 'side by side, or a wipe'], ['N P', 'next, previous of the worst places'], ['F', 'the whole mesh'], ['D', 'dark, light'], ['?', 'these keys'],
 ];
 
