@@ -60,7 +60,7 @@ TEST_F(BakeCli, report_says_what_was_added_and_how_wrong_the_file_was) {
   EXPECT_EQ(result.out.find("cubic spline"), std::string::npos);
   const ProcessResult exact = run("moving.glb -o exact.glb --encode exact");
   expect_words(exact.out, {"hills  exact", "3 targets and ", "1 animation of weights is a cubic spline now"});
-  expect_words(exact.err, {"chronormal bake: hills: 5 morph targets are in the result; viewers limited to ",
+  expect_words(exact.err, {"chronormal bake: hills: 5 morph targets are in the result, and viewers that show only ",
                            "can look wrong in Godot 4, Filament"});
   EXPECT_TRUE(bytes_of("out.glb").starts_with("glTF"));
 }

@@ -69,11 +69,11 @@ TEST_F(InspectCli, mesh_without_trouble_says_so) {
 TEST_F(InspectCli, trouble_says_what_where_and_what_it_means) {
   expect_words(
       text_of("a.obj over.obj"),
-      {"1 face turning over between two keyframes, at an instant without area (face 0 in segment 0 at t = 0.5000)\n"
+      {"1 face turns over between two keyframes, at an instant without area (face 0 in segment 0 at t = 0.5000)\n"
        "    the normal flips to the opposite direction at that instant\n",
        "90 degrees"});
   expect_words(text_of("a.obj line.obj"), {"1 face has no area at a keyframe (face 0 at keyframe 1 (line.obj))\n"});
-  expect_words(text_of("line.obj"), {"1 face has no area (face 0)\n", "there is no normal, so the result is"});
+  expect_words(text_of("line.obj"), {"1 face has no area (face 0)\n", "there is no normal, so results have (0, 0, 0)"});
   EXPECT_EQ(kinds_of(json_of("line.obj line.obj")), (std::vector<std::string>{"no_normal", "no_area_at_keyframe"}));
   EXPECT_EQ(kinds_of(json_of("a.obj over.obj")), (std::vector<std::string>{"turns_over", "turns_far"}));
 }

@@ -28,9 +28,9 @@ std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns ", 30 times in all" if some faces are reported more than once.
+// Returns ", 30 times altogether" if some faces are reported more than once.
 std::string in_all(const Places& places) {
-  return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times in all" : "";
+  return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times altogether" : "";
 }
 
 class Troubles {
@@ -47,9 +47,11 @@ class Troubles {
             (input_.segments.empty() ? "" : " at " + keyframe_label(input_, places.first_at)),
         std::move(meaning));
   }
-  void in_segments(std::string kind, const Places& places, const std::string& what, bool has_instant,
-                   std::string meaning) {
+  // Adds a line such as "2 faces turn over" or "1 face turns over", from the verb " turn" and the rest " over".
+  void in_segments(std::string kind, const Places& places, const std::string& verb, const std::string& rest,
+                   bool has_instant, std::string meaning) {
     if (places.pairs == 0) return;
+    const std::string what = verb + (places.faces == 1 ? "s" : "") + rest;
     const std::string when =
         has_instant ? (input_.has_targets() ? " at w = " : " at t = ") + with_decimals(places.first_t, 4) : "";
     add(std::move(kind), places.faces, faces(places.faces) + what + in_all(places),
@@ -71,25 +73,26 @@ class Troubles {
 void add_motion_trouble(const Inspection& found, Troubles& troubles) {
   const bool moves = !found.segments.empty();
   if (!moves) {
-    troubles.at_keyframes("no_area", found.no_area, " no area", "there is no normal, so the result is (0, 0, 0)");
+    troubles.at_keyframes("no_area", found.no_area, " no area",
+                          "there is no normal, so results have (0, 0, 0) in its place");
   } else {
-    troubles.in_segments("no_normal", found.without_normals, " without area in a whole segment", false,
-                         "there is no normal, so the result is (0, 0, 0)");
+    troubles.in_segments("no_normal", found.without_normals, " lack", " an area during a whole segment", false,
+                         "there is no normal, so results have (0, 0, 0) in its place");
     troubles.at_keyframes("no_area_at_keyframe", found.no_area, " no area at a keyframe",
-                          "the normal there is that of the moments just before or after, if they have one");
+                          "results have the normal of the moments just before or after there, if they have one");
   }
-  troubles.in_segments("turns_over", found.turned_over,
-                       " turning over between two keyframes, at an instant without area", true,
+  troubles.in_segments("turns_over", found.turned_over, " turn",
+                       " over between two keyframes, at an instant without area", true,
                        "the normal flips to the opposite direction at that instant");
   Places others = found.collapses;
   if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all of them were reported
-  troubles.in_segments("collapses", others, " losing all area between two keyframes", true,
+  troubles.in_segments("collapses", others, " lose", " all area between two keyframes", true,
                        found.turned_over.pairs > 0 ? "the normal flips, or is lost for an instant and comes back"
                                                    : "the normal is lost for an instant and comes back");
-  troubles.in_segments("turns_far", found.turned_far, " turning by more than 90 degrees between two keyframes", false,
+  troubles.in_segments("turns_far", found.turned_far, " turn", " by more than 90 degrees between two keyframes", false,
                        "interpolated normals have their largest errors there; compare shows how large");
   troubles.at_keyframes("sliver", found.slivers, " almost no area at a keyframe",
-                        "positions are rounded so much there that the normal points anywhere");
+                        "the faces are so thin that the rounding of positions decides where the normal points");
 }
 
 void add_surface_trouble(const Inspected& input, Troubles& troubles) {
@@ -98,7 +101,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface(
       "non_manifold_edge", surface.non_manifold_edges,
       have(edges(surface.non_manifold_edges.count), surface.non_manifold_edges.count) + " more than two faces",
-      "a vertex normal there mixes all sheets that meet");
+      "a vertex normal there is the sum over all sheets that meet; split the vertices to keep the sheets apart");
   troubles.on_surface("turned_edge", surface.turned_edges,
                       edges(surface.turned_edges.count) + " between faces whose corners run in opposite orders",
                       "their normals point to opposite sides and cancel in vertex normals; flip such faces");
@@ -109,17 +112,16 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
   troubles.on_surface(
       "doubled_face", surface.doubled_faces,
       have(faces(surface.doubled_faces.count), surface.doubled_faces.count) + " the vertices of another face",
-      "they count twice in vertex normals");
+      "such faces count twice in vertex normals; remove one of each two");
   troubles.on_surface(
       "repeating_face", surface.repeating_faces,
       have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " the same point at two corners",
       "a triangle then has no area, and a larger face counts twice in the vertex normal");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
                       "they are cut into triangles that cover them once, where triangles are needed");
-  std::string meaning = "vertex normals have a seam there, unless such vertices are taken as one point";
+  std::string meaning = "shading has a seam there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
-    meaning =
-        "vertex normals have a seam there; " + grouped(split) + " of them are hard edges in the stored normals too";
+    meaning = "shading has a seam there; " + grouped(split) + " of them are hard edges in the stored normals too";
   troubles.add("doubled_vertex", found.doubled.count,
                have(vertices(found.doubled.count), found.doubled.count) +
                    " the same place as another vertex at all times, along " + edges(surface.seam_edges.count),
@@ -159,17 +161,18 @@ void add_gltf_trouble(const Inspected& input, Troubles& troubles) {
     if (described.has_tangents)
       note(tangents_at, tangents, primitive.moving_tangents < primitive.moving ? 1 : 0, primitive);
   }
-  troubles.add("normals_stay", left,
-               have(counted(left, "primitive", "primitives"), left) + " targets that move positions and not normals",
-               left_at, "the shading stays as in the base while the shape changes; bake writes the missing normals");
   troubles.add(
-      "tangents_stay", tangents,
-      have(counted(tangents, "primitive", "primitives"), tangents) + " targets that move positions and not tangents",
-      tangents_at, "normal maps are applied as if the base did not move");
+      "normals_stay", left,
+      have(counted(left, "primitive", "primitives"), left) + " targets that move positions but have no normals",
+      left_at, "the shading stays as in the base while the shape changes; bake writes the missing normals");
+  troubles.add("tangents_stay", tangents,
+               have(counted(tangents, "primitive", "primitives"), tangents) +
+                   " targets that move positions but have no tangents",
+               tangents_at, "viewers apply normal maps as if the base did not move");
   troubles.add("no_normals", flat, have(counted(flat, "primitive", "primitives"), flat) + " no normals", flat_at,
-               "viewers show them flat, with a normal for each face");
+               "viewers shade them flat, with a normal for each face");
   troubles.add("off_length", lengths, counted(lengths, "stored normal is", "stored normals are") + " not of length 1",
-               length_at, "viewers show such normals differently");
+               length_at, "viewers differ in how they render such normals");
 
   std::size_t beyond = 0;
   double lowest = 0, highest = 1;

@@ -87,7 +87,7 @@ Result<QueryAnswer> query_collapse(const Motion& motion, const QuerySpan& span, 
                         {"before", std::move(before), 3},
                         {"after", std::move(after), 3}}},
                       {"always",
-                       "faces without area in a whole segment",
+                       "faces without area during a whole segment",
                        {{"segment", std::move(always_segments)}, {"face", std::move(always_faces)}}}}};
 }
 

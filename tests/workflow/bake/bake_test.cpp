@@ -535,7 +535,7 @@ TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
   for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;
   builder.add_track(0, 0, std::vector<float>{0, 1}, weights);
   const Baked baked = test::bake_document(builder, {.encoding = BakeEncoding::kExact});
-  EXPECT_NE(baked.error.find("the result would need more than 10000 correction targets, since so many pairs of targets "
+  EXPECT_NE(baked.error.find("the result would need more than 10000 correction targets, one for each two targets that "
                              "move the same normals; use --encode endpoint"),
             std::string::npos)
       << baked.error;

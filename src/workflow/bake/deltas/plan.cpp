@@ -109,7 +109,7 @@ Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
         return invalid_input(
             place_of(document, mesh.shading.mesh),
             "the result would need more than " + std::to_string(kMostExtras) +
-                " correction targets, since so many pairs of targets move the same normals; use --encode endpoint");
+                " correction targets, one for each two targets that move the same normals; use --encode endpoint");
       }
       pairs.emplace_back(i, j);
     }

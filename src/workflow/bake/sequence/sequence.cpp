@@ -131,8 +131,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
   report.without_normals = static_cast<std::size_t>(without);
   if (encoding == BakeEncoding::kExact && freed > 0)
     report.warnings.push_back(std::to_string(freed) +
-                              " normals need a target of their own for keyframe 0, since their faces have no area "
-                              "there, or much less later; its weight is 1 at rest");
+                              " normals need a morph target for keyframe 0, whose weight is 1 at rest, since their "
+                              "faces have no area there, or much less than later");
 }
 
 // Adds the targets of exact to the file, and notes which segments bend. Returns false if the elements are not final,
@@ -313,8 +313,9 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
     warnings.push_back("--encode " + std::string(name_of(encoding)) + " can look wrong in " + titles +
                        "; use --encode harmless for these viewers");
   if (without_room > 0)
-    warnings.push_back(std::to_string(without_room) +
-                       " normals turn so far from keyframe 0 that compressors change them");
+    warnings.push_back(
+        std::to_string(without_room) +
+        " normals turn so far from keyframe 0 that compressors change them; check the compressed file with audit");
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
       warnings.push_back(std::to_string(targets) + " targets are too many for " + std::string(viewer.title) + "; " +

@@ -132,7 +132,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
     remedies.emplace_back("if some viewers are enough, name them with --for");
   remedies.emplace_back("choose a larger --tolerance");
-  std::string text = "could not reach " + tolerance +
+  std::string text = "bake could not reach " + tolerance +
                      (chosen->skinned ? " degrees everywhere under its skin" : " degrees everywhere") +
                      ", so the closest result was written; ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
@@ -174,7 +174,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.undriven > 0) {
     warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
-         " not driven by any animation, and only right on average when set by hand");
+         " not driven by any animation, and only approximately right when set by hand");
   }
   if (!baked.unmarked_nodes.empty()) {
     warn("extras of node " + std::to_string(baked.unmarked_nodes.front()) +
@@ -185,8 +185,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.rescaled > 0) {
     warn(std::to_string(baked.rescaled) +
-         " stored base normals are longer than 1e10 or shorter than 1e-10, which viewers cannot add to; their length "
-         "is now 1");
+         " stored base normals are longer than 1e10 or shorter than 1e-10, to which viewers cannot add deltas; their "
+         "length is now 1");
   }
   if (baked.stilled > 0) {
     warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
@@ -194,7 +194,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   }
   if (baked.without_stored > 0) {
     warn(std::to_string(baked.without_stored) +
-         " stored base normals are zero, or nearly, and stay wrong; add --recompute-base to replace them");
+         " stored base normals are (0, 0, 0) or nearly so, and stay wrong; add --recompute-base to replace them");
   }
   if (plan.encoding == BakeEncoding::kSmallest && options.bytes_of_file > 0) {
     const double times = 1 + static_cast<double>(baked.bytes) / static_cast<double>(options.bytes_of_file);
@@ -212,8 +212,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
   // All viewers that can be named have more room, but others have only this.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) +
-         " morph targets are in the result; viewers limited to 4 or 8 of them drop the weakest, which --max-targets "
-         "avoids");
+         " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "
+         "--max-targets");
   }
   if (shading.split_by_crease > 0) {
     warn(std::to_string(shading.split_by_crease) +
