@@ -49,7 +49,8 @@ chronormal_status guarded(const Body& body) noexcept {
   } catch (const std::exception& e) {
     return fail(Error{ErrorCode::kFailed, "", e.what()});
   } catch (...) {
-    return fail(Error{ErrorCode::kFailed, "", "an unknown exception"});
+    return fail(Error{ErrorCode::kFailed, "",
+                      "an unknown exception was thrown in the library; please report this with the input"});
   }
 }
 
@@ -107,7 +108,9 @@ Status check_size(const Struct& given, const char* name) {
         std::string("the size must be sizeof(chronormal_") + name + "); call chronormal_" + name + "_init() to set it"};
   constexpr std::size_t kMost = 4096;
   if (given.size > kMost)
-    return Error{ErrorCode::kUsage, place, "the size is not that of a structure; it was perhaps never set"};
+    return Error{ErrorCode::kUsage, place,
+                 std::string("the size is larger than any version of this structure; call chronormal_") + name +
+                     "_init() to set it"};
   const auto* const bytes = reinterpret_cast<const unsigned char*>(&given);
   if (std::any_of(bytes + sizeof(Struct), bytes + given.size, [](unsigned char byte) { return byte != 0; }))
     return Error{ErrorCode::kUsage, place,

@@ -199,7 +199,7 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
     const std::string how = formatted("give --weights, {} number{} for each pose, or NAME=WEIGHT for some targets",
                                       count, count == 1 ? "" : "s");
     if (has_times) return misuse("--times", "blend shapes have no times; " + how);
-    if (!has_weights) return misuse("--weights", "the input is blend shapes, which need weights; " + how);
+    if (!has_weights) return misuse("--weights", "the input has blend shapes, which need weights; " + how);
     return Success{};
   }
   if (has_weights)

@@ -126,11 +126,13 @@ Result<std::vector<Member>> read_directory(std::string_view file, const std::str
   Directory directory{load32(file, *end + 16), load32(file, *end + 12), load16(file, *end + 10)};
   const bool is_large = directory.begin == kSaturated || directory.size == kSaturated || directory.count == 0xFFFF;
   if (is_large && !read_end64(file, *end, directory))
-    return invalid_input(binary::place(name, *end),
-                         "the .npz (zip) file is damaged, since its zip64 record is missing or wrong");
+    return invalid_input(
+        binary::place(name, *end),
+        "the .npz (zip) file is damaged, since its zip64 record is missing or wrong; save the file again");
   if (directory.begin > *end || directory.size > *end - directory.begin)
-    return invalid_input(binary::place(name, *end),
-                         "the .npz (zip) file is damaged, since its directory lies outside of the file");
+    return invalid_input(
+        binary::place(name, *end),
+        "the .npz (zip) file is damaged, since its directory lies outside of the file; save the file again");
 
   std::vector<Member> members;
   std::set<std::string_view> names;
@@ -138,8 +140,8 @@ Result<std::vector<Member>> read_directory(std::string_view file, const std::str
   const std::size_t directory_end = at + static_cast<std::size_t>(directory.size);
   for (std::uint64_t i = 0; i < directory.count; ++i) {
     const auto damaged = [&, at] {
-      return invalid_input(binary::place(name, at),
-                           "the .npz (zip) file is damaged in entry " + std::to_string(i) + " of its directory");
+      return invalid_input(binary::place(name, at), "the .npz (zip) file is damaged in entry " + std::to_string(i) +
+                                                        " of its directory; save the file again");
     };
     if (directory_end - at < kEntrySize || load32(file, at) != kEntryWord) return damaged();
     const std::size_t name_size = load16(file, at + 28), extra_size = load16(file, at + 30);
@@ -155,7 +157,7 @@ Result<std::vector<Member>> read_directory(std::string_view file, const std::str
     if (!read_zip64_field(file.substr(at + kEntrySize + name_size, extra_size), member)) return damaged();
     if (!names.insert(member.name).second)
       return invalid_input(binary::place(name, at),
-                           "the .npz (zip) file has the array " + scan::quoted(member.name) + " twice");
+                           "the .npz (zip) file has the array " + scan::quoted(member.name) + " twice; save it once");
     members.push_back(member);
     at += entry_size;
   }
@@ -167,41 +169,42 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
   const auto error = [&](std::string message) {
     return invalid_input(name + ", " + scan::quoted(member.name), std::move(message));
   };
+  const auto damaged = [&](const std::string& why) { return error(why + "; copy or save the file again"); };
   if ((member.flags & 1U) != 0) return error("the array is encrypted; save it without a password");
   if (member.method != kStored && member.method != kDeflated)
     return error("the array has an unknown compression (zip method " + std::to_string(member.method) +
                  "); save it with numpy.savez or savez_compressed");
 
   if (member.header > file.size() || file.size() - member.header < kMemberSize)
-    return error("the array lies partly outside of the file, which is damaged or cut off");
+    return damaged("the array lies partly outside of the file, which is damaged or cut off");
   const std::string_view header = file.substr(static_cast<std::size_t>(member.header));
   const std::size_t name_size = load16(header, 26), extra_size = load16(header, 28);
   if (load32(header, 0) != kMemberWord || header.substr(kMemberSize, name_size) != member.name)
-    return error("the array is damaged, since its two headers in the zip file differ");
+    return damaged("the array is damaged, since its two headers in the zip file differ");
   const std::size_t data = kMemberSize + name_size + extra_size;
   if (data > header.size() || member.packed_size > header.size() - data)
-    return error("the array lies partly outside of the file, which is damaged or cut off");
+    return damaged("the array lies partly outside of the file, which is damaged or cut off");
   const std::string_view packed = header.substr(data, static_cast<std::size_t>(member.packed_size));
 
   std::string_view result;
   if (member.method == kStored) {
     if (member.size != member.packed_size)
-      return error("the array is damaged, since it is stored uncompressed but has two sizes");
+      return damaged("the array is damaged, since it is stored uncompressed but has two sizes");
     result = packed.substr(0, static_cast<std::size_t>(std::min(most, member.size)));
   } else {
     if (member.size / kMostPerByte > packed.size() + kSlack)
-      return error("the array is damaged, since its " + std::to_string(packed.size()) + " bytes cannot unpack to " +
-                   std::to_string(member.size));
+      return damaged("the array is damaged, since its " + std::to_string(packed.size()) + " bytes cannot unpack to " +
+                     std::to_string(member.size));
     const auto wanted = static_cast<std::size_t>(std::min(most, member.size));
     bool at_end = false;
     storage = inflate_some(packed, wanted, at_end);
-    if (storage.size() != wanted) return error("the compressed array is damaged or cut off");
+    if (storage.size() != wanted) return damaged("the compressed array is damaged or cut off");
     if (wanted == member.size && !at_end)
-      return error("the compressed array is damaged or longer than its header says");
+      return damaged("the compressed array is damaged or longer than its header says");
     result = storage;
   }
   if (result.size() == member.size && checksum_of(result) != member.checksum)
-    return error("the array is damaged, since its checksum is wrong");
+    return damaged("the array is damaged, since its checksum is wrong");
   return result;
 }
 

@@ -32,8 +32,10 @@ class ChunkReader {
       Chunk group;
       if (Status status = read_chunk(at, bytes_.size(), group); !status) return status.error();
       if (group.tag != (is_wide_ ? "FOR8" : "FOR4"))
-        return error(at, "the cache is damaged, since " + scan::quoted(group.tag) + " is where a group must begin");
-      if (group.end - group.begin < kTagSize) return error(at, "the cache is damaged, since this group has no name");
+        return error(at, "the cache is damaged, since " + scan::quoted(group.tag) +
+                             " is where a group must begin; copy or export it again");
+      if (group.end - group.begin < kTagSize)
+        return error(at, "the cache is damaged, since this group has no name; copy or export it again");
       if (Status status = read_group(bytes_.substr(group.begin, kTagSize), group); !status) return status.error();
       at = group.end;  // groups are not padded
     }
@@ -49,7 +51,8 @@ class ChunkReader {
 
   [[nodiscard]] Status read_chunk(std::size_t at, std::size_t end, Chunk& chunk) const {
     const std::size_t header = is_wide_ ? 16 : 8, alignment = is_wide_ ? 8 : 4;
-    if (end - at < header) return error(at, "the cache is damaged or cut off inside the header of a chunk");
+    if (end - at < header)
+      return error(at, "the cache is damaged or cut off inside the header of a chunk; copy or export it again");
     chunk.tag = bytes_.substr(at, kTagSize);
     chunk.begin = at + header;
     const std::uint64_t size = is_wide_ ? binary::load<std::uint64_t>(bytes_.data() + at + 8, kMayaOrder)
@@ -57,7 +60,7 @@ class ChunkReader {
     if (size > end - chunk.begin)
       return error(at, "the chunk " + scan::quoted(chunk.tag) + " should have " + std::to_string(size) +
                            " bytes, but only " + std::to_string(end - chunk.begin) +
-                           " are left; the cache is damaged or cut off");
+                           " are left; copy or export the cache again");
     chunk.end = chunk.begin + static_cast<std::size_t>(size);
     const auto filled = static_cast<std::size_t>((alignment - size % alignment) % alignment);
     chunk.next = chunk.end + std::min(filled, end - chunk.end);
@@ -98,14 +101,19 @@ class ChunkReader {
         has_count = true;
       } else if (chunk.tag == "FVCA" || chunk.tag == "DVCA") {
         if (!channel || !has_count)
-          return error(at, "the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE)");
-        if (!time) return error(at, "the points have no time, since neither TIME nor STIM comes before them");
+          return error(at,
+                       "the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE); export "
+                       "it again");
+        if (!time)
+          return error(
+              at, "the points have no time, since neither TIME nor STIM comes before them; export the cache again");
         const bool is_double = chunk.tag == "DVCA";
         const std::uint64_t point_size = is_double ? 24 : 12;
         if (count < 0 || content.size() % point_size != 0 ||
             content.size() / point_size != static_cast<std::uint32_t>(count))
           return error(at, "the channel " + scan::quoted(*channel) + " should have " + std::to_string(count) +
-                               " points, which do not fit its " + std::to_string(content.size()) + " bytes");
+                               " points, which do not fit its " + std::to_string(content.size()) +
+                               " bytes; export the cache again");
         list_.push_back({*channel, *time, static_cast<std::uint32_t>(count), is_double, chunk.begin});
         channel.reset();
         has_count = false;

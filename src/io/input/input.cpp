@@ -446,7 +446,7 @@ Result<ReadMotion> read_several(const InputOptions& options) {
   for (const std::string& input : inputs) {
     const Format* const format = find_format(input);
     if (format != nullptr && (format->holds == Holds::kGltf || format->holds == Holds::kMotion))
-      return misuse(input, "the file is a whole motion; give no other inputs");
+      return misuse(input, "this file holds a whole motion; give no other inputs");
   }
   if (!options.animation.empty()) return not_animated(inputs.front());
   std::vector<std::string> notes;

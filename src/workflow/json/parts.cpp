@@ -25,7 +25,7 @@ class Numbers {
 
   double real() {
     if (next_ >= list_.size()) {
-      list_.complain("the list is too short");
+      list_.complain("the list is too short; make this shard again");
       return 0;
     }
     return list_.item(next_++).as_number();
@@ -33,7 +33,7 @@ class Numbers {
   std::size_t count() {
     const double value = real();
     if (value >= 0 && value <= kMostCount && value == std::floor(value)) return static_cast<std::size_t>(value);
-    list_.complain("number " + std::to_string(next_ - 1) + " of the list must be a count");
+    list_.complain("number " + std::to_string(next_ - 1) + " of the list must be a count; make this shard again");
     return 0;
   }
   [[nodiscard]] bool at_end() const { return next_ >= list_.size(); }
@@ -122,7 +122,7 @@ MotionError read_error(const JsonView& list) {
   while (!numbers.at_end()) {
     const std::size_t bin = numbers.count(), count = numbers.count();
     if (bin >= kAuditFineBins)
-      list.complain("the file has a bin that does not exist, " + std::to_string(bin));
+      list.complain("the list has an unknown bin of errors, " + std::to_string(bin) + "; make this shard again");
     else if (count > FineBins::kMostCount - error.counts[bin])
       list.complain("bin " + std::to_string(bin) + " has a count that is too large");
     else
@@ -146,7 +146,7 @@ Json authored_offset_json(const AuthoredOffset& offset) {
 
 Weighting read_weighting(std::size_t number, const JsonView& view) {
   if (number < kAllWeightings.size()) return static_cast<Weighting>(number);
-  view.complain("the file has a weighting that does not exist, " + std::to_string(number));
+  view.complain("the list has an unknown weighting, " + std::to_string(number) + "; make this shard again");
   return Weighting::kArea;
 }
 

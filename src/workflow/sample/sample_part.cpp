@@ -31,7 +31,9 @@ Result<SamplePart> SamplePart::read(std::string_view text, const std::string& na
   const JsonView view(json.value(), "", complaint);
   SamplePart part;
   check_part_version(view);
-  if (view.required_text("command") != "sample") view.complain("command", "the file must be a shard of sample");
+  if (view.required_text("command") != "sample")
+    view.complain("command",
+                  "this file is a shard of another command than sample; merge the shards of each command separately");
   part.first = view.required_count("first", kMostRows);
   part.total = view.required_count("total", kMostRows);
   part.array = static_cast<std::uint32_t>(view.required_count("array", 0xFFFFFFFF));

@@ -65,16 +65,18 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
   EXPECT_EQ(error_text(read_maya_points("FOR5", "a.mc")),
             "a.mc, byte 0: this is not a Maya cache, since it begins neither with FOR4 nor with FOR8");
   EXPECT_EQ(error_with(writer.chunk("FVCA", ""), writer.header(0)),
-            "a.mc, byte 60: the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE)");
-  EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}), ""),
-            "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them");
+            "a.mc, byte 60: the cache is damaged, since these points have no channel name (CHNM) or no size (SIZE); "
+            "export it again");
+  EXPECT_EQ(
+      error_with(writer.points<float>("a", {1, 2, 3}), ""),
+      "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them; export the cache again");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", -1) + writer.chunk("FVCA", ""), writer.header(0)),
-      "a.mc, byte 84: the channel 'a' should have -1 points, which do not fit its 0 bytes");
+      "a.mc, byte 84: the channel 'a' should have -1 points, which do not fit its 0 bytes; export the cache again");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) + writer.chunk("DVCA", std::string(12, 'x')),
                  writer.header(0)),
-      "a.mc, byte 84: the channel 'a' should have 1 points, which do not fit its 12 bytes");
+      "a.mc, byte 84: the channel 'a' should have 1 points, which do not fit its 12 bytes; export the cache again");
   EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""), "a.mc, byte 20: the chunk 'TIME' must have 4 bytes");
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
