@@ -114,10 +114,10 @@ report_results() {
     awk '{ failed += $1; all += $2 } END { print failed - 0, all - 0 }' >>build/counts.txt
   reasons=$(sed -nE 's/.*<skipped message="[^"&]*&#x0A;([^"]*)".*/\1/p' "$folder"/*.xml | sort | uniq -c | sort -rn)
   [ -n "$reasons" ] || return 0
-  say "skipped tests, and why:"
+  say "these tests were skipped, with the number and the reason:"
   printf '%s\n' "$reasons" >&2
   wrong=$(grep -E "$(wrong_reasons)" <<<"$reasons" || true)
-  [ -z "$wrong" ] || { say "these reasons do not hold here: $wrong"; return 1; }
+  [ -z "$wrong" ] || { say "tests were skipped for reasons that are not true on this machine: $wrong"; return 1; }
 }
 
 # wrong_reasons: prints a pattern of reasons that do not hold on this machine, so that no test may be skipped for them.

@@ -191,8 +191,9 @@ std::string track_table(const InspectedGltf& gltf) {
                                              [](const GltfAnimation& animation) { return animation.tracks.empty(); }));
   std::string rest;
   if (silent > 0)
-    rest = formatted("{}{} without weights, so {} any morph target\n", tracks.empty() ? "\n" : "",
-                     counted(silent, "animation", "animations"), silent == 1 ? "it does not move" : "they do not move");
+    rest =
+        formatted("{}{} no weights, and {} any morph target\n", tracks.empty() ? "\n" : "",
+                  counted(silent, "animation has", "animations have"), silent == 1 ? "does not move" : "do not move");
   if (tracks.empty()) return rest;
   Table table;
   table.add_column("animation", "", Align::kLeft);

@@ -159,7 +159,7 @@ bool is_make_human_target(std::string_view file_name) {
 
 Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
                                                VectorView<const float> base) {
-  if (bytes.empty()) return invalid_input(name + ", line 1", "the file is empty");
+  if (bytes.empty()) return invalid_input(name + ", line 1", "the file is empty; copy or export it again");
   std::string unpacked;
   if (bytes.starts_with("\x1F\x8B")) {
     Result<std::string> text = unpack_gzip(bytes, most_target_bytes(base.count), name);

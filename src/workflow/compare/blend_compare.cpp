@@ -298,8 +298,8 @@ std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
   // The left side cannot overflow: a list of targets that fits in memory is far too short.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
-  return invalid_input(place,
-                       std::to_string(targets).append(" targets are too many for so many poses; compare fewer poses"));
+  return invalid_input(place, std::to_string(targets).append(" targets are too many for ") + std::to_string(rows) +
+                                  " poses; compare fewer poses");
 }
 
 // Draws random weights for some targets, in rows for all of them, and fills in the weights of correction targets.

@@ -214,7 +214,7 @@ std::vector<Trouble> find_trouble(const Inspected& input) {
     troubles.add("unreferenced_vertex", unreferenced.count,
                  counted(unreferenced.count, "vertex is", "vertices are") + " in no face",
                  unreferenced.count > 0 ? vertex_label(input, unreferenced.first) : "",
-                 "they have no normal, so the result is (0, 0, 0)");
+                 "there is no normal, so results have (0, 0, 0) in its place");
   }
   return troubles.take();
 }

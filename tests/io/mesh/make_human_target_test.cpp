@@ -93,7 +93,7 @@ TEST(MakeHumanTarget, target_without_deltas_moves_nothing_but_an_empty_file_is_a
     EXPECT_TRUE(check(text)) << text;
     EXPECT_TRUE(check(gzip(text))) << text;
   }
-  EXPECT_EQ(error_text(""), "a.target, line 1: the file is empty");
+  EXPECT_EQ(error_text(""), "a.target, line 1: the file is empty; copy or export it again");
 }
 
 TEST(MakeHumanTarget, wrong_lines_are_errors_with_their_number_and_what_is_wrong) {
