@@ -180,7 +180,7 @@ Command query_command() {
   own.push_back({"--to T", &options->span.to, "examine the motion up to this time"});
   own.push_back({"--json", &options->json, "print JSON, for programs"});
   return {"query",
-          "Ask what normals do over whole intervals of time",
+          "Answer questions about normals over whole intervals of time",
           {std::move(input), std::move(own), options->common.table(false)},
           footer(options->questions),
           [options] { return run(*options); }};

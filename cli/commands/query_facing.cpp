@@ -37,7 +37,7 @@ Result<std::vector<double>> parse_numbers(const std::string& option, std::string
 
 Result<View> view_of(const FacingOptions& options) {
   if (options.direction.has_value() == options.eye.has_value())
-    return misuse("--direction", "the viewer is missing; give either --direction X,Y,Z or --eye X,Y,Z");
+    return misuse("--direction", "the camera is missing; give either --direction X,Y,Z or --eye X,Y,Z");
   const std::string option = options.eye ? "--eye" : "--direction";
   const Result<std::vector<double>> numbers = parse_numbers(option, options.eye ? *options.eye : *options.direction);
   if (!numbers) return numbers.error();
@@ -54,10 +54,10 @@ Result<View> view_of(const FacingOptions& options) {
 Question facing_question() {
   auto options = std::make_shared<FacingOptions>();
   return {"facing",
-          "when faces or vertices face a viewer, and silhouette edges",
-          {{"--direction X,Y,Z", &options->direction, "the viewer is far away in this direction"},
+          "when faces or vertices face a camera, and silhouette edges",
+          {{"--direction X,Y,Z", &options->direction, "the camera is far away in this direction"},
            {"--eye X,Y,Z", &options->eye,
-            "the viewer is at this point\nWith X,Y,Z,X,Y,Z the viewer moves straight to the second point, from the "
+            "the camera is at this point\nWith X,Y,Z,X,Y,Z the camera moves straight to the second point, from the "
             "first to the last time of the motion"},
            {"--silhouettes", &options->silhouettes, "also list the silhouette edges"}},
           [options]() -> Result<Ask> {

@@ -34,7 +34,7 @@ struct SampleArguments {
 std::string sample_footer() {
   std::string text = "Weightings:\n";
   for (const WeightingInfo& weighting : kAllWeightings)
-    text += formatted("  {:<12}{}\n", weighting.name, weighting.summary);
+    text += formatted("  {:<15}{}\n", weighting.name, weighting.summary);
   text += "\nSchemes:\n";
   for (const SchemeDescription& scheme : scheme_descriptions())
     text += formatted("  {:<24}{}\n", scheme.name, scheme.summary);

@@ -455,8 +455,8 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     """Return when faces show their front to somebody who looks: a dict of arrays with a row for each interval.
 
     positions, faces, times, start, end   as for collapse()
-    direction    (3,) the viewer is infinitely far away in this direction; or
-    eye, eye_to  (3,) the viewer is at eye, and moves straight to eye_to over all times; None: stands still
+    direction    (3,) the camera is infinitely far away in this direction; or
+    eye, eye_to  (3,) the camera is at eye, and moves straight to eye_to over all times; None: stands still
     silhouettes  True: also list edges between a front and a back
     elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, seen from their places
 
@@ -466,9 +466,9 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
     """
     if (direction is None) == (eye is None):
-        raise ValueError("direction: the viewer is missing; give either direction or eye")
+        raise ValueError("direction: the camera is missing; give either direction or eye")
     if eye_to is not None and eye is None:
-        raise ValueError("eye_to: eye is missing, the place from which the viewer moves")
+        raise ValueError("eye_to: eye is missing, the place from which the camera moves")
     first = _floats(eye, "eye") if direction is None else _floats(direction, "direction")
     last = first if eye_to is None else _floats(eye_to, "eye_to")
     if first.shape != (3,) or last.shape != (3,):
