@@ -183,7 +183,7 @@ std::string viewers_table(const GltfBake& bake, const BakeReport& report, bool o
     table.add_row({std::string(row.viewer->title), four_decimals(row.before.mean), four_decimals(row.after.mean),
                    four_decimals(row.before.worst), four_decimals(row.after.worst), torn(row.before.torn_edges),
                    torn(row.after.torn_edges)});
-  return formatted("\n{}:\n\n{}\n", poses_words(of_animations), table.text());
+  return formatted("\nerrors {}:\n\n{}\n", poses_words(of_animations), table.text());
 }
 
 std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
@@ -213,8 +213,8 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
       (!row.is_named ? others : row.is_better ? better : left_out).push_back(row);
   if (better.empty()) return "";
   const Shown before = worst_of(better).before, after = worst_of(better).after;
-  std::string text = formatted("on average {} degrees, at worst {}", rounded_change(before.mean, after.mean),
-                               rounded_change(before.worst, after.worst));
+  std::string text = formatted("errors in {}: on average {} degrees, at worst {}", titles_of(better),
+                               rounded_change(before.mean, after.mean), rounded_change(before.worst, after.worst));
   if (before.torn_edges + after.torn_edges > 0)
     text += after.torn_edges == 0 ? ", no torn edges left"
                                   : formatted(", torn edges {} -> {}", torn(before.torn_edges), torn(after.torn_edges));
@@ -222,7 +222,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
     const auto size = static_cast<double>(bake.bytes_of_file + bake.added_bytes - bake.left_out_bytes);
     text += formatted("; the file is {:.2f} times as large", size / static_cast<double>(bake.bytes_of_file));
   }
-  text += formatted("\n({})\n", titles_of(better));
+  text += '\n';
   const auto add_others = [&](const std::vector<ViewerRow>& rows, const char* words) {
     if (rows.empty()) return;
     const ViewerRow& row = worst_of(rows);
@@ -230,8 +230,8 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
         formatted("{}{}: on average {} degrees, at worst {}\n", words, titles_of(rows),
                   rounded_change(row.before.mean, row.after.mean), rounded_change(row.before.worst, row.after.worst));
   };
-  add_others(others, "in ");
-  add_others(left_out, "not better in ");
+  add_others(others, "errors in ");
+  add_others(left_out, "errors that bake could not make smaller in ");
   return text;
 }
 
@@ -301,7 +301,7 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
       }
     }
   }
-  return any ? formatted("\n{}:\n\n{}", poses_words(of_animations), table.text()) : "";
+  return any ? formatted("\nerrors {}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
 // Lists the respects in which a result is worse or better with their figures: "on average (0.6400 degrees, before
