@@ -26,7 +26,7 @@ update_lists() {
 # install_packages SECTION...: prints nothing if all packages are installed.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
-    say "this is not Debian: the packages of tools/packages.txt must be there under the names of your system"
+    say "this is not Debian; install the packages of tools/packages.txt under the names that they have on your system"
     return 0
   fi
   local missing=() package
@@ -49,8 +49,8 @@ install_packages() {
   # so.
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
   if ! { update_lists "${apt[@]}" && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } </dev/null >&2; then
-    say "the packages could not be installed (apt-get says why above); is there a network, is this Debian 12, and has no other"
-    say "program held the lock of dpkg for five minutes?"
+    say "the packages could not be installed, and apt-get says why above; check that there is a network, that this is Debian 12,"
+    say "and that no other program holds the lock of dpkg"
     return 1
   fi
 }
@@ -68,7 +68,7 @@ install_npm() {
   cmp -s "$folder/package-lock.json" "$installed" && return 0
   say "installing the npm packages of $1"
   if ! (cd "$folder" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error) </dev/null >&2; then
-    say "the npm packages could not be installed; does npm reach its registry (npm says why above)?"
+    say "the npm packages could not be installed, and npm says why above; check that npm reaches its registry"
     return 1
   fi
   cp "$folder/package-lock.json" "$installed"

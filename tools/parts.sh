@@ -132,7 +132,7 @@ wrong_reasons() {
 show_counts() {
   local name
   for name; do
-    say "what Node's test runner counted in $name:"
+    say "tests of $name, as Node's test runner counted them:"
     grep -E '^# (tests|pass|fail|cancelled|skipped|duration_ms) ' "build/release/$name.tap"
   done
 }
