@@ -87,12 +87,12 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
         "how normals between keyframes are interpolated\nOne of gltf (default for glTF), lerp, nlerp (default for "
         "all other inputs), slerp, step and flat",
         {.rare = true}}},
-      options.judge.table("judge the normals that these viewers show"),
+      options.judge.table("judge the normals that these viewers render"),
       {{"--tolerance DEG", &options.limits.degrees,
         "exit with code 4 if an error is larger than DEG degrees\nThe limit applies to each viewer that --for names"},
        {"--tears N", &options.limits.torn_edges,
         "exit with code 4 if more than N edges are torn at a moment\nAn edge of a glTF file is torn if errors jump "
-        "by more than 10 degrees across it, so that a fold shows that is not there"},
+        "by more than 10 degrees across it, which looks like a fold that the surface does not have"},
        {"--poses FILE|random", &options.poses,
         "also judge these poses of a glTF file\nFILE has poses as JSON, such as [{\"jawOpen\": 0.7}, ...]; random "
         "judges random poses"},
@@ -391,7 +391,7 @@ Result<int> run(const AuditArguments& options) {
 Command audit_command() {
   auto options = std::make_shared<AuditArguments>();
   return {"audit",
-          "Measure the errors of the normals that a viewer shows",
+          "Measure the errors of the normals that a viewer renders",
           tables(*options),
           "A viewer is a program that shows meshes, such as three.js or Godot. Without --animation, each target of "
           "a\nglTF file is judged alone, from weight 0 to 1, and then all animations. Your base normals count as true, "

@@ -140,14 +140,15 @@ std::string advice(const Audited& input) {
                                                "each side of a sheet its own vertices\n"
                                              : "\nnothing could be judged, since no face that moves has an area\n";
     case Remedy::kTangents:
-      return "\nthe normals are right but the tangents are not, which bake does not correct; export tangents for all "
+      return "\nthe normals are right, but the tangents are not, and bake does not correct them; export tangents for "
+             "all "
              "targets, or for\nnone, so that viewers compute them\n";
     case Remedy::kViewers:
       return formatted(
           "\nthe normals are right in viewers that add up targets as glTF says; these viewers do not: {}\n",
           wrong_viewers(input));
     case Remedy::kRule:
-      return formatted("\nviewers do not show a glTF file by the rule {}; leave --rule out to see what bake can do\n",
+      return formatted("\nviewers do not render glTF files by the rule {}; leave --rule out to see what bake can do\n",
                        audit_rule_name(input.audit.rule));
     case Remedy::kOriginal:
       return '\n' + original_words(input) + '\n';
