@@ -99,7 +99,7 @@ export function weightSliders(player) {
   };
 }
 
-const TORN = '99.9 % of all errors are below the value in that column. Across a torn edge the error jumps by more than 10 degrees, which looks like a fold that the surface does not have. The column has their number on average.';
+const TORN = '99.9 % of all errors are below the value in the column 99.9 %. Across a torn edge the error jumps by more than 10 degrees, which looks like a fold that the surface does not have. The column torn has the average number of torn edges at a moment.';
 
 // Returns the number of torn edges at a moment, on average, or an empty text if it is not known.
 const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
