@@ -79,7 +79,7 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
     troubles.in_segments("no_normal", found.without_normals, " lack", " an area during a whole segment", false,
                          "there is no normal, so results have (0, 0, 0) in its place");
     troubles.at_keyframes("no_area_at_keyframe", found.no_area, " no area at a keyframe",
-                          "results have the normal of the moments just before or after there, if they have one");
+                          "results use the normal just before or after that moment, if there is one");
   }
   troubles.in_segments("turns_over", found.turned_over, " turn",
                        " over between two keyframes, at an instant without area", true,
