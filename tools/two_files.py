@@ -182,7 +182,7 @@ LICENSE = "".join(f"// {line}".rstrip() + "\n" for line in (ROOT / "LICENSE").re
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 # A product followed by a sum must stay two roundings, so that the bits are the same on every machine.
 ROUNDINGS = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
-#error "chronormal promises bits, and -ffast-math takes them: compile it without"
+#error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif
 """
 

@@ -16,7 +16,7 @@
 #include <utility>
 
 #ifdef __FAST_MATH__
-#error "chronormal promises bits, and -ffast-math takes them: compile it without"
+#error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif
 
 // This is the only place that uses instructions by name. Compilers do not find these instructions by themselves without
