@@ -40,7 +40,7 @@
 extern "C" {
 #endif
 
-/* The values are the exit codes of the program. */
+/* The outcome of a call. The values are the exit codes of the program. */
 typedef enum chronormal_status {
   CHRONORMAL_DONE = 0,
   CHRONORMAL_FAILED = 1,       /* memory, files, or an internal failure */
@@ -54,8 +54,9 @@ CHRONORMAL_API const char* chronormal_version(void);
  * until the next call that fails. */
 CHRONORMAL_API const char* chronormal_last_message(void);
 
-/* Polygons over vertices. With `offsets`, face f has the corners offsets[f] to offsets[f + 1] - 1, and there are
- * face_count + 1 offsets, the first of which is 0; if it is NULL, every face is a triangle. */
+/* Polygons over vertices. `corners` has the vertices of all faces, one face after the other. `offsets` has
+ * face_count + 1 numbers, the first of which is 0: face f has the corners offsets[f] to offsets[f + 1] - 1. If
+ * `offsets` is NULL, every face is a triangle. */
 typedef struct chronormal_mesh {
   size_t vertex_count;
   size_t face_count;
@@ -126,12 +127,12 @@ CHRONORMAL_API chronormal_status chronormal_curves_next(chronormal_curves* curve
 CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
 /* Returns the memory of the curves in bytes. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
-/* Writes the unit normals at t, with (0, 0, 0) for elements without a normal; `zeros`, if it is not NULL, gets the
- * number of these. */
+/* Writes the unit normals at t, with (0, 0, 0) for elements without a normal. The number of such elements is stored in
+ * `zeros`, unless it is NULL. */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
-/* Writes the unit normals at many t, each to its own output; `zeros`, if it is not NULL, gets the total number of (0,
- * 0, 0). Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of one
+/* Writes the unit normals at many t, each to its own output. The total number of (0, 0, 0) is stored in `zeros`, unless
+ * it is NULL. Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of one
  * output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
@@ -141,8 +142,8 @@ CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* cur
                                                           chronormal_vectors normals, float* degrees);
 CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);
 
-/* A morph target: its deltas, and the vertices to which they are added, in ascending order; if these are NULL, every
- * vertex has a delta. */
+/* A morph target: its deltas, and the vertices to which they are added, in ascending order. If `vertices` is NULL,
+ * every vertex has a delta. */
 typedef struct chronormal_target {
   size_t count;             /* of deltas */
   const uint32_t* vertices; /* count of them, or NULL */

@@ -1,6 +1,6 @@
 /// chronormal: the normals of triangle meshes that deform. Includes all public headers of the library `chronormal`, in
-/// the order in which they build on each other; a header includes only its own folder and the folders above it.
-/// chronormal_io.h has files and the workflows on them.
+/// the order in which they build on each other. A header includes only headers of its own folder and of folders that
+/// come earlier here. chronormal_io.h has files and the workflows on them.
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 
@@ -17,10 +17,10 @@
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, and their transforms
 #include "chronormal/normals/mesh_normals.h"     // begin here: unit normals between keyframes, at weights
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
-// Faces, vertices, corners: the corners that share a normal, and their sums.
+// Groups of corners that share a normal, and sums over these groups.
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/recompute.h"  // the baselines: cross products computed anew at every t
-// Area, angle, uniform ...: the weightings of other tools, and quadratics fitted to them.
+// The weightings of other tools (area, angle, uniform and so on), and quadratics that are fitted to them.
 #include "chronormal/normals/weighting.h"
 
 #include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name

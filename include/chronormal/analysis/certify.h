@@ -4,23 +4,23 @@
 ///
 ///     the supremum over t in [0, 1] of the angle between the scheme's normal, in float32, and the exact n(t)
 ///
-/// so that the error at no t is above `upper`, and the error at the given t is at least `lower`.
+/// The error is at most `upper` at every t, and at least `lower` at the instant `at`.
 ///
 ///     auto slerp = make_scheme("slerp").value();
 ///     slerp->prepare({&segment, {0, normals.size()}, normals});
 ///     std::vector<ErrorBounds> bounds(normals.size());
 ///     certify(*slerp, {&segment, {0, normals.size()}, normals}, bounds);
 ///
-/// Method     [0, 1] is cut into pieces. On each, the scheme is a cubic and a ball around it, the normal a quadratic,
-///            and the Bernstein coefficients of their cross and dot products bound the angle; the piece with the
-///            largest bound is halved until that bound meets the largest error found in the middle of a piece
-///            (docs/theory.md, section 19).
-/// Rounding   is included: coefficients are taken as float32 has them, the ball has a proven bound of what evaluating
-///            them in float32 adds, and control normals count with their errors. `polynomial` and `recompute` have the
-///            bound that they guarantee, kExactTolerance.
+/// Method     [0, 1] is cut into pieces. In each piece, the scheme's curve lies within a ball around a cubic, and the
+///            exact normal is a quadratic. The Bernstein coefficients of their cross and dot products bound the angle.
+///            The piece with the largest bound is halved until this bound meets the largest error found in the middle
+///            of a piece (docs/theory.md, section 19).
+/// Rounding   is included: coefficients have their float32 values, the radius of the ball includes a proven bound of
+///            the rounding when float32 evaluates them, and the errors of control normals are added. `polynomial` and
+///            `recompute` have the bound that they guarantee, kExactTolerance.
 /// Collapses  If n(t), or the vector that the scheme normalises, vanishes inside the segment, no bound below half a
 ///            turn is claimed: `upper` is pi, and [from, to] contains the place.
-/// Units      radians; local t.
+/// Units      angles in radians; t is the fraction of the segment, from 0 to 1.
 /// Threads    pure. Allocates a little, once for each call.
 /// Cost       about 10 pieces per element: 1.5 to 5 microseconds; schemes of nested slerps take 50 times as long.
 /// Limits     Bounds are for normals at random access, not for playback, which drifts. Scheme and control normals must
@@ -64,12 +64,14 @@ struct CertifyOptions {
   std::size_t most_pieces = 256;  // at most 256
 };
 
-/// Bounds of the distance between n0, m and n1 of an element and their exact values, in each component.
+/// Bounds of the errors of the three control normals n0, m and n1 of an element: the largest distance between a
+/// component and its exact value.
 using ControlErrors = std::array<double, 3>;
 
 /// Bounds the errors of all elements of a block. An element without a normal in the whole segment gets the bounds 0, 0.
 /// The scheme must be prepared from this block, and `result` must have as many elements. `errors` has an entry for each
-/// element, or is empty if every control normal is within 2^-26 of its length, as face_control_normals() guarantees.
+/// element, or is empty if every control normal has a relative error of at most 2^-26, as face_control_normals()
+/// guarantees.
 void certify(const Scheme& scheme, const ElementBlock& block, std::span<ErrorBounds> result,
              const CertifyOptions& options = {}, std::span<const ControlErrors> errors = {});
 

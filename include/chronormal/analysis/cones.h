@@ -15,10 +15,10 @@
 /// time has the empty cone, which is the axis 0 with the sine 0 and always passes. Cones with a half-angle above 90
 /// degrees become the whole sphere.
 ///
-/// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are assumed to be within
-///            2^-26 of their length, as face_control_normals() guarantees, and the rounding of the cone itself is
-///            added. This increases the half-angle by about 3e-7 rad, and by 1e-6 of its sine. (docs/theory.md, section
-///            20)
+/// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are assumed to have
+///            relative errors of at most 2^-26, as face_control_normals() guarantees, and the rounding of the cone
+///            itself is added. This increases the half-angle by about 3e-7 rad, and by 1e-6 of its sine.
+///            (docs/theory.md, section 20)
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Curtis, Yoon, Manocha: ICCD (2009), for the control normals and cones of them; Tang, Manocha, Tong:
@@ -37,8 +37,9 @@
 
 namespace chronormal {
 
-/// A set of directions around an axis. The axis is a unit vector up to float32 rounding, except for the two special
-/// cones; the cone is around the exact direction of these floats.
+/// A set of directions around an axis. The axis is a unit vector up to float32 rounding, or zero in the two special
+/// cones, which are the whole sphere and the empty cone. The centre of the cone is the exact direction of these three
+/// floats.
 struct NormalCone {
   Vec3f axis;
   float sine = 0;  ///< sine of the half-angle, from 0 to 1
@@ -70,9 +71,9 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
                                               double t1) noexcept;
 
 /// Returns a cone that contains all the given cones: for a cluster from its faces, for a node from its children, or for
-/// a face from several segments. Empty cones do not count; without cones the result is empty. It is close to the
-/// smallest possible cone (a few percent wider), and each level of a hierarchy adds about 1e-7 rad of rounding. Cost:
-/// 11 passes over the cones.
+/// a face from several segments. Empty cones are ignored, and without other cones the result is the empty cone. The
+/// result is close to the smallest possible cone (a few percent wider), and each level of a hierarchy adds about 1e-7
+/// rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
 // The bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer. They are computed for an
@@ -88,11 +89,11 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 //     dot(normalize(cone_apex - camera), cone_axis) >= cone_cutoff                             perspective
 //     dot(center - camera, cone_axis) >= cone_cutoff * length(center - camera) + radius        perspective, no apex
 //
-// The tests may be computed in float32, for which cone_cutoff includes 2^-20; so does the 8-bit form, decoded as x /
-// 127. A cluster that must never be culled has the axis 0 and the cutoff 1 (127). A cluster without a normal at any
-// time, which shows nothing, has the axis 0 and the cutoff 0.
+// The tests may be computed in float32, because cone_cutoff includes 2^-20 for their rounding. The 8-bit form, which is
+// decoded as x / 127, includes it, too. A cluster that must never be culled has the axis 0 and the cutoff 1 (127). A
+// cluster without a normal at any time, which shows nothing, has the axis 0 and the cutoff 0.
 //
-// Proof      docs/theory.md, section 20. For vertices on straight lines, p(t) = (1-t) p0 + t p1, without rounding. A
+// Proof      docs/theory.md, section 20. The proof is for vertices exactly on straight lines, p(t) = (1-t) p0 + t p1. A
 //            renderer that moves vertices in float32 may draw either side of faces that are edge-on, with or without
 //            culling.
 // Threads    pure, on the thread that calls.
@@ -130,8 +131,8 @@ struct ClusterBounds {
 // length of mean_unit measures the spread of the normals: 1 if they are all equal, 0 if they cancel.
 //
 // Proof      Gauss's rule with 8 nodes on pieces in which |n(z)|^2 has no zero for complex z nearby, so that the unit
-//            normal is analytic there and the error is known (docs/theory.md, section 21). Around an instant at which
-//            n(t) = 0, pieces are halved until they are 2^-28 of the interval, and count as error.
+//            normal is analytic there and the error is known (docs/theory.md, section 21). Pieces with an instant at
+//            which n(t) = 0 are halved until they are 2^-28 of the interval. These last pieces count as error.
 // Threads    pure, on the thread that calls: no allocation, no throw, the same bits everywhere.
 
 struct ShutterNormal {
@@ -140,13 +141,14 @@ struct ShutterNormal {
   double error = 0;  ///< bound of the distance between mean_unit and its exact value; about 1e-7 if nothing collapses
 };
 
-/// Returns the means over [t0, t1]. Control normals are assumed to be within 2^-26 of their length, and the error
+/// Returns the means over [t0, t1]. Control normals are assumed to have a relative error of at most 2^-26, and `error`
 /// includes this. Cost: about 0.2 microseconds if normals turn little, more if n(t) comes close to zero. 0 <= t0 <= t1
 /// <= 1; if the two are equal, the means are the normals at that instant
 [[nodiscard]] ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1) noexcept;
 
-/// Writes the means of a range of faces over [t0, t1], from positions; if control normals of the interval cancel,
-/// integers compute them. result must have faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
+/// Writes the means of a range of faces over [t0, t1], from positions. If control normals of the interval cancel so far
+/// that double is not accurate enough, integers compute them. result must have faces.count elements; faces must lie
+/// inside the topology; 0 <= t0 <= t1 <= 1
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 

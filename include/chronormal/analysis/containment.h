@@ -5,8 +5,8 @@
 /// c) when (p(t) - a(t)) . n(t), a cubic in t, is zero; if it is then between the edges, it crosses the face. The
 /// winding number w counts how many times the surface goes around the point; a point is *inside* if w is not 0. A
 /// crossing changes w by +1 if the point moves from the front of a face, to which the normal points, to its back
-/// (inward), and by -1 in the other direction. So between any two times, neither of which is a moment as described
-/// under *Moments* below,
+/// (inward), and by -1 in the other direction. So between any two times (except for moments of touching, see *Moments*
+/// below),
 ///
 ///     w(later) - w(earlier) = inward crossings - outward crossings
 ///
@@ -17,7 +17,7 @@
 ///            surface then, along +y, then +z. So if two closed meshes share a face, a point on the face is inside
 ///            exactly one of the two; of a cube from (0, 0, 0) to (1, 1, 1), x = 0 is inside and x = 1 is outside. The
 ///            step is the same at all times, so a resting point on a resting face does not cross the face.
-/// Closed     The faces at every edge must have the edge equally often in both directions: then w is an integer
+/// Closed     Every edge must occur equally often in both directions among its faces, so that w is an integer
 ///            everywhere. Surfaces may intersect themselves, and have several pieces. Edges are between points of the
 ///            surface (normals/normal_groups.h), so seams of a file do not open the surface. A face of more than three
 ///            corners is cut into triangles at the given positions: a fan around its first corner, or ears if the fan
@@ -59,8 +59,8 @@ class Containment {
  public:
   /// Prepares a mesh for any number of segments and points: O(corners log corners), once. The positions, of any
   /// keyframe, only tell which faces are close to each other, and have no influence on results. Errors: kInvalidInput
-  /// for a mesh that is not closed, with the number of boundary edges, which belong to one face, and of edges that
-  /// several faces have more often in one direction.
+  /// for a mesh that is not closed, with the number of boundary edges, which belong to a single face, and the number of
+  /// edges that several faces share but that occur more often in one direction than in the other.
   [[nodiscard]] static Result<Containment> make(const Topology& topology, const Points& points,
                                                 VectorView<const float> positions);
 
@@ -69,8 +69,8 @@ class Containment {
   ~Containment();
 
   /// Returns the winding number of each point at t, which is rounded to a multiple of 2^-48. Points move on straight
-  /// lines like vertices; a resting point has the same position twice. The segment must have the topology that was
-  /// given to make(); `from` and `to` must have a position for each point
+  /// lines like vertices; a point rests if its positions in `from` and `to` are the same. The segment must have the
+  /// topology that was given to make(); `from` and `to` must have a position for each point
   [[nodiscard]] std::vector<std::int32_t> winding_numbers(const Segment& segment, double t,
                                                           VectorView<const float> from,
                                                           VectorView<const float> to) const;

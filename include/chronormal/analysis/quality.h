@@ -22,9 +22,9 @@
 
 namespace chronormal {
 
-/// Writes n(t) of a range of faces. If n(t) is below 1e-10 of the products whose sum it is, so that double cannot
-/// separate it from rounding, it is computed in integers. It is (0, 0, 0) if it is zero, or so close to a zero that
-/// rounding t would turn it. Threads: pure. result must have faces.count elements; t in [0, 1]
+/// Writes n(t) of a range of faces. n(t) is a sum of products; if it is below 1e-10 of their size, double cannot tell
+/// it from rounding errors, and integers compute it. The result is (0, 0, 0) if n(t) is zero, or so close to a zero
+/// that rounding t would turn it. Threads: pure. result must have faces.count elements; t in [0, 1]
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
 /// Returns n(t) of a vertex or corner in the same way: the sum of the normals of its faces, even if they nearly cancel.

@@ -145,10 +145,11 @@ void find_facings(const Segment& segment, IndexRange faces, std::span<const Cont
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;
 
-/// Decides for the normal of a vertex or corner, the sum of n(t) over the faces around it (NormalGroups::faces()), seen
-/// from the vertex: f(t) = n(t) . w(t), where w(t) points from the vertex to the viewer. The result is as certain as
-/// for faces, even if the faces nearly cancel. Cost: up to a microsecond for each face, and some tens of microseconds
-/// if integers decide. Allocates nothing. vertex and faces must lie inside the topology
+/// Decides the sides for the normal of a vertex or corner, which is the sum of n(t) over the faces around it
+/// (NormalGroups::faces()). It is seen from the vertex: f(t) = n(t) . w(t), where w(t) points from the vertex to the
+/// viewer. The result is as certain as for faces, even if the faces nearly cancel. Cost: up to a microsecond for each
+/// face, and some tens of microseconds if integers decide. Allocates nothing. vertex and faces must lie inside the
+/// topology
 [[nodiscard]] Facing find_vertex_facing(const Segment& segment, std::uint32_t vertex,
                                         std::span<const std::uint32_t> faces, const View& view) noexcept;
 
@@ -159,10 +160,10 @@ enum class ShutterSide : std::int8_t {
   kFront = 1,  ///< never its back
 };
 
-/// Decides the ShutterSide for a range of faces: kBack and kFront are certain, and kBoth is right except for changes
-/// within a bracket of t0 and t1. A face that is edge-on or without area throughout is kBack. `normals` are the control
-/// normals of the range. Cost: that of find_facings(), nearly always in its cheap case. result has an element for each
-/// face; 0 <= t0 <= t1 <= 1
+/// Decides the ShutterSide for a range of faces: kBack and kFront are certain. So is kBoth, unless the face changes
+/// sides within a bracket of t0 or t1. A face that is edge-on or without area throughout is kBack. `normals` are the
+/// control normals of the range. Cost: that of find_facings(), nearly always in its cheap case. result has an element
+/// for each face; 0 <= t0 <= t1 <= 1
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept;
 

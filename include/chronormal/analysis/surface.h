@@ -8,7 +8,7 @@
 ///     turned         if two faces have it in the same direction: one of them has the wrong winding
 ///     seam           if two faces have it by different vertices: the file separates them
 ///
-/// "Turned" and "seam" are only decided if both faces have the edge once. Two faces coincide if they have the same
+/// An edge can only be turned or a seam if each of its two faces has it once. Two faces coincide if they have the same
 /// outline: the same points in the same cyclic order, or in reversed order. The same points in another order, as in a
 /// self-crossing quad, are a different face. A face that has a point twice coincides with no other face.
 ///
@@ -52,7 +52,7 @@ struct Surface {
   std::size_t most_corners = 0;  ///< the largest number of corners of a face
 };
 
-/// Counts all of these for a mesh; `points` tells which of its vertices are one point.
+/// Counts all members of Surface for a mesh; `points` tells which of its vertices are one point.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -11,7 +11,7 @@
 
 namespace chronormal {
 
-// The caller of a computation can end it in the middle.
+// The following classes let the caller of a computation end it before it is done.
 
 /// The exception that ends a computation on request. Files and the caller's memory are then half written, and objects
 /// that are not const may only be destroyed.
@@ -44,7 +44,7 @@ class Interruption {
   Interruption* before_;
 };
 
-/// Throws Interrupted if the computation that this thread works for shall end; does nothing without an Interruption.
+/// Throws Interrupted if an Interruption asks this thread's computation to end; does nothing without an Interruption.
 void check_interruption();
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are

@@ -3,8 +3,8 @@
 /// Bernstein<T, N> has the coefficients b[0] ... b[N] of
 ///     p(t) = sum_k  C(N, k) (1-t)^(N-k) t^k  b[k]
 /// where T is a scalar or a Vec3. The end coefficients are the end values, every value is a convex combination of the
-/// coefficients (so they bound the polynomial), and evaluation loses no digits at either end. Power<T, N> has
-/// p(t) = sum_k a[k] t^k, which is cheaper by hand and worse near t = 1.
+/// coefficients (so they bound the polynomial), and evaluation loses no digits at either end. Power<T, N> has p(t) =
+/// sum_k a[k] t^k, which takes fewer operations but is less accurate near t = 1.
 ///
 /// Source: Farouki, The Bernstein polynomial basis: a centennial retrospective (2012).
 #ifndef CHRONORMAL_CORE_POLYNOMIAL_H_
@@ -78,7 +78,8 @@ template <class P, std::size_t M, class Q, std::size_t N, class Product = std::m
   return result;
 }
 
-/// Converts a polynomial to power form, which cancels near t = 1: evaluate the Bernstein form if digits matter.
+/// Converts a polynomial to power form. Its terms cancel near t = 1, so the Bernstein form should be evaluated if
+/// digits matter.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
   Power<T, M - 1> power;
@@ -119,8 +120,8 @@ struct Roots {
 
 namespace detail {
 
-/// Finds the only root of p, where p changes its sign, by false position with the Illinois rule (Dowell, Jarratt 1971),
-/// and by bisection if false position gains too little.
+/// Finds the only root of p. The signs of p at the two ends must differ. Uses false position with the Illinois rule
+/// (Dowell, Jarratt 1971), and bisection if false position gains too little.
 template <std::size_t M>
 [[nodiscard]] double only_root(const std::array<double, M>& p) {
   double a = 0, b = 1, fa = p[0], fb = p[M - 1];
@@ -143,8 +144,8 @@ template <std::size_t M>
   return a + (b - a) / 2;
 }
 
-/// Isolates the roots by the variation of signs (Descartes): subdivides until an interval has one root or is as narrow
-/// as rounding.
+/// Finds the roots in [t0, t1] by the variation of signs (Descartes): halves the interval until each part has at most
+/// one root, or is as narrow as rounding.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
   std::size_t variations = 0;

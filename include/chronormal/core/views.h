@@ -20,7 +20,8 @@
 
 namespace chronormal {
 
-/// Returns so many bytes, or the largest addressable size if that is less, since addresses may have 32 bits.
+/// Returns `bytes` as a size, or the largest possible size if `bytes` exceeds it, which happens where addresses have 32
+/// bits.
 [[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
   return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
 }

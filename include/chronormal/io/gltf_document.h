@@ -70,8 +70,8 @@ struct GltfExtraTarget {
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
-/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; its results have the
-/// mark of kHarmless.
+/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; files with this
+/// encoding are marked as kHarmless.
 enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
 /// The encodings by name, for the command line, for JSON and for the mark in a file.
@@ -95,7 +95,7 @@ struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< the targets are keyframes, which have no meaning alone
   std::vector<GltfExtraTarget> extras;  ///< in the order of targets; the file need not list any
-  /// Deltas are fitted to the animations of the file, and have no meaning otherwise.
+  /// True if deltas are fitted to the animations of the file; at other weights they have no meaning.
   bool animations_only = false;
   bool author = false;  ///< normals of each target at weight 1 follow the author's intention for the input
 };
@@ -153,17 +153,18 @@ struct GltfNode {
 };
 
 /// The animation of the weights of one node. It comes from a channel for the node, or from a channel of
-/// KHR_animation_pointer for all weights of the node or of its mesh. In the last case, each node of the mesh without
-/// its own weights has such a track.
+/// KHR_animation_pointer for all weights of the node or of its mesh. If the channel is for a mesh, each node with this
+/// mesh that has no weights of its own gets such a track.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
-  /// The first track of the animation with the same weights: the same keys, interpolation and number of targets.
+  /// The index of the first track of the animation that has the same weights: the same keys, interpolation and number
+  /// of targets.
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
-  /// True if the track was assembled from a channel of KHR_animation_pointer for each weight; `channel` is the first of
-  /// these. The track has the keys of all channels, and is cubic if one of them is. Files in which only some channels
-  /// are STEP are refused.
+  /// True if the track was assembled from several channels of KHR_animation_pointer, one for each weight. `channel` is
+  /// then the first of them. The track has the keys of all channels, and is cubic if one of them is. Files in which
+  /// only some of these channels are STEP are refused.
   bool is_assembled = false;
 };
 
@@ -217,8 +218,8 @@ class GltfDocument {
   /// of the format.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
-  /// Reads a document from bytes, which must outlive it. `name` is for messages; `folder` has the files that the
-  /// document refers to, if there is one.
+  /// Reads a document from bytes, which must outlive it. `name` is for messages; `folder`, if given, has the files to
+  /// which the document refers.
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
@@ -324,11 +325,11 @@ class GltfEdit {
   ~GltfEdit();
 
   /// Replaces the value at a pointer, or adds the member that its last token names, with missing objects in between.
-  /// `json` is the text of a value. bytes() and write() report errors of both.
+  /// `json` is the text of a value. Errors in the pointer or in the text are reported by bytes() and write().
   void set(std::string pointer, std::string json);
   /// Appends a value to an array, which is created if it is missing.
   void append(std::string pointer, std::string json);
-  /// has() tells whether the source, without changes, has a value at a pointer; text() returns the value, or an empty
+  /// Tell whether the source, without changes, has a value at a pointer, and return the text of this value, or an empty
   /// text.
   [[nodiscard]] bool has(const std::string& pointer) const;
   [[nodiscard]] std::string text(const std::string& pointer) const;
@@ -338,9 +339,9 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// Lets results omit arrays that the source uses but the result does not, in buffers inside the result (BIN chunk,
-  /// data URIs). Later bytes move to the front; all indices stay. Files with extensions that may refer to arrays in
-  /// unknown ways keep all their bytes.
+  /// Lets results omit arrays that only the source uses, if they are in buffers inside the result (BIN chunk, data
+  /// URIs). Later bytes move to the front; all indices stay. Files with extensions that may refer to arrays in unknown
+  /// ways keep all their bytes.
   void leave_out_unused();
 
   /// Lists the differences between a result at this path and the source: the sorted pointers of the result that are

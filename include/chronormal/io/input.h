@@ -43,7 +43,7 @@ inline namespace internal {
 class Expansion;  // limits the memory and output that a file may cause
 }
 
-/// Selects which normals and smoothing groups that meshes store are kept.
+/// Selects which of the normals and smoothing groups that meshes store are kept.
 enum class KeepShading {
   kNone,
   kFirst,  ///< normals of the first keyframe, which is the base, or the mesh of a cache
@@ -66,25 +66,26 @@ struct InputOptions {
   std::size_t max_expansion = 100;
   bool allow_mesh = false;  ///< a mesh without motion is accepted, too
   KeepShading shading = KeepShading::kNone;
-  /// Keeps the velocities in mesh files of a sequence, which are then read at once. Formats with a whole motion always
-  /// keep theirs.
+  /// Keeps the velocities that the mesh files of a sequence store. All files are then read at once. Formats with a
+  /// whole motion always keep their velocities.
   bool velocities = false;
   /// Finds the bytes of files; if empty, the file system does. With a resolver, `files` are names and not patterns or
   /// folders, and the buffers of a glTF file are requested by their paths below its folder.
   FileResolver resolve = {};
   /// Is called after each file that was read.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
-  /// The keyframes of a sequence to use: the first, the last, and the step between two of them.
+  /// Selects keyframes of a sequence: the first and the last that are used, and the step from one to the next.
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
-  /// Repeats the first of these keyframes after the last one, at a distance of the mean time between two of them.
+  /// Repeats the first of these keyframes after the last one. The time between the two is the mean time between
+  /// neighbouring keyframes.
   bool loop = false;
   /// Refuses an input that could only be read in part, with the first of the notes that Input::notes() would have.
   bool strict = false;
-  /// The path of vertices between these keyframes, as make_path() reads it. Curves run through the whole sequence, so
-  /// up to three keyframes beyond the first and the last used one are read. Curves are cut into straight pieces
-  /// (motion/paths.h), at most max_expansion for a segment, and the motion consists of these pieces.
+  /// The kind of curve on which vertices move between keyframes, in the notation of make_path(). Curves run through the
+  /// whole sequence, so up to three keyframes beyond the first and the last used one are read. Curves are cut into
+  /// straight pieces (motion/paths.h), at most max_expansion for a segment, and the motion consists of these pieces.
   std::string path = "linear";
   /// Leaves positions in the files until they are needed: in mesh files, .pc2 and .mdd, and in .npy and .npz that are
   /// uncompressed and in C order. Callers that set this should use Input::stream(). Other inputs are read at once, and
@@ -110,7 +111,8 @@ struct InputOptions {
 
 /// Normals that files store beside a motion, (corners, 3) each, not necessarily unit vectors.
 struct StoredNormals {
-  /// Normals of every keyframe; or of keyframe 0 alone, which then only tell the hard edges; or empty.
+  /// Normals of every keyframe, or of keyframe 0 alone, or none. Normals of keyframe 0 alone are only used to find the
+  /// hard edges.
   std::vector<std::vector<float>> of_keyframes;
   bool has_more = false;  ///< with KeepShading::kRead: other keyframes, left in files, may store normals
 };
@@ -161,11 +163,12 @@ class Input {
   /// motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
-  /// Returns the path that was cut, after motion() or stream() was called.
+  /// Returns the path of the vertices, and the numbers of pieces into which it was cut. Valid after motion() or
+  /// stream() was called.
   [[nodiscard]] const CutPath& cut_path() const noexcept;
 
-  /// Returns keyframe k of the motion, from 0, in any order. It is valid until the next call that reads keyframes.
-  /// Errors: those of motion(), and of reading the file.
+  /// Returns keyframe k of the motion, from 0, in any order. The keyframe is valid until the next call that reads
+  /// keyframes. Errors: those of motion(), and of reading the file.
   [[nodiscard]] Result<const Motion::Keyframe*> keyframe(std::size_t k);
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
@@ -181,9 +184,9 @@ class Input {
   /// Returns the name of the file with the normals and groups; empty if its format is read without them.
   [[nodiscard]] const std::string& shaded_by() const noexcept;
 
-  /// parts() returns the origin of the vertices and faces of a document. The error bounds the distance between the cut
-  /// cubic splines of an animation and the true splines, in units of the file. Both are valid after motion() was
-  /// called.
+  /// Return facts about the motion of a document, valid after motion() was called. parts() returns the origin of its
+  /// vertices and faces. curve_error() returns a bound of the distance between the cut cubic splines of an animation
+  /// and the true splines, in units of the file.
   [[nodiscard]] std::span<const GltfPart> parts() const noexcept;
   [[nodiscard]] double curve_error() const noexcept;
 

@@ -1,10 +1,10 @@
 /// Writes files atomically, so that nobody ever sees half of one: any bytes, and motions in several formats.
 ///
-/// The bytes go to a temporary file in the same folder, which is flushed to disk (fsync) and then renamed: a reader
-/// sees the old file or the new one, and after an error the old one and no temporary. A symbolic link is followed: its
-/// target is replaced. An existing file keeps its permissions, and its owner if the system allows that; a new file gets
-/// the permissions that the umask allows. Pipes, devices and /dev/stdout, /dev/stderr, /dev/fd/N are written directly,
-/// never renamed over; "-" is the standard output.
+/// The bytes go to a temporary file in the same folder, which is flushed to disk (fsync) and then renamed. So a reader
+/// sees either the old file or the new one. After an error the old file is still there, and no temporary file remains.
+/// A symbolic link is followed: its target is replaced. An existing file keeps its permissions, and its owner if the
+/// system allows that; a new file gets the permissions that the umask allows. Pipes, devices and /dev/stdout,
+/// /dev/stderr, /dev/fd/N are written directly, never renamed over; "-" is the standard output.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_OUTPUT_H_
@@ -38,8 +38,8 @@ namespace chronormal {
 /// signal handler, which must then end the process.
 void remove_temporaries() noexcept;
 
-/// Returns the names of `count` numbered files. In the file name, one %d or %0Nd is replaced by the number, from 0; it
-/// may be missing if `count` is at most 1. Errors: kUsage for any other pattern.
+/// Returns the names of `count` numbered files. One %d or %0Nd in the file name is replaced by the number, counted from
+/// 0. A pattern without %d is valid if `count` is at most 1. Errors: kUsage for any other pattern.
 [[nodiscard]] Result<std::vector<std::string>> numbered_names(const std::string& pattern, std::size_t count);
 
 /// Returns true if the extension of the path names a format that write_motion() can write.
@@ -47,7 +47,7 @@ void remove_temporaries() noexcept;
 
 /// Writes a motion in the format that the extension of path names:
 ///
-///     .npz          whole, with its kind
+///     .npz          the whole motion, and whether it is a sequence or a set of targets
 ///     .pc2, .mdd    positions of a sequence without its faces; PC2 gets one frame per second, as open_input() reads it
 ///     .obj, .ply    every keyframe in its own file, named by numbered_names(); .ply is binary, little endian
 ///

@@ -93,8 +93,8 @@ struct Segment {
   double start_time = 0;         ///< seconds at t = 0; for targets, a weight
   double end_time = 1;           ///< seconds or weight at t = 1
   std::size_t index = 0;         ///< the number of the segment in its motion
-  /// Residuals: added to `from` and `to`, they give the positions before rounding to float32 (Motion::Keyframe). Empty
-  /// if nothing was rounded.
+  /// The remainders of rounding `from` and `to` to float32 (Motion::Keyframe): the exact positions are the sums of
+  /// both. Empty if nothing was rounded.
   VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 
@@ -114,16 +114,16 @@ struct Motion {
     double time = 0;                     ///< seconds; for targets, the weight
     std::string name;                    ///< for messages: the file of the keyframe, or empty
     std::vector<float> velocities = {};  ///< (V, 3) per second, if the file of a sequence has velocities; or empty
-    /// (V, 3) per second, for a keyframe at the end of a part of a sequence: the velocities of curves through the whole
-    /// sequence (PathKind::kCatmullRom in motion/paths.h). If empty, velocities follow from the keyframes of the
-    /// motion.
+    /// The velocities of the vertices, (V, 3) per second, for the first or last keyframe of a part of a sequence. They
+    /// are those of curves through the whole sequence (PathKind::kCatmullRom in motion/paths.h). If empty, velocities
+    /// follow from the keyframes of the motion.
     std::vector<float> end_velocities = {};
     /// (V, 3), or empty if nothing was rounded: the exact place of a vertex is the sum of its position and its
     /// residual. Files store only positions.
     std::vector<double> residuals = {};
 
-    /// Sets the positions to coordinates rounded to float32, and the residuals to the remainders. `low` must have the
-    /// digits of each coordinate beyond `high`, less than half a unit in its last place
+    /// Sets the positions to the coordinates high + low rounded to float32, and the residuals to the remainders. |low|
+    /// must be at most half a unit in the last place of `high`
     void set_positions(std::span<const double> high, std::span<const double> low);
   };
   struct SegmentKeys {
@@ -163,8 +163,9 @@ struct Motion {
 /// or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 
-/// A local t in [0, 1] without rounding: with keys at 0 and 3, time 1 is t = 1/3, which is not a double. If n(t) is so
-/// small that rounding t would turn it, integers use the exact quotient. A double converts to a LocalTime as it is.
+/// A local t in [0, 1] that is not rounded: for example, time 1 between keys at 0 and 3 is t = 1/3, which no double
+/// represents. If n(t) is so small that rounding t would turn it, integers use the exact quotient. A double converts to
+/// a LocalTime as it is.
 struct LocalTime {
   double t = 0;     ///< rounded once
   double rest = 1;  ///< 1 - t, also rounded once: near t = 1 it has digits that t does not have
@@ -225,8 +226,8 @@ class MotionStream {
   /// Wraps a motion in memory, which must outlive the stream and may be at rest.
   explicit MotionStream(const Motion& whole);
 
-  /// Wraps a motion whose keyframes have no positions yet, except perhaps the first one. Everything else in the outline
-  /// must be valid (motion/motion.h).
+  /// Wraps a motion whose keyframes `read` reads when they are needed. The outline is the motion without positions,
+  /// except perhaps those of the first keyframe; everything else in it must be valid (see validate()).
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;
@@ -244,9 +245,9 @@ class MotionStream {
   /// Holds all keyframes, so that the whole motion is in memory.
   [[nodiscard]] Status hold_all();
 
-  /// Calls the watcher at once with every keyframe in memory, and later with each keyframe that is read, before anybody
-  /// else can use it and in the thread that reads it. There is one watcher at a time; an empty one ends this. Errors:
-  /// those of the watcher, from this call and from each hold.
+  /// Calls the watcher at once with every keyframe in memory, and later with each keyframe that is read, in the thread
+  /// that reads it and before anyone else can use the keyframe. There is one watcher at a time; an empty function
+  /// removes it. Errors: those of the watcher, from this call and from each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
   /// Returns true if keyframes stay in memory once they were held, so that holding all of them costs no additional
@@ -292,8 +293,9 @@ struct BlendSet {
 /// kInvalidInput for a delta beyond the range of float32.
 [[nodiscard]] Result<BlendSet> blend_set_of(const Motion& star);
 
-/// Checks the properties on which the rest of the library relies: as many positions as the topology has vertices, all
-/// finite, and in each target ascending, existing vertices with one finite delta each.
+/// Checks the properties on which the rest of the library relies: there are as many positions as the topology has
+/// vertices, and all are finite; each target lists existing vertices in ascending order, with one finite delta for
+/// each.
 /// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 

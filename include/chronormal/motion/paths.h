@@ -8,11 +8,11 @@
 ///
 /// The number of pieces of a segment follows from a bound, not from samples. On each piece the cubic of a vertex is its
 /// chord plus a deviation s (1 - s) ((1 - s) a + s b) with s in [0, 1], where a and b follow from the second
-/// derivatives at both ends. The products of edges and deviations bound the distance between the normal vector of a
-/// face and that of the chords, and the Bernstein coefficients of the chords' normal bound its length from below. A
-/// segment gets the fewest pieces of the series 1, 2, 3, 4, 6, 8, 12 ... for which the ratio of these two bounds is at
-/// most the sine of the tolerance in every face and piece. Since vectors are bounded, sums over the faces of a vertex
-/// or corner are within the tolerance, too, as far as these faces have similar directions.
+/// derivatives at both ends. The products of edges and deviations bound the distance between two normal vectors of a
+/// face, one on the curves and one on the chords. The Bernstein coefficients of the normal on the chords bound its
+/// length from below. A segment gets the fewest pieces of the series 1, 2, 3, 4, 6, 8, 12 ... for which the ratio of
+/// these two bounds is at most the sine of the tolerance in every face and piece. Since vectors are bounded, sums over
+/// the faces of a vertex or corner are within the tolerance, too, as far as these faces have similar directions.
 ///
 /// The new keyframes are float32, and the rounding of their positions adds to the error; a face whose normals deviate
 /// by no more than this rounding is accepted, too. A face that nearly vanishes between two keyframes may miss the
@@ -139,7 +139,7 @@ struct CutPath {
 /// The default of the largest number of pieces of one segment.
 inline constexpr std::size_t kMostPieces = 100;
 
-/// The pieces of a motion in memory. A motion on kLinear does not change.
+/// A motion in memory whose curves have been cut into pieces. With kLinear the motion is unchanged.
 struct CutMotion {
   Motion motion;
   CutPath cut;
@@ -147,9 +147,9 @@ struct CutMotion {
 [[nodiscard]] Result<CutMotion> cut_into_segments(const Motion& motion, const Path& path,
                                                   std::size_t most_pieces = kMostPieces);
 
-/// The pieces of a stream. Its keyframes are read once to determine the number of pieces, and again when pieces are
-/// needed, four keyframes at a time. If all pieces together take at most `kept` bytes, they stay in memory once they
-/// were computed.
+/// A stream whose curves are cut into pieces. The original keyframes are read once to determine the number of pieces,
+/// and again, four at a time, when pieces are needed. If all pieces together take at most `kept` bytes, they stay in
+/// memory once they were computed.
 struct CutStream {
   MotionStream stream;
   CutPath cut;

@@ -55,12 +55,12 @@ enum class BlendPath {
 /// Returns "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
-/// The default limit of a gigabyte. The terms of many dense targets take more, but using them would rarely be the
-/// cheapest path.
+/// The default limit, a gigabyte. The terms of many dense targets take more, but then another path than kTerms is
+/// usually cheaper.
 inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
 
 struct BlendNormalsOptions {
-  /// The limit of BlendCost::bytes. The memory that is needed without terms, least_bytes, may exceed it.
+  /// The limit of BlendCost::bytes. It does not apply to the memory that is needed even without terms (least_bytes).
   std::size_t max_bytes = kUsualBlendBytes;
   /// Always takes this path, whatever its cost.
   std::optional<BlendPath> forced = {};

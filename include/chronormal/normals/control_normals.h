@@ -40,27 +40,27 @@ struct ControlNormals {
 };
 
 /// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle.
-/// The error of each is at most 2^-26 of its length, so that no direction is only rounding error: if double could round
-/// more, the control normal is computed in integers. It is exactly zero if corners are exactly collinear. result must
-/// have faces.count elements; faces must lie inside the topology
+/// The error of each control normal is at most 2^-26 of its length, so that its direction is never only rounding error.
+/// If rounding in double could exceed this, integers compute the control normal. It is exactly zero if the corners are
+/// exactly collinear. result must have faces.count elements; faces must lie inside the topology
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
 /// Returns the true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, and a face with two vertices that
-/// move alike has at most degree 1, but so do other motions (shear within the plane); therefore the coefficients are
-/// tested, not the motion. A coefficient below 2^-28 of the largest control normal counts as zero: leaving it out turns
-/// no direction by more than 1e-8 rad times that control normal / |n(t)|. (A translation that was rounded to float32 is
-/// not exact, and may have degree 1 or 2.)
+/// move alike has at most degree 1. Other motions, such as a shear within the plane, have low degrees, too, so the
+/// coefficients are tested and not the motion. A coefficient below 2^-28 of the largest control normal counts as zero:
+/// leaving it out turns no direction by more than 1e-8 rad times that control normal / |n(t)|. (A translation that was
+/// rounded to float32 is not exact, and may have degree 1 or 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
-/// Returns n(t) itself, by eq. 5. It is a convex combination: its error is a few rounding errors of the largest control
-/// normal.
+/// Returns n(t) itself, by eq. 5. Since n(t) is a convex combination of the control normals, the error is only a few
+/// rounding errors of the largest of them.
 [[nodiscard]] Vec3d normal_at(const ControlNormals& normals, double t) noexcept;
 
 /// The kind of direction that could be determined.
 enum class Direction {
   kRegular,  ///< n(t) is not zero
   kLimit,    ///< n(t) = 0, and both sides (or the only side, at an end) have the same limit
-  /// N(t) = 0, and the two sides are antipodal; the result is the limit from before, a documented fallback.
+  /// At n(t) = 0 the two sides have opposite directions; the result is the limit from before, a documented fallback.
   kDiscontinuous,
   kNone,  ///< n is zero in the whole segment; the result is (0, 0, 0)
 };
@@ -70,18 +70,19 @@ struct UnitNormal {
   Direction direction = Direction::kRegular;
 };
 
-/// Returns n(t) / |n(t)| in double; Direction defines the result in degenerate cases. At t = 0 the limit from after is
-/// taken, elsewhere the limit from before. Inside a segment n(t) counts as zero below 8 rounding errors of its control
-/// normals. Callers with positions who need an exact decision use MeshNormals or NormalCurves.
+/// Returns n(t) / |n(t)| in double; Direction defines the result in degenerate cases. If a limit is needed, it is the
+/// one from later times at t = 0, and the one from earlier times elsewhere. Inside a segment n(t) counts as zero below
+/// 8 rounding errors of its control normals. Callers with positions who need an exact decision use MeshNormals or
+/// NormalCurves.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 
 // Normals of meshes that move as a whole: rigid and affine motion.
 //
-// Positions go through x -> L x + offset; the vector area of a face is then multiplied by the cofactor matrix of L,
-// which is det(L) times its inverse transpose, but is also defined if L has no inverse. A mirroring L (det < 0) turns
-// faces inside out: corners that were counter-clockwise become clockwise, and the cofactors give the normal of that
-// order, which points inwards. A renderer needs the side that was outside before: |det L| times the inverse transpose.
-// NormalMatrix is this matrix; for rotations it is L itself.
+// If positions are transformed by x -> L x + offset, the vector area of a face is multiplied by the cofactor matrix of
+// L. This matrix is det(L) times the inverse transpose of L, but is also defined if L has no inverse. A mirroring L
+// (det < 0) turns faces inside out: corners that were counter-clockwise become clockwise, and the cofactors give the
+// normal of that order, which points inwards. A renderer needs the side that was outside before: |det L| times the
+// inverse transpose. NormalMatrix is this matrix; for rotations it is L itself.
 //
 // Units      a normal of length 2 x area keeps this property, since areas are transformed, too. Pure directions may be
 //            normalised.

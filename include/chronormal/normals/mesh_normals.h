@@ -19,8 +19,9 @@
 /// Sharing    is decided by the first segment or set of targets, or by the motion given to make(), and then fixed:
 ///            vertices that coincide at both ends (in all keyframes; in the base and at full weight of each target)
 ///            share a normal. Hard edges are determined at t = 0.
-/// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a bound; at
-///            weights within 1e-6 rad (blend_normals.h). Weightings other than area add fit_bound().
+/// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a proven
+///            bound. For blend shapes it is within 1e-6 rad (blend_normals.h). Weightings other than area add
+///            fit_bound().
 /// Degenerate (0, 0, 0) if there is no normal; calls return the number of these, usually 0. If n(t) is zero only at
 /// this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer end; if t is
 /// NaN every normal is (0, 0, 0).
@@ -136,8 +137,9 @@ class MeshNormals {
   /// Prepares blend shapes, with all weights 0. Errors: kUsage for a weighting other than area; kInvalidInput for a set
   /// of another mesh; those of validate() for a set, and the first time also those of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set, const BlendNormalsOptions& options = {});
-  /// Sets the weights, chooses how normals are computed for them, and blends positions if necessary. With one thread it
-  /// does not allocate or throw. Targets must be set, and there must be a weight for each
+  /// Sets the weights, chooses the cheapest way to compute normals at these weights, and blends positions if this way
+  /// needs them. With one thread it does not allocate or throw. Targets must be set, and there must be a weight for
+  /// each
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Writes the unit normals at the current weights. Returns the number of (0, 0, 0). result must have size() elements
   std::size_t unit_normals(VectorView<float> result, IndexRange outputs = kAllOutputs) const noexcept;
@@ -148,7 +150,8 @@ class MeshNormals {
 
   /// Returns the number of outputs: faces, vertices or corners.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Returns the number of different normals, once it is decided who shares them; size() for faces.
+  /// Returns the number of different normals, which is known once it is decided which outputs share a normal. For faces
+  /// it is size().
   [[nodiscard]] std::size_t element_count() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept;
   [[nodiscard]] const MeshNormalsOptions& options() const noexcept;

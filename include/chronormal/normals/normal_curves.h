@@ -59,7 +59,7 @@ namespace chronormal {
 // for an element without a normal, is 0 in Rgb10A2. Octahedral cannot represent it, and gives 0, which is decoded as
 // (0, 0, 1).
 
-/// A separate type for each encoding, so that the compiler tells them apart. Each has only four bytes.
+/// A normal in four bytes. Each encoding has a type of its own, so that the compiler tells them apart.
 struct Octahedral {
   std::uint32_t bits = 0;
   friend bool operator==(const Octahedral&, const Octahedral&) = default;
@@ -96,7 +96,7 @@ class NormalCurves {
  public:
   /// Creates curves without elements.
   NormalCurves() noexcept;
-  /// Curves can be moved, which leaves empty ones, but not copied.
+  /// Curves can be moved, but not copied. Curves that were moved from have no elements.
   NormalCurves(NormalCurves&&) noexcept;
   NormalCurves& operator=(NormalCurves&&) noexcept;
   ~NormalCurves();
@@ -140,7 +140,8 @@ class NormalCurves {
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
   /// Counts the elements of true degree 0, 1 and 2. With a tolerance of 2^-12 or more, elements that bend by less than
-  /// their rounding errors in float32 may count as straight; they are then stored as straight, within the tolerance.
+  /// their rounding errors in float32 may count as straight. They are then also stored as straight curves, within the
+  /// tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
   /// Counts the elements that are uncertain at t: n(t) is so small relative to the terms of its sum that double cannot
   /// guarantee 1e-6 rad. This happens only for curves made from control normals, never for curves made from positions.

@@ -71,7 +71,7 @@ struct Points {
 /// Makes the points for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
-/// The angle in degrees within which two stored normals count as the same normal, rounded twice.
+/// The largest angle in degrees between two stored normals that count as roundings of the same normal.
 inline constexpr double kSplitNormalTolerance = 0.1;  // degrees
 
 class NormalGroups;
@@ -154,8 +154,8 @@ class NormalGroups {
   // Makes groups from the element of each corner, which must be below element_count.
   NormalGroups(const Topology& topology, std::vector<std::uint32_t> element_of_corner, std::size_t element_count);
 
-  // Makes groups from sets of corners, each named by any of its members, and numbers them in the order of their first
-  // corners. The corners of the two sides of a sheet are separated.
+  // Makes groups from sets of corners. A set is named by any of its members, and sets are numbered in the order of
+  // their first corners. Sets that have corners of both sides of a sheet are split.
   [[nodiscard]] static NormalGroups of_corner_sets(const Topology& topology, const Points& points,
                                                    std::vector<std::uint32_t> set_of_corner);
 
@@ -176,9 +176,9 @@ class NormalGroups {
 };
 
 /// Writes the control normals of a range of elements as sums of the given ones: nine additions per corner. A component
-/// of a sum that is smaller than the rounding error of its terms is written as exactly zero. Errors of the face normals
-/// themselves remain, also if they cancel. Pure: no allocation, no throw. of_faces must have the control normals of all
-/// faces, result as many elements as the range
+/// of a sum that is smaller than the rounding error of its terms is written as exactly zero. The errors of the given
+/// face normals remain in the sums, even if the face normals cancel. Pure: no allocation, no throw. of_faces must have
+/// the control normals of all faces, result as many elements as the range
 void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;
 
@@ -208,8 +208,9 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 /// Finds a kind by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 
-/// Selects the normals. Corners share normals across smooth edges. Hard edges come from one of three sources: the
-/// crease angle, or smoothing groups or normals of a file (Input in io/input.h), which must outlive this.
+/// Selects the elements whose normals are computed. Corners share normals across smooth edges. Hard edges come from the
+/// crease angle, or from the smoothing groups or the normals of a file (Input in io/input.h). These arrays must outlive
+/// the options.
 struct ElementOptions {
   ElementKind kind = ElementKind::kFaces;
   bool weld = true;           ///< vertices that coincide in all keyframes share a normal, so that seams do not show

@@ -13,29 +13,29 @@
 ///     inverse-edges  u / (|e| |f|)              Jin, Lewis, West 2005
 ///     inverse-roots  u / sqrt(|e| |f|)          Jin, Lewis, West 2005
 ///
-/// Area is the default because it is the only one whose sum is a polynomial in time: exact by three control normals.
-/// A normal of the other weightings is evaluated again for each t, or *fitted*: replaced, for each element and segment,
-/// by the quadratic that has the weighted direction at t = 0, 1/2 and 1, with the area-weighted length there.
-/// NormalCurves plays these quadratics like exact normals. The quadratics are approximations, so each element has a
-/// bound.
+/// Area is the default because it is the only one whose sum is a polynomial in time, which three control normals
+/// represent exactly. Normals of the other weightings are computed again for each t, or *fitted*. A fit replaces them,
+/// for each element and segment, by a quadratic that has the weighted direction and the area-weighted length at t = 0,
+/// 1/2 and 1. NormalCurves plays these quadratics like exact normals. The quadratics are approximations, so each
+/// element has a bound.
 ///
-/// Polygons   n, u and the angle are those of the polygon, its vector area and its own corner angle in [0, pi], not of
-///            the triangles that some tool would cut it into. e x f is that of the corner: for a triangle and a convex
-///            planar polygon along n, at a reflex corner against it.
-/// Degenerate A face whose n is zero or nothing but rounding adds nothing, whatever the weighting; nor does a corner at
-///            an edge without length, except by area and uniform, which do not look at edges. A duplicate face adds
-///            twice. A sum that is nothing but the rounding of its terms is (0, 0, 0).
-/// Bound      The bound of a fit is an angle in radians: nowhere in [0, 1] is the quadratic further from the weighted
-///            normal. It is proven in interval arithmetic: Taylor polynomials of degree 4 with their remainders over
-///            pieces of the segment, as many (to some 256) as come within twice the largest sampled error, or 1e-9 rad.
-///            It is pi where nothing could be proven: where a face of the element loses its area on the way (the
-///            weighted normal jumps there, unless it is area-angle), where the sum vanishes, or where the quadratic is
-///            off by more than a right angle. Where corners are nearly straight, or edges nearly without length, bounds
-///            by angle and area-angle are looser. NormalCurves adds its own 1e-6 rad. Elements without any area have
-///            zero control normals and the bound 0; those of a single triangle have its direction, which is exact, and
-///            the bound 0.
-/// Threads    Everything here but the fit is pure. Angles go through std::atan2: the last bit may differ between C
-///            libraries.
+/// Polygons   n and u are those of the polygon's vector area, and the angle is the polygon's own corner angle in [0,
+///            pi]; the triangles into which a tool would cut the polygon do not matter. e x f is the cross product at
+///            the corner. It points along n in a triangle and in a convex planar polygon, and against n at a reflex
+///            corner.
+/// Degenerate A face whose n is zero, or only rounding error, adds nothing by any weighting. Neither does a corner at
+///            an edge of length 0, except by area and uniform, which do not depend on edges. A duplicate face is added
+///            twice. A sum that is only the rounding error of its terms is (0, 0, 0).
+/// Bound      The bound of a fit is an angle in radians: at no t in [0, 1] is the angle between the quadratic and the
+///            weighted normal larger. It is proven in interval arithmetic, by Taylor polynomials of degree 4 with
+///            remainders over pieces of the segment. The segment is cut into more pieces, up to about 256, until the
+///            bound is within twice the largest sampled error, or 1e-9 rad. The bound is pi if nothing could be proven:
+///            if a face of the element loses its area inside the segment (the weighted normal jumps there, except by
+///            area-angle), if the sum vanishes, or if the error of the quadratic exceeds a right angle. Bounds for
+///            angle and area-angle are looser if corners are nearly straight, or edges have nearly no length.
+///            NormalCurves adds its own 1e-6 rad. Elements without any area have zero control normals and the bound 0.
+///            Elements of a single triangle have its direction, which is exact, and the bound 0.
+/// Threads    Everything except the fit is pure. Results have the same bits on every system.
 /// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21
 ///            (2005): uniform, angle, area, max and the last two.
 ///            Moore, Interval Analysis (1966), for Taylor coefficients in intervals.

@@ -43,8 +43,8 @@ struct ElementBlock {
   IndexRange elements;                      ///< the elements; schemes that need faces read the faces with these indices
   std::span<const ControlNormals> normals;  ///< one for each element; `recompute` does not read them
   bool are_faces = true;                    ///< false for vertices or corners, which have no edges
-  /// Returns the exact normal of the i-th element at t, not normalised, if the control normals are only a fit, which is
-  /// exact at both ends and at t = 1/2. If this is empty, the control normals are exact.
+  /// A function that returns the exact normal of the i-th element at t, not normalised. It is empty if the control
+  /// normals are exact. Otherwise the control normals are only a fit, which is exact at both ends and at t = 1/2.
   std::function<Vec3d(std::size_t i, double t)> exact = {};
 };
 
@@ -61,10 +61,10 @@ struct OperationCounts {
   friend bool operator==(const OperationCounts&, const OperationCounts&) = default;
 };
 
-/// The default interval. It keeps the drift of polynomials of degree up to 3 and of arcs below 5e-6 rad on the built-in
-/// morphs (docs/paper.md, section 3), and the drift of `polynomial` below 5e-5 rad by a bound on every rounding. If a
-/// scheme normalises a short vector, as linear does between nearly antipodal ends, its drift is divided by the length
-/// of this vector.
+/// The default of `anchor_interval` in Scheme::play(), in steps. It keeps the drift of polynomials of degree up to 3
+/// and of arcs below 5e-6 rad on the built-in morphs (docs/paper.md, section 3), and the drift of `polynomial` below
+/// 5e-5 rad by a bound on every rounding. If a scheme normalises a short vector, as linear does between nearly
+/// antipodal ends, its drift is divided by the length of this vector.
 inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
 /// Plays a scheme at equal steps of t, where each step is computed from the previous one (sequential access).
@@ -100,10 +100,10 @@ class Scheme {
   /// Returns true if the scheme reads the faces themselves, so that elements must be faces. Other schemes also accept
   /// control normals of vertices and corners, and only read the index of the segment.
   [[nodiscard]] virtual bool needs_faces() const noexcept { return false; }
-  /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials by forward differences, arcs by a
-  /// rotation per step. The state drifts with every step and is recomputed every anchor_interval steps (0: never).
-  /// Returns nothing if the scheme has no incremental form. The scheme must outlive the playback, and must not be
-  /// prepared again meanwhile.
+  /// Begins to play the block at t = start, start + step, ... in [0, 1]: polynomials are played by forward differences,
+  /// and arcs by a rotation per step. The state drifts with every step, and is recomputed after every anchor_interval
+  /// steps (never, if this is 0). Returns nothing if the scheme has no incremental form. The scheme must outlive the
+  /// playback, and must not be prepared again meanwhile.
   [[nodiscard]] virtual std::unique_ptr<SchemePlayback> play(double start, double step,
                                                              std::size_t anchor_interval) const {
     (void)start, (void)step, (void)anchor_interval;

@@ -23,8 +23,8 @@
 ///            separately, and are not part of the mean or the worst error. Their rendered normal must be finite; and it
 ///            must not be zero if the faces around have an area, since these are drawn.
 /// Faint      samples without a normal whose n(t) is larger than the effect of rounding positions to float32. They
-///            still have a direction, and normals that are lit from behind must not pass: is_within() of audits and
-///            viewers checks their angle, reduced by the effect of that rounding.
+///            still have a direction, and rendered normals that point backwards must not pass. So is_within() of audits
+///            and viewers checks their angle, reduced by the effect of that rounding.
 /// Cancelled  samples without a normal that are not faint although the faces around have an area: faces that are back
 ///            to back and share their vertices. Their true normal is unknown, and is_within() is false.
 /// Units      degrees; weights; seconds.
@@ -78,40 +78,41 @@ inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< largest number o
 struct AuditOptions {
   std::optional<AuditRule> rule = {};       ///< default: kGltf for glTF, kNlerp for sequences
   std::optional<std::size_t> samples = {};  ///< per segment; default: 21, or fewer in long tracks (about 210 in all)
-  /// For glTF: in longer tracks only every second, third or later segment is judged, so that about this many are. 0
-  /// judges all.
+  /// For glTF: about this many segments of a track are judged. In longer tracks only every second, third or later
+  /// segment is. 0 judges all segments.
   std::size_t most_segments = 0;
   /// For glTF: only this animation, by name or index; if empty, all targets and animations.
   std::string animation = {};
   /// The weighting of the true normals, which should be that of the program that made the file. By default, for each
   /// mesh or sequence, the weighting that its stored base normals clearly follow, or else area.
   std::optional<Weighting> weighting = {};
-  /// For glTF: the document from which this one was baked, whose normals are the author's; it must have the same
-  /// meshes. By default, the normals of this document are the author's.
+  /// For glTF: the document from which the audited document was baked. The normals of this document are then the
+  /// author's, and it must have the same meshes. By default, the normals of the audited document are the author's.
   const GltfDocument* author = nullptr;
   /// For glTF: the weights between which each target is judged alone, finite and ascending.
   std::array<double, 2> weights = {0, 1};
-  /// For glTF: further poses to judge, for meshes with a target that they name, or with their number of targets. With
-  /// is_posed but without poses: kRandomPoses for each mesh that a program may set (docs/cli.md).
+  /// For glTF: further poses to judge. A pose is judged in the meshes whose targets it names, or that have as many
+  /// targets as it has weights. If is_posed is true and there are no poses, kRandomPoses are judged for each mesh that
+  /// a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
   std::vector<Viewer> viewers = {};  ///< for glTF with the rule gltf: viewers that are judged, too
   bool skins = true;                 ///< for glTF: judges meshes in nodes with a skin as the skin transforms them
   bool weld = true;                  ///< vertices that coincide in all keyframes share a normal
   bool keep_errors = false;          ///< keeps every single error in Audit::errors
-  /// Is called with the number of segments that are done, and of all.
+  /// Is called with the number of segments that are done, and the number of all segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// One motion: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's expression, the weights
-/// with which a file opens, or requested poses, which are samples of a single subject.
+/// The motion that is judged: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
+/// expression, the weights with which a file opens, or requested poses, which are samples of a single subject.
 struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 
   Kind kind = Kind::kTarget;
   std::string name;                         ///< name of the target, animation or expression; may be empty
   std::optional<std::size_t> mesh, target;  ///< for a glTF file; `target` also for --base
-  /// For a track; `node` also for the first node that opens in this pose.
+  /// Set for a track. For a pose in which the file opens, `node` is the first node that opens in it.
   std::optional<std::size_t> animation, track, node;
   std::optional<std::size_t> expression;   ///< index among the expressions of the mesh
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
@@ -130,7 +131,8 @@ struct AuditSubject {
 
 /// Returns "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// Returns what identifies a sample of a subject: "weight", "time", or "pose" for the number of a pose.
+/// Returns the name of the number by which the samples of a subject are told apart: "weight", "time", or "pose" for the
+/// number of a pose.
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
 /// The offset of stored base normals from the geometry's normals.
@@ -225,8 +227,8 @@ struct Audit {
   /// the same keys share rows, which name the first of their subjects.
   std::vector<ErrorTable> errors;
 
-  /// Returns true if something was judged. Otherwise nothing changes normals, or no face ever has an area, and the
-  /// audit says nothing about the normals.
+  /// Returns true if something was judged. If not, nothing changes normals, or no face ever has an area, and the audit
+  /// says nothing about the normals.
   [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
   /// Returns true if every named viewer passes the limit (MotionError::passes()), or the rule if none is named. If
   /// there are motions, at least one sample must have been judged; a file in which nothing moves always passes.
@@ -276,8 +278,8 @@ struct AuditLimits {
 /// differences of a tenth of a degree decide. Errors: kUsage for the rule gltf, for viewers, and for fewer than 2
 /// samples; kInvalidInput if the number of normals does not fit. Precondition: the motion is valid
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// Audits a stream, holding two keyframes at a time. The stream is read twice, once more until all vertices have moved,
-/// and once more until no vertices coincide. Errors: also those of the stream.
+/// Audits a stream, holding two keyframes at a time. The stream is read twice in full, and twice in part: until all
+/// vertices have moved, and until no two vertices coincide. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal

@@ -1,10 +1,10 @@
 /// Writes true normals into ordinary glTF files.
 ///
-///     smallest   the default: of all the following candidates and more, the smallest in bytes whose worst error along
-///                the animations is within a tolerance in every named viewer, and nowhere worse than before. Candidates
-///                are the file's own normals, deltas of its targets alone, correction targets driven by products of
-///                weights, and correction targets of low rank that only the animations of the file drive
-///                (docs/theory.md, section 17)
+///     smallest   the default: the candidate with the fewest bytes whose worst error along the animations is within a
+///                tolerance in every named viewer, and nowhere worse than before. Candidates are all that follow, the
+///                file's own normals, deltas of its targets alone, correction targets driven by products of weights,
+///                and correction targets of low rank that only the animations of the file drive (docs/theory.md,
+///                section 17)
 ///     harmless   unit normals at weight 1 for each target, and correction targets of unit normals for the remaining
 ///                errors beyond a tolerance, at other weights and for combined targets: small errors in every named
 ///                viewer, and in none of them worse than before (docs/theory.md, section 16)
@@ -48,8 +48,8 @@ inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees; float32 in vi
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< default: smallest; exact for sequences
-  /// The viewers to bake for. By default, the viewers that add up deltas (three.js, Babylon.js, PlayCanvas, Bevy);
-  /// `spared` is then the viewers that keep unit normals (Godot, Filament).
+  /// The viewers to bake for. By default these are the viewers that add up deltas (three.js, Babylon.js, PlayCanvas,
+  /// Bevy). In this case `spared` becomes the viewers that keep unit normals (Godot, Filament).
   std::vector<Viewer> viewers = {};
   /// Viewers in which normals should not become worse: among candidates that are otherwise equal, one that satisfies
   /// this is preferred.
@@ -72,11 +72,13 @@ struct BakeOptions {
   bool recompute_base = false;  ///< replaces the base normals by those of the geometry; hard edges stay
   bool dense_zeros = false;     ///< stores zeros as bytes, for readers that need bytes for every accessor
   std::optional<std::size_t> most_bytes = {};  ///< fails if more bytes would be added
-  /// For sequences: set by the program; nullptr means no limit; a document has its own.
+  /// For sequences: the limit of memory and output, which the program sets. nullptr means no limit. A document has a
+  /// limit of its own.
   const Expansion* expansion = nullptr;
-  /// Degrees. For smallest: the limit of the worst error. For harmless and exact: correction targets are left out as
-  /// long as this changes no normal by more, and tracks are cut to this tolerance. For keys: the largest error of a
-  /// normal at any instant, at least kLeastKeyTolerance. Default: kHarmlessTolerance, or kExactBakeTolerance for exact.
+  /// The tolerance in degrees. For smallest: the limit of the worst error. For harmless and exact: correction targets
+  /// are left out as long as this changes no normal by more than the tolerance, and tracks are cut to the tolerance.
+  /// For keys: the largest error of a normal at any instant, at least kLeastKeyTolerance. Default: kHarmlessTolerance,
+  /// or kExactBakeTolerance for exact.
   std::optional<double> tolerance = {};
   /// The largest number of targets of a mesh, including its own (for smallest). Default: as many as the viewers
   /// support.
@@ -87,11 +89,13 @@ struct BakeOptions {
   /// The largest total size of a mesh's arrays of deltas and tangents, plus the growth of its tracks (for smallest);
   /// the closest candidate within this limit is chosen.
   std::optional<std::size_t> most_delta_bytes = {};
-  /// Promises that a program poses the meshes that no animation drives, and sets the weights of their correction
-  /// targets by the file's formulas. Otherwise smallest gives these meshes no correction targets.
+  /// Promises that a program sets poses of the meshes that no animation drives, and also sets the weights of their
+  /// correction targets by the file's formulas. Without this promise, smallest gives these meshes no correction
+  /// targets.
   bool is_posed = false;
-  /// The poses for which these meshes are baked, with weights by name or in the order of targets. A mesh is left out if
-  /// the poses name none of its targets and none has its number of weights. Default: random poses (docs/cli.md).
+  /// The poses for which meshes are baked if is_posed is set, with weights by name or in the order of targets. A mesh
+  /// is left out if the poses name none of its targets and none has its number of weights. Default: random poses
+  /// (docs/cli.md).
   std::vector<RigPose> poses = {};
   bool plan = false;  ///< for smallest: evaluate all candidates, even after the smallest one is found
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -124,8 +128,8 @@ struct ViewerChange {
   std::string viewer;
   bool is_named = true;    ///< true if the bake is made for this viewer
   bool is_better = false;  ///< true if the errors decrease as a whole, and in no respect increase beyond the allowance
-  /// The errors in three kinds of poses: in the file's animations as the viewer plays them, and its constant weights;
-  /// with each target alone from 0 to 1; and in poses that a program sets.
+  /// The errors in three kinds of poses: first, in the animations of the file as the viewer plays them, and with its
+  /// constant weights; second, with each target alone from 0 to 1; third, in poses that a program sets.
   std::array<Errors, 3> poses;
 };
 
@@ -167,29 +171,31 @@ struct BakedMesh {
   std::vector<GltfExtraTarget> extras;  ///< correction targets, added now or by an earlier bake
   /// Bytes of new arrays, not counting those shared with an earlier mesh, plus the growth of tracks.
   std::size_t bytes = 0;
-  /// For exact: moving targets that no animation drives, which are baked like endpoint.
+  /// For exact: the number of moving targets that no animation drives. They are baked like endpoint.
   std::size_t undriven = 0;
   std::size_t left_flat = 0;  ///< primitives without NORMAL that stay flat
-  /// Vertices whose stored base normal is zero or nearly zero, to which nothing can be added.
+  /// The number of vertices whose stored base normal is zero or nearly zero, so that deltas cannot be added to it.
   std::size_t without_stored = 0;
-  /// Vertices whose stored base normal was too long or too short for float32, and is now a unit vector.
+  /// The number of vertices whose stored base normal was too long or too short for float32, and is now a unit vector.
   std::size_t rescaled = 0;
-  /// Targets whose tangents were not perpendicular to the true normals. Their tangents are recomputed, for viewers that
-  /// add up tangents.
+  /// The number of targets whose tangents were not perpendicular to the true normals. Their tangents are recomputed,
+  /// for viewers that add up tangents.
   std::size_t new_tangents = 0;
   std::size_t left_tangents = 0;  ///< targets for whose tangents most_delta_bytes has no room; they do not change
   std::size_t stilled = 0;        ///< targets that moved normals but no positions; their deltas are zero now
   std::size_t without_base = 0;   ///< vertices whose faces have no area in the base (docs/cli.md)
-  /// Degrees, for endpoint targets and fits: each target alone, over w in [0, 1] and beyond if the file has such
-  /// weights. Targets that are active together are compared at the weights of the file, at keys and at up to fifteen
-  /// instants between two keys.
+  /// The largest error in degrees, for endpoint targets and fits. Each target is compared alone, over w in [0, 1] and
+  /// beyond if the file has such weights. Targets that are active together are compared at the weights of the file, at
+  /// keys and at up to fifteen instants between two keys.
   double largest_error = 0;
-  /// For endpoint: elements with deltas by least squares, for targets that are active together.
+  /// For endpoint: the number of elements whose deltas were computed by least squares, since several targets are active
+  /// at once.
   std::size_t fitted_elements = 0;
   double resampling_error = 0;  ///< degrees, from cutting cubic splines and leaving out pairs, along the animations
-  /// KHR_animation_pointer drives a single weight, so only exact adds correction targets.
+  /// True if KHR_animation_pointer drives a single weight, so that only the encoding exact adds correction targets.
   bool has_lone_weight = false;
-  /// The bake changed nothing; `candidates` has the evaluation of the present normals by smallest.
+  /// True if nothing was changed, because the mesh was baked before. `candidates` has the evaluation of the present
+  /// normals by smallest.
   bool already_baked = false;
   std::vector<ViewerChange> viewers;       ///< except for exact: the errors of each named viewer, if the mesh changed
   std::vector<BakedCandidate> candidates;  ///< for smallest: the candidates that were evaluated
@@ -247,16 +253,15 @@ struct SequenceBake {
 };
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped
-/// weights. The encoding exact adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15).
-/// Harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) if viewers have room, and a
-/// LINEAR track (section 16). Keys is like harmless without additional targets, at keys that it chooses itself, for
-/// area weights. Vertices at hard edges (crease angle) are doubled. `glb` gets the bytes of the file; it does not
-/// change after an error.
-/// The file holds float32 positions, and its normals are exact for these positions; residuals of a computed motion are
-/// left out. Polygons become fans of triangles with the normals of the polygons; if a fan does not cover its polygon in
-/// keyframe 0, there is a warning. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage in keys for other
-/// weights than area or a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a sequence
-/// (segments k -> k + 1)
+/// weights. The encoding exact adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15). The
+/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) if viewers have
+/// room, and a LINEAR track (section 16). The encoding keys is like harmless, but without additional targets; it
+/// chooses its keys itself, and requires area weights. Vertices at hard edges (crease angle) are doubled. `glb` gets
+/// the bytes of the file; it does not change after an error. The file holds float32 positions, and its normals are
+/// exact for these positions; residuals of a computed motion are left out. Polygons become fans of triangles with the
+/// normals of the polygons; if a fan does not cover its polygon in keyframe 0, there is a warning. Errors:
+/// kInvalidInput for more than most_bytes or 4 GiB; kUsage in keys for other weights than area or a tolerance below
+/// kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1)
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// Bakes a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several

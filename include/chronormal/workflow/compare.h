@@ -38,8 +38,8 @@
 
 namespace chronormal {
 
-/// Returns the names of the rows of the paper's table and of our schemes; for elements other than faces without the
-/// schemes that need faces.
+/// Returns the names of the rows of the paper's table and of our schemes. Schemes that need faces are left out for
+/// other elements.
 [[nodiscard]] std::vector<std::string> default_schemes(ElementKind kind = ElementKind::kFaces);
 
 /// Selects the order in which the samples of a segment are computed (section 3 of the paper).
@@ -79,13 +79,14 @@ struct CompareOptions {
 };
 
 /// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element. Times are measured in one thread while all threads work: the median over segments of the median over blocks
-/// of up to 1,024 elements, which stay in the cache (on smaller meshes, the calls themselves take most of the time).
+/// element. Each time is measured in one thread while all threads work. The times are the median over segments of the
+/// median over blocks of up to 1,024 elements, which stay in the cache (on smaller meshes, the calls themselves take
+/// most of the time).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
   std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing if linear has only rounding errors
-  /// (element, segment) pairs that were prepared with a documented fallback.
+  /// The number of (element, segment) pairs that were prepared with a documented fallback.
   std::size_t fallbacks = 0;
   std::size_t flagged = 0;                       ///< (element, segment) pairs evaluated in double
   bool sequential = false;                       ///< the scheme was played step by step
@@ -167,9 +168,9 @@ struct BlendError {
     double weight = 0;
   };
   BlendDeltas deltas = BlendDeltas::kFile;
-  /// In max_at, `segment` is the weight vector and `element` the output. `count` is equal for all deltas: all samples
-  /// whose geometry has a normal. `missing` counts the samples whose rendered normal is zero, infinite or NaN, which
-  /// count as 180 degrees.
+  /// The errors. In max_at, `segment` is the number of the weight vector and `element` the output. `count` is equal for
+  /// all deltas: all samples whose geometry has a normal. `missing` counts the samples whose rendered normal is zero,
+  /// infinite or NaN; these have an error of 180 degrees.
   Quality quality;
   std::vector<Weight> worst_weights;           ///< the active targets at the largest error
   std::optional<std::size_t> worst_primitive;  ///< for a glTF mesh
@@ -207,9 +208,9 @@ struct BlendComparison {
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
 /// Compares the deltas for all meshes of a file with targets and normals; with options.animation, for the meshes that
-/// this animation drives. Errors: those above, and those of GltfDocument; kUsage if the animation does not exist or
-/// drives none of the meshes, and for random weights of a mesh whose targets are the keyframes of a baked sequence;
-/// kInvalidInput if no mesh can be compared.
+/// this animation drives. Errors: those of the function above, and those of GltfDocument; kUsage if the animation does
+/// not exist or drives none of the meshes, and for random weights of a mesh whose targets are the keyframes of a baked
+/// sequence; kInvalidInput if no mesh can be compared.
 [[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
                                                      const BlendCompareOptions& options = {});
 

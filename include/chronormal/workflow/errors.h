@@ -76,7 +76,7 @@ class FineBins {
   [[nodiscard]] std::span<const Bin> filled() const noexcept { return bins_; }
   [[nodiscard]] std::size_t operator[](std::size_t number) const noexcept;
 
-  /// number < kAuditFineBins, count <= kMostCount
+  /// Adds `count` to the count of a bin. number < kAuditFineBins, count <= kMostCount
   void add(std::size_t number, std::uint64_t count);
   void add(const FineBins& other);
   friend bool operator==(const FineBins&, const FineBins&) = default;
@@ -104,8 +104,8 @@ struct MotionError {
   /// the true normal is unknown.
   std::size_t cancelled = 0;
   AuditPlace cancelled_at;  ///< the first such sample; has no meaning if there are none
-  /// Edges over which errors jump by more than 10, 20 and 40 degrees, so that a picture shows a fold that the surface
-  /// does not have. Edges of faces and seams between copies of a point each count once at every sample.
+  /// The number of edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that
+  /// the surface does not have. Edges of faces, and seams between copies of a point, each count once at every sample.
   std::array<std::size_t, 3> torn{};
   std::size_t samples = 0;    ///< number of samples at which edges were counted; 0 if they were not, as in sequences
   std::size_t most_torn = 0;  ///< largest number of edges beyond 10 degrees at one sample
@@ -124,8 +124,8 @@ struct MotionError {
   [[nodiscard]] double percentile(double share) const noexcept;
   /// Returns true if every sample can be lit and no error is above this.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
-  /// Tests the same for a limit that must hold: also checks faint samples, and returns false if there are cancelled
-  /// ones.
+  /// Returns true if is_within() does, the errors of faint samples are also within the limit, and no sample is
+  /// cancelled.
   [[nodiscard]] bool passes(double degrees) const noexcept {
     return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
   }
@@ -153,8 +153,8 @@ struct SkinningError {
 };
 
 /// The respects in which one audit is worse than an earlier one: more samples that cannot be lit, a worst or mean error
-/// that increased by more than rounding to float32 explains, or more torn edges. With the two audits exchanged, these
-/// are the respects in which the later one is better.
+/// that increased by more than rounding to float32 explains, or more torn edges. If the two audits are exchanged, the
+/// result has the respects in which the later audit is better.
 struct WorseRespects {
   bool unlit = false, mean = false, worst = false, torn = false;
 

@@ -39,7 +39,7 @@ struct Largest {
   std::size_t segment = 0, element = 0;  ///< `element` is a vertex or a face
 };
 
-/// A segment; for targets, a target.
+/// The inspection of a segment, or for targets of a target.
 struct SegmentInspection {
   std::size_t moved_vertices = 0;
   Largest motion;                   ///< the longest displacement of a vertex
@@ -60,7 +60,7 @@ struct Inspection {
   double diagonal = 0;                   ///< diagonal of that box
   Largest motion, turn;                  ///< largest values over all segments
   Found doubled;                         ///< vertices that coincide with a lower one in all keyframes
-  /// Vertices that coincide with a lower one in keyframe 0, which are at least as many.
+  /// Vertices that coincide with a lower one in keyframe 0: at least as many as `doubled`.
   Found doubled_at_start;
   Surface surface;
   Found cut;  ///< faces that a fan around the first corner does not cover in keyframe 0, so that they are cut by ears

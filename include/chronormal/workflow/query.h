@@ -36,8 +36,8 @@ class Expansion;  // limits the memory and output that a file may cause
 /// the motion.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
-  /// The limit of the answer's size, which the program sets; nullptr means no limit. Rows for every face of every
-  /// segment are counted before anything is computed; other rows are counted as they are found.
+  /// The limit of the answer's size, which the program sets; nullptr means no limit. If a query has a row for every
+  /// face of every segment, its rows are counted before anything is computed; other rows are counted as they are found.
   const Expansion* expansion = nullptr;
 };
 
@@ -147,7 +147,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// the table has no name. Errors: kUsage for another extension; those of write_output().
 [[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
 
-/// Returns the sizes of an answer's arrays in memory and as .npz, and an upper bound as JSON.
+/// Return the size of an answer in bytes: of its arrays, in memory and as .npz, and an upper bound of its JSON.
 [[nodiscard]] std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept;
 [[nodiscard]] std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept;
 

@@ -63,7 +63,7 @@ enum class NormalLength {
 /// computed from the previous ones by additions or by a rotation.
 struct Stepping {
   std::size_t steps = 1;  ///< per segment, at least 1
-  /// The state is recomputed after so many steps; 0 means never, as in the paper.
+  /// The number of steps after which the state is recomputed; 0 means never, as in the paper.
   std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
@@ -165,16 +165,17 @@ class NormalSampler {
   std::unique_ptr<const NormalGroups> groups_;     // except for faces; prepared normals refer to these groups
   NormalCurves curves_;                            // curves of the current segment
   std::shared_ptr<SchemeNormals> scheme_normals_;  // used with a scheme, for the current segment
-  std::optional<std::size_t> segment_;             // which
+  std::optional<std::size_t> segment_;             // the number of the current segment
   Drift drift_;
 };
 
-/// Returns the moments of all steps through a motion: times of a sequence, in which the end of a segment is the
-/// beginning of the next one; for targets, each target from weight 0 to 1. Errors: kUsage if the motion has no segment.
+/// Returns the moments of all steps through a motion. For a sequence these are times, and the end of a segment is also
+/// the beginning of the next one. For targets they are weights, from 0 to 1 for each target alone. Errors: kUsage if
+/// the motion has no segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
-/// Counts for each time the consecutive times, from this one on, in the same segment: the number of evaluations for
-/// NormalSampler::at_time(). Errors: those of find_instant()
+/// Returns, for each time, the number of consecutive times in the same segment, counted from this time on: the argument
+/// `evaluations` of NormalSampler::at_time(). Errors: those of find_instant()
 [[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };

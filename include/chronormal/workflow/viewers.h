@@ -63,9 +63,9 @@ struct Viewer {
   /// octahedral numbers that store a direction, or of the four numbers of a quaternion. For kClamped: of the integer
   /// that stores a component, including its sign.
   int bits = 32;
-  /// For kUnit: u is the third axis of the rotation of a quaternion. The quaternion comes from the frame that Frisvad's
-  /// rule makes from the vector, as if it were a unit vector. (Building an Orthonormal Basis from a 3D Unit Vector
-  /// Without Normalization, 2012.)
+  /// For kUnit: u is the third axis of the rotation of a quaternion. This quaternion stands for the frame that
+  /// Frisvad's rule makes from the vector as if the vector had length 1. (Building an Orthonormal Basis from a 3D Unit
+  /// Vector Without Normalization, 2012.)
   bool by_frame = false;
   bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;
@@ -171,14 +171,14 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 /// named.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// Returns the first term of the sum of a vertex, to which targets in their order add their weight times kept_delta(),
-/// in float32: N', or zero in viewers with 16-bit floats, which sum deltas separately.
+/// Returns the vector with which the sum of a vertex begins: N', or zero in viewers with 16-bit floats, which sum
+/// deltas separately. Each target in turn adds its weight times kept_delta() to it, in float32.
 [[nodiscard]] constexpr Vec3f first_of_sum(const Viewer& viewer, const Vec3f& kept_normal) noexcept {
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// The first returns the vector in whose direction the normal is rendered for a sum, the second the unit normal itself.
-/// Both are zero or not finite if the sum is.
+/// Return the normal that a viewer renders for a sum: vector_of_sum() a vector in its direction, and shown_of_sum() the
+/// unit normal itself. Both are zero or not finite if the sum is.
 [[nodiscard]] Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
