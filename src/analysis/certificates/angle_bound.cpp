@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// Below this length, the float32 formulas treat vectors in a different way.
+// The length below which the float32 formulas treat vectors in a different way.
 constexpr double kShortest = 1.1e-8;
 
-// Bounds the rounding error of a sum of a few products of numbers up to 1.
+// A bound of the rounding error of a sum of a few products of numbers up to 1.
 constexpr double kRounding = 32 * kUnitRoundoff;
 
 // The share of coefficient i of degree M times coefficient j of degree N in coefficient i + j of their product.
@@ -74,7 +74,8 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   for (const double d : dot_products) largest_dot = std::max(largest_dot, std::fabs(d));
   const double p_length = std::sqrt(p_square), n_length = std::sqrt(n_square);
   if (!(p_length > 0 && n_length > 0 && std::isfinite(p_length))) return kHalfTurn;
-  // The rounding of the lengths changes S and D, which counts as an error of p. Rounding of their squares comes on top.
+  // The slacks bound the rounding of the squares of S and D. The rounding of S and D themselves counts as an error of
+  // p.
   const double cross_slack = kRounding * largest_cross, dot_slack = kRounding * largest_dot * largest_dot;
   const bool is_ahead = *std::min_element(dot_products.begin(), dot_products.end()) > kRounding * p_length * n_length;
 

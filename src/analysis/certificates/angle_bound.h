@@ -7,8 +7,9 @@
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
 ///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   all (S.S)_k > 0
 ///
-/// which converges with the square of the width of the piece. S.S + D^2 = |p|^2 |n|^2 has the sums of these
-/// coefficients; the smallest sum bounds how far the ball and the error of n turn the two. (docs/theory.md, section 19)
+/// Both bounds converge with the square of the width of the piece. The Bernstein coefficients of S.S + D^2 = |p|^2
+/// |n|^2 are the sums of these coefficients. The smallest sum bounds the angles by which the ball and the error of n
+/// can turn p and n (docs/theory.md, section 19).
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_ANGLE_BOUND_H_
@@ -25,8 +26,8 @@ namespace chronormal::inline internal {
 struct CurvePiece {
   Bernstein<Vec3d, 3> p;
   double radius = 0;         ///< the rendered vector at any t of the piece is within this of p(t)
-  Vec3d middle;              ///< the rendered vector at the middle of the piece is within
-  double middle_radius = 0;  ///< this of `middle`
+  Vec3d middle;              ///< a vector near the rendered one at the middle of the piece
+  double middle_radius = 0;  ///< bound of the distance between the two
   double angle = 0;          ///< a further error of the direction, in radians
 };
 

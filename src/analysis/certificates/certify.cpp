@@ -37,11 +37,12 @@ struct Normal {
 constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
 constexpr double kCutting = 0x1p-46;           // the rounding of splitting a polynomial, per largest coefficient
 
-// Returns the factor that brings the largest component to 1. A zero vector is not scaled: only its error counts.
+// Returns the factor that scales the largest component to 1, and 1 for a zero vector, which has nothing to scale but
+// its error.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
-// Divides a quadratic that is certainly zero at an end by t or 1 - t. The quotient has the same direction, and is not
-// zero at that end. Returns nothing if n is certainly zero throughout.
+// Divides a quadratic that is certainly zero at an end by t or by 1 - t. The quotient has the same direction as the
+// quadratic, and is not zero at that end. Returns nothing if the quadratic is certainly zero throughout.
 std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
   const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
   if (largest == 0 && errors == ControlErrors{}) return std::nullopt;
@@ -65,7 +66,7 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   return Normal{{n0, m, n1}, error};
 }
 
-// Pieces are ordered by their bounds; the largest comes first.
+// A piece of the segment. Pieces are ordered by their bounds, so that the largest bound comes first.
 struct Piece {
   double a, b;
   double upper;
@@ -109,8 +110,8 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
   }
 }
 
-// An arc that runs in warped time x = r t / ((1-r)(1-t) + r t) meets, at x, the normal of t(x). This normal is
-// again a quadratic, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
+// The warped time x = r t / ((1-r)(1-t) + r t) in which an arc runs, where r is `share`. At x, the arc meets the normal
+// of t(x). This normal is again a quadratic in x, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
 struct Warp {
   double share;
 

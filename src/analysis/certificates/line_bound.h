@@ -13,8 +13,8 @@ namespace chronormal::inline internal {
 inline constexpr double kViewerRounding = 32 * 0x1p-24;
 
 /// Returns an upper bound of the angle, in radians, between n(t) and the line from `from` (t = a) to `to` (t = b), for
-/// all t in [a, b] and at any length of the two. The bound is only as close as it must be to tell that the angle is at
-/// most `enough`, or certainly above it. 0 if n is zero throughout. Pure.
+/// all t in [a, b]. The lengths of `from` and `to` may be any. The bound is only as close as necessary to tell whether
+/// the angle is at most `enough`. It is 0 if n is zero throughout. Pure.
 /// 0 <= a < b <= 1
 [[nodiscard]] double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
                                 double enough) noexcept;

@@ -17,8 +17,8 @@ constexpr double kE = kFloatUnitRoundoff;
 constexpr double kScaling = 2 * kE;  // radians
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns the rounding error of a weighted sum of this many vectors, if the sum of |weights| |vectors| is 1: of a
-// weight, a product, the additions, and the weights that were rounded in double before.
+// Returns the rounding error of a weighted sum of this many vectors, if the sum of |weights| |vectors| is 1. The error
+// has one rounding for a product, one for each addition, and two for the weights.
 constexpr double rounding_of_sum(std::size_t count) { return (static_cast<double>(count) + 2) * kE; }
 
 double length_of(const Vec3d& v) { return std::sqrt(dot(v, v)); }
@@ -94,8 +94,8 @@ CurvePiece SumCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // Takes the cubic with the same ends and end slopes. After raising it to the degree of p, its coefficients can be
-  // compared with those of p.
+  // Takes the cubic with the same ends and end slopes as p. Raised to the degree of p, the cubic has coefficients that
+  // can be compared with those of p.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
@@ -123,8 +123,8 @@ ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
   angle_ = static_cast<double>(c[is_great ? 6 : 9]);
   const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
   largest_ = std::max(p, q);
-  // Bounds the rounding of t and its product with A; of sine and cosine, within 1.2e-7 = 2.02 e; of two products and
-  // two additions.
+  // Adds up the rounding errors: of t and its product with A; of sine and cosine, within 1.2e-7 = 2.02 e; of two
+  // products and two additions.
   double time_error = 2.01 * kE;
   if (formula == Formula::kTimedCircleArc) {
     // The warped time changes by at most `steepest` times the rounding of t, and by a few roundings of its own.
@@ -167,8 +167,8 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
   constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, float32 does not determine a slerp
   if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
-  // A point at the middle of the piece, its largest speed anywhere on the piece, and its rounding across and along
-  // itself.
+  // A point at the middle of the piece, its largest speed anywhere on the piece, and its rounding errors: across the
+  // direction from the origin to the point, and along it.
   struct Moving {
     Vec3d at;
     double speed = 0, across = 0, along = 0;

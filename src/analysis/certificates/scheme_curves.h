@@ -29,7 +29,7 @@ namespace chronormal::inline internal {
 /// Weighted sums with weights of degree 3 at most, and quadratics, which are all exact cubics.
 class CubicCurve {
  public:
-  /// basis.degree() must be 3 at most
+  /// Takes a weighted sum. basis.degree() must be at most 3.
   CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
   /// Takes the quadratic of `rational`, whose weights are Bernstein polynomials.
   explicit CubicCurve(ElementCoefficients c) noexcept;
@@ -46,10 +46,11 @@ class CubicCurve {
   double angle_;
 };
 
-/// Weighted sums of a higher degree.
+/// Weighted sums with weights of degree 3 or more, each within a ball around the cubic that has the same ends and end
+/// slopes.
 class SumCurve {
  public:
-  /// basis.degree() must be 3 at least
+  /// Takes a weighted sum. basis.degree() must be at least 3.
   SumCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -84,7 +85,7 @@ class SphericalCurve {
  private:
   std::size_t count_;
   std::array<Vec3d, kMaxDeCasteljauNormals> points_;
-  bool are_unit_ = true;  // if false, nothing is known
+  bool are_unit_ = true;  // if false, no bound is known
 };
 
 }  // namespace chronormal::inline internal

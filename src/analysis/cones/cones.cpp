@@ -22,8 +22,8 @@ bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
 bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 
-// Writes the cones of up to kBlock elements. It calls settle(i) for the cone of an element if double cannot tell where
-// a control normal of the part points.
+// Writes the cones of up to kBlock elements over [t0, t1]. If double cannot determine the direction of a control normal
+// over this interval, calls settle(i) for the cone of element i.
 template <class Settle>
 void cones_of_block(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result,
                     const Settle& settle) noexcept {
@@ -44,7 +44,8 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
   }
 }
 
-// The direction in a cone that is farthest from a unit axis, by the sine and cosine of its angle to the axis.
+// The direction in a cone that is farthest from a given unit axis, described by the sine and cosine of its angle to
+// this axis.
 struct Farthest {
   double sine = 0, cosine = 2;
   Vec3d axis;  // axis of the cone
@@ -151,7 +152,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
     axis = unit(axis + (1 / static_cast<double>(i + 2)) * (point - axis));
   }
 
-  // The cone must be valid around the rounded axis.
+  // The axis is rounded to float32, so the sine is computed around the rounded axis.
   const Vec3f rounded = to_float(best);
   const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
   const double sine = far.sine + kSineRounding;

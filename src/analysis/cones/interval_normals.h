@@ -16,8 +16,8 @@ struct IntervalNormals {
   [[nodiscard]] bool is_known() const noexcept { return unknown <= kLargestUnknown; }
 };
 
-/// Restricts the control normals of an element, which are within kNormalShare. If they cancel, the error is a large
-/// share of the result.
+/// Restricts the control normals of an element, whose relative errors must be at most kNormalShare, to a part of the
+/// segment. If control normals cancel in this part, their error is a large share of the result.
 [[nodiscard]] IntervalNormals part_of(const ControlNormals& normals, const Restriction& part) noexcept;
 
 /// Computes the control normals of a part of a face, or of the sum of several faces, from integers.

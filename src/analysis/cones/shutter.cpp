@@ -5,8 +5,8 @@
 //     |q(s) - q(0)| <= |q1| R + |q2| R^2 + |q3| R^3 + |q4| R^4 = k |a|^2
 // so if k < 1 the unit normal n(s) / sqrt(q(s)) is analytic in that disc, and its component along any direction is at
 // most M = (|a| + |b| R + |c| R^2) / (|a| sqrt(1 - k)). The disc with R = (4 + 1/4) / 2 contains the ellipse with the
-// foci -1 and 1 and the half-axes' sum 4, and there Chebyshev's coefficients of an analytic function are at most 2 M
-// 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the error of the mean is at most
+// foci -1 and 1 whose half-axes have the sum 4, and there Chebyshev's coefficients of an analytic function are at most
+// 2 M 4^-j. Gauss's rule with 8 nodes is exact up to degree 15, so the error of the mean is at most
 //     32/15 M 4^-16 / (1 - 4^-2)                               (Trefethen, Approximation Theory and Practice, chapter
 //                                                              19)
 #include "chronormal/analysis/cones.h"
@@ -36,7 +36,7 @@ constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899,
 constexpr std::array<double, 4> kWeights{0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
                                          0.10122853629037626};
 
-// A piece of the curve, and the lengths of the vectors that its control normals are sums of.
+// A piece of the curve n(t). Each control normal is a sum of vectors, and `size` bounds the sum of their lengths.
 struct Piece {
   Bernstein<Vec3d, 2> n;
   Bernstein<double, 2> size;
@@ -94,7 +94,8 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
   }
 }
 
-// Returns the means for control normals that are sums of vectors of these lengths, each within kNormalShare.
+// Returns the means for control normals that are sums of vectors of these lengths. The relative error of each vector is
+// at most kNormalShare.
 ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& lengths) noexcept {
   const auto& [n0, m, n1] = c;
   const double largest = std::max({lengths[0], lengths[1], lengths[2]});

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kPointsPerBlock = 64;
 
-// An edge, in the direction in which a face has it.
+// An edge of a face, with the direction in which it goes around the face.
 struct PassedEdge {
   std::uint32_t low, high;  // points
   bool upwards;
@@ -103,8 +103,8 @@ std::size_t axis_of(const ControlNormals& n) {
 
 constexpr std::size_t kUpwards = 2;
 
-// Returns a root in [0, 1] to the precision of double, or the first one if the ends have the same sign. Uses Newton's
-// method, restricted to the interval that brackets the root.
+// Returns a root in [0, 1] to the precision of double, by Newton's method restricted to an interval that brackets the
+// root. If the values at the ends have the same sign, returns the first root, if there is any.
 std::optional<double> first_root(const Bernstein<double, 3>& p) {
   if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
     const Roots<3> roots = roots_in_unit_interval(p);
@@ -181,7 +181,8 @@ class Passage {
   }
 
  private:
-  // The only root of the volume of a triangle in a cell. At the root, the point is between the edges.
+  // The only root of the volume of a triangle in a cell of time. At the root the point is between the edges of the
+  // triangle, so it crosses the triangle.
   struct Root {
     std::uint32_t triangle;
     Cell cell;
@@ -197,7 +198,8 @@ class Passage {
     return {{corner(0), corner(1), corner(2)}, point_};
   }
 
-  // Tells whether a triangle must be examined in parts of this cell. Records its root if it is certain.
+  // Returns true if this cell of time is too long to tell whether the point crosses the triangle, so that its parts
+  // must be examined. Otherwise records the crossing, if there is one.
   bool is_open(const CrossingSigns& signs, std::uint32_t i, const Cell& cell) {
     const std::size_t axis = axis_of(mesh_.normals[i]);
     if (axis == kNoAxis) return false;
@@ -234,15 +236,15 @@ class Passage {
     }
   }
 
-  // Returns the sign of the volume at t, by which side of the root t is on.
+  // Returns the sign of the volume at t, which follows from the side of the root on which t is.
   [[nodiscard]] static int sign_at(const Root& root, const CrossingSigns& signs, Tick t) {
     if (t <= root.cell.from) return -root.change;
     if (t >= root.cell.to) return root.change;
     return signs.volume_at(t);
   }
 
-  // Within a moment, attributes to the open triangles the change of the winding number that certain roots do not
-  // explain.
+  // Makes crossings of the open triangles within a moment, for the change of the winding number that the certain roots
+  // do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {
@@ -261,7 +263,8 @@ class Passage {
       summed_.push_back(crossing_at(open[i % open.size()], t, direction));
   }
 
-  // Returns the time of a root: the value in double if exact signs around it agree, and otherwise by bisection.
+  // Returns the time of a root. It is computed in double, and replaced by the result of a bisection unless exact signs
+  // on both sides of it agree with a root there.
   [[nodiscard]] double time_of(const Root& root) const {
     constexpr Tick kMargin = 8;
     const CrossingSigns signs = signs_of(root.triangle);

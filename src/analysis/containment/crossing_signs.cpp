@@ -31,7 +31,7 @@ Triple cross_of(const Triple& b, const Triple& c) noexcept {
 double dot_of(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Triple sum_of(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// Returns the coefficients of the volume over a cell, each times its binomial coefficient.
+// Returns the Bernstein coefficients of the volume over a cell, each times its binomial coefficient.
 Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::array<Triple, 3>& to) noexcept {
   const Triple before = cross_of(from[1], from[2]), after = cross_of(to[1], to[2]);
   const Triple between = sum_of(cross_of(from[1], to[2]), cross_of(to[1], from[2]));
@@ -39,8 +39,8 @@ Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::a
           dot_of(from[0], after) + dot_of(to[0], between), dot_of(to[0], after)};
 }
 
-// A coordinate has 24 + 253 bits, one more for a difference and 48 for the time. A volume is a sum of six products of
-// three coordinates.
+// The numbers of digits that integers need. A coordinate has 24 + 253 bits, one more for a difference and 48 for the
+// time. A volume is a sum of six products of three coordinates.
 constexpr std::size_t kCoordinateDigits = 15, kProductDigits = 31, kVolumeDigits = 46;
 using Coordinate = WideInteger<kCoordinateDigits>;
 using Product = WideInteger<kProductDigits>;
@@ -112,7 +112,8 @@ class ExactCell {
       }
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // Expands -n = (c - a) x (b - a) to degree 3: each choice leaves out a factor, which is 1.
+    // Expands -n = (c - a) x (b - a), a product of two factors, to degree 3: each choice leaves out the third factor,
+    // which is 1.
     ProductVector normal;
     for (const auto& at : choices(3, i)) {
       add_cross(difference(seen(at[0], 2), seen(at[0], 0)), difference(seen(at[1], 1), seen(at[1], 0)), normal);
@@ -133,7 +134,8 @@ class ExactCell {
       value.add_product(seen(a, edge, y), seen(b, next, x), -1);
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // Expands -e_x (b - a)_y + e_y (b - a)_x to degree 2: each choice leaves out a factor, which is 1.
+    // Expands -e_x (b - a)_y + e_y (b - a)_x, which has one factor that depends on t, to degree 2: each choice leaves
+    // out the second factor, which is 1.
     Coordinate along_x, along_y;
     for (const auto& at : choices(2, i)) {
       along_x.add(seen(at[0], edge, y), 1);
@@ -236,7 +238,7 @@ class ExactCell {
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// An ExactCell that is only made when it is needed.
+// The arguments of an ExactCell, which is only made if double cannot decide.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;
@@ -255,7 +257,7 @@ int common_sign(const std::array<int, kCount>& signs) noexcept {
   return signs[0];
 }
 
-// Returns the signs that double is sure of, and 0 for the others.
+// Returns the sign of each value that exceeds the bound of its error, and 0 for the others.
 template <std::size_t kCount>
 std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, double bound) noexcept {
   std::array<int, kCount> signs;

@@ -78,7 +78,7 @@ std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segmen
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr std::array<float, 3> kLow{kInfinity, kInfinity, kInfinity}, kHigh{-kInfinity, -kInfinity, -kInfinity};
   std::vector<MovingBox> boxes(nodes.size(), {kLow, kLow, kHigh, kHigh});
-  // Children come after their parents in the list.
+  // Goes through the nodes from last to first, since children come after their parents in the list.
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const BoxNode& node = nodes[n];
     MovingBox& box = boxes[n];

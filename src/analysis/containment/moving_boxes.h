@@ -25,7 +25,7 @@
 
 namespace chronormal::inline internal {
 
-/// A node of the tree. If it has children, they follow each other.
+/// A node of the tree. The two children of a node follow each other in the list.
 struct BoxNode {
   std::uint32_t first = 0;  ///< the first child, or the first triangle
   std::uint32_t count = 0;  ///< number of triangles; 0: the node has two children
@@ -40,7 +40,7 @@ struct BoxTree {
 /// O(n log n).
 [[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
 
-/// A box that moves, with its limits at both ends of a segment; the limits belong to it.
+/// A box that moves, given by its limits at both ends of a segment. Points on a limit are inside.
 struct MovingBox {
   std::array<float, 3> low_from, low_to, high_from, high_to;
 
@@ -65,7 +65,8 @@ struct MovingBox {
   }
 
  private:
-  // Keeps the times at which the point is above the limit (below it, with the sign -1).
+  // Restricts [begin, end] to the times at which the point is above the limit, or below it if the sign is -1. Returns
+  // false if there are none.
   static bool cut(float from, float to, float point_from, float point_to, double sign, double& begin,
                   double& end) noexcept {
     const double at_from = sign * (double{point_from} - from), at_to = sign * (double{point_to} - to);
@@ -82,7 +83,8 @@ struct MovingBox {
   static constexpr double kSlack = 1e-14;  // more than four roundings
 };
 
-/// Returns the boxes of all nodes in a segment, whose topology has the triangles in the order of the tree. O(n).
+/// Returns the boxes around all nodes in a segment. The topology of the segment must have the triangles in the order of
+/// the tree. O(n).
 [[nodiscard]] std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segment& segment);
 
 /// Calls visit(triangle) for the triangles in all leaves that pass the test together with all nodes above them.

@@ -40,14 +40,15 @@ class DeltaFit {
   /// Returns the present deltas: the ones at the start, or the result of the last solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 
-  /// Adds a row to the fit that demands shown_normals(deltas(), weights) + missing. O(entries of deltas + targets^2).
-  /// `weights` must have a value for each delta, and `missing` a vector for each element
+  /// Adds a row to the fit: with these weights, a viewer should render shown_normals(deltas(), weights) + missing.
+  /// O(entries of deltas + targets^2). `weights` must have a value for each delta, and `missing` a vector for each
+  /// element
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
   /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() is smallest, for each
   /// element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
-  /// together), it takes the deltas nearest to the start. Cost: for each element, a linear system with one equation for
-  /// each of its deltas.
+  /// together), the result has the deltas that are nearest to those at the start. Cost: for each element, a linear
+  /// system with one equation for each of its deltas.
   void solve();
 
  private:

@@ -47,7 +47,7 @@ class Samples {
  public:
   static constexpr std::size_t kMost = 128;
 
-  // Places equidistant samples, and then additional ones where the normal turns fast.
+  // Makes equidistant samples, and then additional ones where the normal turns fast.
   explicit Samples(const ControlNormals& normals) noexcept : normals_(normals) {
     constexpr std::size_t kIntervals = 16, kMostTurning = 80;
     constexpr int kLevels = 20;
@@ -79,7 +79,8 @@ class Samples {
     ++count_;
   }
 
-  // Adds weights at which the line from `from` to `to` has covered equal shares: it may turn fast near an end.
+  // Adds weights at which the line from `from` to `to` has turned by roughly equal shares, since it turns fast near an
+  // end if one of the two vectors is much shorter than the other.
   void follow(const Vec3d& from, const Vec3d& to) noexcept {
     const double ratio = length(to) / length(from);
     constexpr int kShares = 8;
@@ -97,8 +98,8 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Returns the key of the angle between the line and a sample. If the line is zero there, its direction jumps, and both
-// sides count.
+// Returns the key of the angle between the line and a sample; keys are the numbers by which angles are compared. If the
+// line is zero at the sample, its direction jumps there, and both directions count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
   if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
@@ -144,7 +145,7 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// The samples as functions of s.
+// The angles at all samples as functions of s, and the search for the s that makes the largest of them smallest.
 class ScaleSearch {
  public:
   ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}
@@ -173,8 +174,8 @@ class ScaleSearch {
   }
 
  private:
-  // The polynomials in s for one w: pole . (line x u), the cosine, and the squared length of the line; and the height
-  // of u above the circle.
+  // The polynomials in s for one w: the component of (line x u) along the pole, the cosine, and the squared length of
+  // the line. `height` is the height of u above the plane of the great circle.
   struct Term {
     double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
   };
@@ -201,7 +202,8 @@ class ScaleSearch {
     return std::max(w.behind, w.ahead);
   }
 
-  // Narrows [low, high] to the log s for which all angles are below 90 degrees: each w allows an interval.
+  // Narrows [low, high] to the values of log s for which all angles are below 90 degrees. Each w allows an interval of
+  // them.
   [[nodiscard]] bool below_right_angle(double& low, double& high) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
@@ -240,7 +242,8 @@ class ScaleSearch {
     return x;
   }
 
-  // Searches a grid: some angle is 90 degrees or more for every s, so there may be several valleys.
+  // Searches a grid of s, since some angle is 90 degrees or more for every s, so that the largest angle may have
+  // several local minima.
   [[nodiscard]] double best_of_grid() const noexcept {
     constexpr int kGrid = 44, kHalvings = 20;
     double step = 2 * kRange / kGrid, best = 0, best_key = largest(0);
@@ -266,7 +269,8 @@ class ScaleSearch {
   std::size_t count_ = 0;
 };
 
-// Returns log s of the line that is n(w) itself if its degree is 0 or 1, or if n(w) is w or 1 - w times such a line.
+// Returns log s of the line with exactly the direction of n(w), if n(w) has the degree 0 or 1, or is w or 1 - w times a
+// line.
 double log_of_degree_1(const ControlNormals& normals) noexcept {
   const Vec3d from = max_abs(normals.n0) == 0 ? 2 * normals.m : normals.n0;
   const Vec3d to = max_abs(normals.n1) == 0 ? 2 * normals.m : normals.n1;
@@ -293,12 +297,12 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   Samples samples(normals);
   const double key_of_one = highest_peak(samples, u0, u1).key;
   const EndDelta plain{u1 - u0, 1, angle_of_key(key_of_one)};
-  // The sine of the smallest angle between directions; below it they are equal or antipodal, and rounding would decide
-  // which is ahead.
+  // The sine of the smallest angle at which two directions are told apart. Below it they count as equal or antipodal,
+  // since rounding would decide which one is ahead.
   constexpr double kSmallestSine = 1e-10;
   if (length(cross(u0, u1)) < kSmallestSine) return plain;
 
-  // Round 0 tries the s that is exact for an element of degree 1, which a search would only approximate.
+  // Round 0 tries the s that is exact for an element of degree 1. A search would only approximate this s.
   double log_scale = log_of_degree_1(normals), lowest_possible = 0;
   Peak best{0, 3};
   double best_scale = 1;

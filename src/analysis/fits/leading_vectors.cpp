@@ -17,7 +17,7 @@ constexpr int kIterations = 16, kMostSweeps = 30;
 constexpr double kNothing = 1e-12;  // share of the largest eigenvalue; smaller eigenvalues are rounding errors
 constexpr double kDiagonal = 1e-13;
 
-// Columns side by side, (columns, n).
+// The columns of a matrix, as an array of columns with n numbers each.
 using Columns = std::vector<std::vector<double>>;
 
 double dot(std::span<const double> a, std::span<const double> b) {

@@ -27,13 +27,14 @@
 
 namespace chronormal::inline internal {
 
-/// Returns exact base normals, and for each target the delta to its exact normals alone at weight 1.
+/// Returns exact base normals, and for each target the delta from them to the exact normals of this target alone at
+/// weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
 
 /// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for
 /// each element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
-/// together), it takes the deltas closest to the end-point deltas. Cost: an evaluation for each row, and for each
-/// element a linear system with one equation for each target that moves it. weights must be (rows, targets)
+/// together), the result is closest to the end-point deltas. Cost: an evaluation for each row, and for each element a
+/// linear system with one equation for each target that moves it. weights must be (rows, targets)
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
 /// Returns the angles between the rendered and the exact normals, over all rows, and all elements for which one of the

@@ -15,9 +15,11 @@
 namespace chronormal {
 namespace {
 
-// The share is about 500,000 rounding errors, so a larger result has a direction with an error of at most 1e-5 rad.
+// The share of the size of its terms below which a sum is computed in integers. It is about 500,000 rounding errors, so
+// a larger sum has a direction with an error of at most 1e-5 rad.
 constexpr double kDoubtfulShare = 1e-10;
-// A normal that a rounding of t turns by more than this has no definite direction at t.
+// The largest angle by which a rounding of t may turn a normal. A normal that turns more has no definite direction at
+// t.
 constexpr double kMostTurned = 1e-5;
 
 // A vector between two others, and the size of its terms, which bounds its rounding error.
@@ -55,8 +57,8 @@ ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 
-// Computes the sum of n(t) of some faces with no rounding but that of the result. All coordinates are integers in units
-// of 2^(base - 149), and places at t in units 2^-t.scale as large.
+// The sum of n(t) over some faces, computed in integers and rounded only once. All coordinates are integers in units of
+// 2^(base - 149). Positions at t have units that are smaller by the factor 2^-t.scale.
 class ExactArea {
  public:
   ExactArea(const SharedFaces& shared, std::span<const std::uint32_t> faces) : segment_(shared.segment()) {

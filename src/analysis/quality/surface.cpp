@@ -47,8 +47,8 @@ struct EdgeUse {
   bool is_forward = false;                        // true if the face has the edge from near to far
 };
 
-// Counts the kinds of edges. is_copy tells for each face whether a lower face has the same vertices and winding: an
-// edge that only such two faces have is open, and does not count as turned.
+// Counts the kinds of edges. is_copy tells for each face whether a face with a lower number has the same vertices and
+// winding. An edge that belongs only to two such copies counts as open, and not as turned.
 void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -199,7 +199,7 @@ Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
   std::vector<bool> is_copy(topology.face_count());
-  // Both run at the same time, since they write different members.
+  // Faces and edges are surveyed at the same time, since the two functions write different members.
   parallel_for(2, [&](std::size_t i) {
     if (i == 0)
       survey_faces(topology, points, is_copy, surface);

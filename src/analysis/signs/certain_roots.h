@@ -110,7 +110,8 @@ class CertainRoots {
     const double per_width = 1 / width;  // a power of two
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
-      // The sums may round, but dividing the part out again is exact.
+      // The bounds may be rounded, but t - t0 divided by the width is exact again, so the signs are those at the
+      // bounds.
       const double lower = std::max(t0 + width * std::max(root - step, 0.0), t0);
       const double upper = std::min(t0 + width * std::min(root + step, 1.0), t0 + width);
       const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) * per_width)); };

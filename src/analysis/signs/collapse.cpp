@@ -8,7 +8,8 @@
 //    are the collapses. If two components differ, their combination without t^2 is linear, and its root is the only
 //    candidate.
 //
-// Control normals are within 2^-26 of their length of the exact ones, which both bounds in floating point allow for.
+// The error of a control normal is at most 2^-26 of its length. The bounds of the first two stages, which use floating
+// point, include this error.
 
 #include "analysis/signs/length_1.h"
 #include "chronormal/analysis/signs.h"

@@ -44,7 +44,8 @@ struct ExactRoots {
   void all() && = delete;  // a loop over a temporary would outlive it
 };
 
-/// A polynomial of degree up to N; its coefficients, of rising powers, are settled.
+/// A polynomial of degree up to N, with coefficients in the order of rising powers. They must be settled
+/// (WideInteger::settle()).
 template <std::size_t N, std::size_t kDigits>
 struct IntegerPolynomial {
   std::array<WideInteger<kDigits>, N + 1> a;
@@ -92,7 +93,7 @@ struct IntegerPolynomial {
   }
 };
 
-/// The polynomials f and f' and the remainders, each times a positive factor.
+/// Sturm's chain of a polynomial f: f, its derivative f' and the remainders, each times a positive factor.
 template <std::size_t N, std::size_t kDigits>
 class SturmChain {
  public:

@@ -32,15 +32,16 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// Returns whether products with the way to the viewer stay in the range of double, because no component is smaller than
-// a position can be.
+// Returns true if double can represent products with the vector to the viewer: no nonzero component of the view is
+// smaller than the smallest float32.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
   return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&
          fits(view.to.z);
 }
 
-// Returns a place of the eye on its way, within 3 u of the largest component of both ends.
+// Returns the position of the eye on its path, with an error of at most 3 u (u = 2^-53) of the largest component of
+// both ends.
 Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
   if (on_way.t == 0) return view.from;
   return on_way.rest == 0 ? view.to : on_way.rest * view.from + on_way.t * view.to;
@@ -48,7 +49,7 @@ Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
 
 bool is_whole_way(const View& view) noexcept { return view.start.t == 0 && view.end.rest == 0; }
 
-// Leaves a face to integers.
+// Marks a face as undecided, so that integers decide it.
 void leave(std::size_t i, FacingCoefficients& f) noexcept {
   f.signs[i] = 0;
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
@@ -73,7 +74,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
   facing_of_eye(normals, faces.count, ways, result);
-  // A place on the way is rounded to 3 u of the eye: at most 6 u of a way to it that is half as long.
+  // The position of an eye on a part of its path has an error of 3 u of its size. That is at most 6 u of a vector to
+  // the eye that is at least half as long; faces with shorter vectors are left to integers.
   const double shortest = is_whole_way(view) ? 0 : 0.5 * std::max(max_abs(view.from), max_abs(view.to));
   if (fits && shortest == 0) return;
   for (std::size_t i = 0; i < faces.count; ++i) {
@@ -83,7 +85,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   }
 }
 
-// Returns the sides seen through a shutter from the control normals alone, or nothing if these are not precise enough.
+// Returns the sides that may be seen while the shutter is open, from the control normals alone; nothing if these are
+// not precise enough to tell.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
@@ -145,14 +148,14 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
     roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
     bound = std::max(bound, f.bounds[k][i]);
   }
-  // Allows up to 16 roundings of the eye and the way, of the products and sums of a dot product, and of a mean of
-  // three: the terms of a dot product are at most bound / kDotShare.
+  // Allows up to 16 roundings: of the eye and the vector to it, of the products and sums of a dot product, and of a
+  // mean of three. The terms of a dot product are at most bound / kDotShare.
   constexpr double kRoundings = 16;
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
-// Bounds the size of integers: differences of doubles up to 2^128 have 1,203 bits, and a way is a sum of some of them,
-// or of their multiples by the integers of two times.
+// The numbers of digits that integers need. Differences of doubles up to 2^128 have 1,203 bits, and a vector to the
+// viewer is a sum of some differences, or of their multiples by the integers of two times.
 constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kPlaceDigits = 52;
 constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits + 2 * TimeFraction::kDigits + 2;
 template <std::size_t kDigits>
@@ -170,7 +173,7 @@ unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   return lowest;
 }
 
-// The place of a corner at an end of the segment is the sum of both.
+// The position of a corner at an end of the segment, as the sum of two vectors.
 struct Place {
   Vec3d position, residual;
 
@@ -195,7 +198,7 @@ WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shi
   return result;
 }
 
-// The way w(t) = start + t change, times a positive number.
+// The vector w(t) = start + t change to the viewer, times a positive number.
 template <std::size_t kDigits>
 struct Way {
   WideVector<kDigits> start, change;
@@ -208,8 +211,8 @@ struct Way {
   }
 };
 
-// Returns the way from a corner to an eye that is at view.from and view.to at the ends of the segment, or to a
-// direction.
+// Returns the vector from a corner to an eye that is at view.from and view.to at the ends of the segment, or the vector
+// to a viewer in a direction.
 Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Place& to_corner) noexcept {
   Way<kWayDigits> way;
   const Place from = view.is_eye ? from_corner : Place{}, to = view.is_eye ? to_corner : Place{};
@@ -266,7 +269,8 @@ auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   return f;
 }
 
-// Calls body(f) with the exact f of a normal that is seen from a vertex. M is as in find_in_block().
+// Calls body(f) with the exact f of a normal that is seen from a vertex. M is the number of coefficients of f: 3 for a
+// direction, 4 for an eye.
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, const ExactCurve& normal, std::uint32_t vertex, const View& view,
                  const Body& body) noexcept {
@@ -333,7 +337,8 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   return facing_by_roots<M>(p, from.error[lane], [&](const auto& body) { in_integers<M>(segment, face, view, body); });
 }
 
-// The sum of the control normals of some faces in double, how far any component may be off, and how large terms are.
+// The sum of the control normals of some faces in double, a bound of the error of any of its components, and the size
+// of its terms.
 struct SummedNormals {
   ControlNormals normals;
   double error = 0, size = 0;
@@ -369,9 +374,11 @@ Facing facing_of_sum(const Segment& segment, std::uint32_t vertex, std::span<con
   } else {
     p = {dot(n0, at_start), dot(m, at_start), dot(n1, at_start)};
   }
-  // A place on a part of the way would be rounded, and products with tiny components may be: integers have neither.
+  // Integers decide if the eye is on a part of its path, where its position would be rounded, or if a component is so
+  // small that products may be.
   const bool is_sure = fits_double(view) && is_whole_way(view);
-  // The way, products, sums of three and of two, and a third: at most 16 roundings of terms no larger than this.
+  // Allows at most 16 roundings of terms no larger than this: for the vector to the viewer, products, sums of three and
+  // of two terms, and a third of a sum.
   constexpr double kRoundings = 16;
   const double longest = std::max(length_1(at_start), length_1(at_end));
   const double error = longest * (sum.error + kRoundings * kUnitRoundoff * sum.size);

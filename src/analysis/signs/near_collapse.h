@@ -23,7 +23,8 @@ namespace chronormal::inline internal {
 /// positions, and far below any intended length.
 inline constexpr double kCollapseShare = 1e-6;
 
-/// A collapse that is closer to an end than this belongs to the keyframe there, whose face has no area.
+/// The distance from an end of the segment, in t, within which a collapse belongs to the keyframe there, whose face has
+/// no area.
 inline constexpr double kCollapseMargin = 1e-6;
 
 struct NearCollapse {
@@ -38,7 +39,7 @@ struct NearCollapses {
 };
 
 /// Tells whether a half space proves at a glance that a normal neither nearly vanishes nor vanishes (find_collapses()).
-/// It proves this for almost every face, and says nothing of the others.
+/// The test succeeds for almost every face; if it fails, nothing is known.
 [[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
   const Vec3d w = c.n0 + c.n1;
   const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});

@@ -30,7 +30,7 @@ std::vector<EdgeOfFace> edges_of(const Topology& topology) {
   return edges;
 }
 
-// A change of one of the two faces.
+// A change of the side that one of the two faces at an edge shows.
 struct Event {
   FacingChange change;
   std::size_t face = 0;  // 0 or 1

@@ -74,10 +74,11 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Returns the direction in the middle of three unit vectors, of any length.
+// Returns a vector, of any length, in the direction of the axis of the smallest cone around three unit vectors.
 HWY_INLINE Lanes3 MiddleOf(const Lanes3 (&u)[3]) {
   const auto square = [](const Lanes3& v) HWY_ATTR { return Dot(v, v); };
-  // Computes the squared sides of their triangle, and how far the opposite angles are from right angles.
+  // Computes the squared sides of the triangle of the three vectors, and for each angle a number that is negative if
+  // the angle is obtuse.
   const Floats c0 = square(u[1] - u[2]), c1 = square(u[0] - u[2]), c2 = square(u[0] - u[1]);
   const Floats e0 = hn::Sub(hn::Add(c1, c2), c0), e1 = hn::Sub(hn::Add(c0, c2), c1), e2 = hn::Sub(hn::Add(c0, c1), c2);
   const Floats longest = hn::Max(hn::Max(c0, c1), c2);

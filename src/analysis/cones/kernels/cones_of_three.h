@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// The relative error of a control normal, in any norm between its largest component and its length: 2^-26 in each
-/// component is sqrt(3) / 2 of this, and the rest is for rounding.
+/// The relative error of a control normal, measured by its largest component or by its length. An error of 2^-26 in
+/// each component is at most sqrt(3) / 2 of this, and the rest is for rounding.
 inline constexpr double kNormalShare = 0x1p-25;
 
 /// The largest relative error of a restricted control normal; beyond it the element is flagged.
@@ -20,8 +20,8 @@ inline constexpr double kLargestUnknown = 0x1p-10;
 /// The largest error that underflow causes in products of tiny control normals.
 inline constexpr double kUnderflow = 0x1p-1060;
 
-/// Weights for the control normals of the part [t0, t1] of a segment, as convex combinations of those of the whole: row
-/// k has the weights of n0, m and n1. Each weight is within 5 rounding errors of itself.
+/// The weights that give the control normals of the part [t0, t1] of a segment as convex combinations of those of the
+/// whole segment: row k has the weights of n0, m and n1. The error of each weight is at most 5 roundings.
 struct Restriction {
   double weights[3][3];
 
@@ -34,10 +34,10 @@ struct Restriction {
 /// The number of elements that share one number of flags.
 inline constexpr std::size_t kConesPerFlags = 16;
 
-/// Writes the cone around the three vectors of each element; each vector is within `share` of its length. Flags
-/// elements with a vector that is zero, not finite, or below 2^-1022 or above 2^1023: their cones have no meaning. Bit
-/// i of flags[b] is element 16 b + i. `result` must have room for `count` cones, and `flags` for one number per 16
-/// elements, rounded up
+/// Writes the cone around the three vectors of each element; the error of each vector is at most `share` times its
+/// length. Flags elements with a vector that is zero, not finite, or below 2^-1022 or above 2^1023: their cones have no
+/// meaning. Bit i of flags[b] is element 16 b + i. `result` must have room for `count` cones, and `flags` for one
+/// number per 16 elements, rounded up
 void cones_of_three(const ControlNormals* normals, std::size_t count, double share, NormalCone* result,
                     std::uint16_t* flags) noexcept;
 

@@ -45,7 +45,8 @@ void AddWeighted(const Vec3f& base, std::span<const WeightedVector> terms, float
   for (; first < stride; first += kLanes) AddTile<1>(base, terms, first, sums, stride);
 }
 
-// Raises `largest` to the squared length of an error; NaN counts for nothing.
+// Compares the normals of one vector of lanes, a pose in each lane: writes angles and errors, and raises `largest` to
+// the largest squared length of these errors. NaN does not count.
 HWY_INLINE void CompareLanes(const Lanes3& rendered, const Lanes3& right, float* degrees,
                              const std::array<float*, 3>& errors, Floats& largest) {
   const Floats zero = hn::Zero(kFloats), one = hn::Set(kFloats, 1.0F);

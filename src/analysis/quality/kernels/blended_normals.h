@@ -14,7 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// The number of poses that planes of sums and weights are padded to a multiple of: the floats of the widest vector.
+/// The unit of padding: planes of sums and weights have a multiple of this number of poses, which is the number of
+/// floats in the widest vector.
 inline constexpr std::size_t kPosePadding = 16;
 
 /// A finite vector with a weight in each pose. Its weights are zero outside [first, end).
@@ -40,8 +41,9 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
                                     const std::array<const float*, 3>& right, std::span<float> degrees,
                                     const std::array<float*, 3>& errors) noexcept;
 
-/// Returns the largest openness of pairs of vectors, given as planes: the squared sine of their angle up to a right
-/// angle, and 2 minus it beyond; 0 if one vector is zero. All planes have a multiple of kPosePadding finite floats.
+/// Returns the largest openness of pairs of vectors, which are given as planes. Openness grows with the angle between
+/// two vectors: it is the squared sine up to a right angle, and 2 minus the squared sine beyond, and 0 if one vector is
+/// zero. All planes have a multiple of kPosePadding finite floats.
 [[nodiscard]] float largest_openness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b,
                                      std::size_t count) noexcept;
 

@@ -27,7 +27,8 @@ namespace {
 // Triangles are stored in groups of eight, the number of doubles in the widest vector: value k of triangle i of a group
 // is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
-// Equals the constant kDoubtfulShare in reference_normals.cpp.
+// The share of the products below which a normal is left to reference_normals(): the constant kDoubtfulShare in
+// reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
 
 }  // namespace

@@ -33,7 +33,7 @@ class ReferenceTriangles {
   std::vector<double> edges_;  // in groups of lanes, 20 values per triangle
 };
 
-/// Values in place of an angle if there is none.
+/// The values that stand for an angle that does not exist.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
 /// Writes the angle between each exact normal, which need not be a unit vector, and the rendered normal: kNoExactNormal

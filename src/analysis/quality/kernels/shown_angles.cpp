@@ -64,8 +64,8 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// Adds up the normals of each element's faces, with x, y, z and the fourth value of a face as one row. The sums are
-// then transposed to columns, one element per lane.
+// Adds up the normals of the faces around each element. A face is a row of x, y, z and its size. The sums are then
+// transposed to columns, one element per lane.
 void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
   alignas(64) double rows[kDoubleLanes][4];
@@ -160,7 +160,7 @@ HWY_INLINE void StoreVectors(const Real3& v, Vec3d* to) {
   hn::StoreInterleaved3(v.x.v, v.y.v, v.z.v, kDoubles, &to->x);
 }
 
-// Replaces all vectors by make(vector); the last ones are computed in memory of whole lanes.
+// Replaces all vectors by make(vector). The last vectors are copied to a buffer of whole lanes.
 template <class Make>
 HWY_INLINE void ReplaceVectors(std::span<Vec3d> vectors, const Make& make) {
   std::size_t i = 0;
@@ -200,7 +200,7 @@ HWY_INLINE Real3 Select(RealMask mask, const Real3& a, const Real3& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Most inputs have a length of nearly 1 already, and are returned as they are.
+// Scales vectors to length 1. Most inputs have nearly this length already, and are returned as they are.
 HWY_INLINE Real3 ToUnit(const Real3& v) {
   const RealMask is_near = absolute(dot(v, v) - Real(1.0)) < Real(1e-6);
   return any(!is_near) ? Select(is_near, v, Scaled(v).unit()) : v;

@@ -50,7 +50,7 @@ struct PlanesOf4 {
 void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
                  std::span<const std::uint32_t> ends, PlanesOf4& sums);
 
-/// Values in place of an error if there is none.
+/// The values that stand for an error that does not exist.
 inline constexpr double kNotLit = -1, kNotJudged = -2;
 
 /// The rendered and the true normals of some elements at a sample between two keyframes.
@@ -58,7 +58,7 @@ struct ShownElements {
   const PlanesOf4& from;   ///< stored normals, of any length; w is the least length of a true normal
   const PlanesOf4& to;     ///< w is not used
   const PlanesOf4& right;  ///< true normals, of any length; w is the size of the terms that they are sums of
-  double rounding = 0;     ///< the share of that size that is rounding error
+  double rounding = 0;     ///< the rounding error of `right`, as a share of its w
 };
 
 /// Writes, in degrees, the angles between unit(lerp(from, to, t)), rounded to float32, and the true normals: kNotLit if

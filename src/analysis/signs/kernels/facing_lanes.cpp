@@ -78,7 +78,7 @@ struct WaysTo {
   }
 };
 
-// Calls body for all faces; lanes beyond the last face repeat it.
+// Calls body for the control normals of all faces, a vector of lanes at a time. Lanes beyond the last face repeat it.
 template <class Body>
 HWY_INLINE void ForNormals(const double* rows, std::size_t count, FacingCoefficients& result, const Body& body) {
   constexpr std::size_t kRow = 9;
@@ -183,7 +183,7 @@ HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   const Doubles lower = hn::Max(zero, hn::Sub(root, step)), upper = hn::Min(one, hn::Add(root, step));
   const auto is_bracketed = hn::And(hn::Gt(ValueAt(p, lower), error), hn::Lt(ValueAt(p, upper), below));
   const auto changes = hn::And(hn::Gt(p[0], error), hn::Lt(p[M - 1], below));
-  // If the guess is not near the root, the bracket may be right and yet too wide to be of use.
+  // A bracket around a guess that is far from the root may be right, but is too wide to be of use.
   const auto is_narrow = hn::Lt(step, hn::Set(kDoubles, 0x1p-16));
   const auto is_found = hn::And(hn::And(changes, is_bracketed), hn::And(is_narrow, HasOneRoot(p, error)));
   hn::Store(lower, kDoubles, roots.lower + at);

@@ -19,7 +19,7 @@ inline constexpr std::size_t kFacingBlock = 32;
 /// normal times the largest component of the other vector: sqrt(3) 2^-26 and a few roundings.
 inline constexpr double kDotShare = 0x1p-25;
 
-/// The way to the eye of each face at t = 0 (x, y, z) and at t = 1.
+/// The vector from each face to the eye: x, y, z at t = 0, then at t = 1.
 struct alignas(64) FacingWays {
   double at[6][kFacingBlock];
 };
@@ -29,7 +29,7 @@ struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
   /// Error bounds of the coefficients, for control normals within 2^-26 of the exact ones.
   double bounds[4][kFacingBlock];
-  double reach[kFacingBlock];  ///< the sum of the absolute components of the way to the viewer, the larger one
+  double reach[kFacingBlock];  ///< the sum of the absolute components of the vector to the viewer, at the end with more
   int signs[kFacingBlock];     ///< 1 or -1 if all coefficients are beyond their bounds on that side; else 0
 };
 
