@@ -58,8 +58,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// Formats like std::to_chars(): in the shorter notation, or in fixed notation if both have the same length. fmt only
-// provides the digits; the point and the exponent are placed here.
+// Formats a number like std::to_chars(): in the shorter of scientific and fixed notation, or in fixed notation if both
+// have the same length. fmt only provides the digits; the point and the exponent are placed here.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);

@@ -15,8 +15,8 @@ namespace chronormal::inline internal {
 using std::from_chars;
 using std::to_chars;
 #else
-// The library may have some of the functions for floating point, so that its names are not taken over: integers alone
-// are left to it.
+// Leaves only integers to the standard library. Its names are not imported, since it may have some of the functions for
+// floating point.
 template <std::integral T>
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, T& value, int base = 10) {
   return std::from_chars(first, last, value, base);
@@ -27,7 +27,8 @@ template <std::integral T>
 }
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, float& value) noexcept;
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, double& value) noexcept;
-/// Writes the fewest digits that read back as the same number, in the shorter of both notations.
+/// Writes the fewest digits from which the same number is read back, in scientific or fixed notation, whichever is
+/// shorter.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, float value);
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value);
 /// Writes `precision` digits: after the point, or in all if the format is `general`.

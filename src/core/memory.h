@@ -24,7 +24,7 @@ void free_aligned(void* memory) noexcept;
 class AlignedBytes {
  public:
   AlignedBytes() = default;
-  /// Throws std::bad_alloc.
+  /// Allocates `size` bytes. Throws std::bad_alloc.
   explicit AlignedBytes(std::size_t size);
   AlignedBytes(AlignedBytes&& other) noexcept { *this = std::move(other); }
   AlignedBytes& operator=(AlignedBytes&& other) noexcept {

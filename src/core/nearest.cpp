@@ -8,7 +8,8 @@ namespace chronormal::inline internal {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last,
-      // Distances of the prefixes of `a` that are two letters shorter, one letter shorter, and of this prefix.
+      // Rows of edit distances to the prefixes of `b`: for the prefix of `a` that is two letters shorter, one letter
+      // shorter, and for the present one.
       row(b.size() + 1);
   for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
   for (std::size_t i = 0; i < a.size(); ++i) {

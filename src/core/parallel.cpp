@@ -43,7 +43,8 @@ thread_local Interruption* interruption = nullptr;  // interruption of the compu
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
-// During its lifetime, makes this thread work for the computation of an Interruption, or for one that nobody ends.
+// Makes this thread work for the computation of an Interruption while the object lives; nullptr stands for a
+// computation that nobody can end.
 class InterruptionScope {
  public:
   explicit InterruptionScope(Interruption* of) : before_(std::exchange(interruption, of)) {}
@@ -99,7 +100,7 @@ struct Job {
   Interruption* const asked = interruption;
   std::fenv_t rounding = {};
 
-  std::atomic<std::size_t> next = 0;  // threads of the outermost job and the jobs inside it
+  std::atomic<std::size_t> next = 0;  // index of the next piece that no thread has taken
   std::size_t seated = 1;             // threads of the outermost job and the jobs inside it
   std::size_t helpers = 0;            // threads that run pieces of this job, beside its caller
   std::exception_ptr failure = nullptr;

@@ -36,8 +36,8 @@ inline constexpr double kFloatUnitRoundoff = 0x1p-24;
   return {keep(v.x, error.x), keep(v.y, error.y), keep(v.z, error.z)};
 }
 
-/// Adds up vectors. The error is 4 u of all terms for each term: the addition has one u, and the rest is for the
-/// rounding of the term itself.
+/// A sum of vectors. Each term adds 4 u of the sum of all absolute values to the error: u for the addition, and the
+/// rest for the rounding of the term itself.
 class VectorSum {
  public:
   void add(const Vec3d& term) noexcept {
@@ -62,8 +62,8 @@ class VectorSum {
   std::size_t terms_ = 0;
 };
 
-/// Adds up cross products of rounded edges. The error of each is below 4 u times the absolute products in it; twice
-/// that is assumed for safety.
+/// A sum of cross products of rounded edges. The error of each product is below 4 u times the absolute products in it.
+/// Twice that is assumed for safety.
 class CrossSum {
  public:
   void add(const Vec3d& a, const Vec3d& b) noexcept {
@@ -80,8 +80,8 @@ class CrossSum {
     return chronormal::without_rounding(value_, 8 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
-  /// Returns a bound of the distance of any component of without_rounding() from the exact sum: 4 u of rounding, and 8
-  /// u if that set it to zero.
+  /// Returns a bound of the distance of any component of without_rounding() from the exact sum: 4 u for rounding, and 8
+  /// u for a component that was set to zero.
   [[nodiscard]] double error() const noexcept {
     return 12 * kUnitRoundoff * static_cast<double>(terms_) * max_abs(magnitude_);
   }

@@ -44,8 +44,8 @@ struct Twofold {
   }
 };
 
-/// Returns a + a_low - (b + b_low), rounded once up to 2^-9 of a rounding, even if terms cancel. |a_low| and |b_low|
-/// must be at most 2^-23 of |a| and |b|
+/// Returns a + a_low - (b + b_low) with an error of one rounding, plus 2^-9 of that at most, even if terms cancel.
+/// |a_low| and |b_low| must be at most 2^-23 of |a| and |b|
 [[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
   const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
   // Most differences of floats are exact, and much larger than the difference of the low parts.
@@ -68,8 +68,8 @@ class LongSums {
     add_products(upper, values);
     if (upper != factor) add_products(factor - upper, values);
   }
-  /// Adds factor * values, where the products have 53 digits and are rounded: for products that are small against the
-  /// sums.
+  /// Adds factor * values. Each product has 53 digits and is rounded, which is enough for products that are small
+  /// against the sums.
   void add(double factor, std::span<const double> values) noexcept { add_products(factor, values); }
 
   /// Makes low at most half a unit in the last place of high. The sums are high + low.

@@ -74,7 +74,7 @@ struct UnitFraction {
   }
 };
 
-/// An integer of up to kMost digits, of which only the needed ones are in use.
+/// An integer of up to kMost digits. Only the digits that it needs are in use.
 template <std::size_t kMost>
 class WideInteger {
  public:
@@ -165,8 +165,8 @@ class WideInteger {
   /// Returns value * 2^exponent with a relative error of at most 2^-51, if it is in the range of normal doubles. The
   /// digits must be settled.
   [[nodiscard]] double to_double(int exponent) const noexcept {
-    // Four digits have at least 71 bits from the highest bit on, and the digits below them are less than one unit of
-    // the last digit.
+    // The four highest digits have at least 71 bits, counted from the highest bit that is set. The digits below them
+    // are less than one unit of the last of the four.
     constexpr std::size_t kTaken = 4;
     const std::size_t end = size_ < kTaken ? 0 : size_ - kTaken;
     double value = 0;
