@@ -16,7 +16,7 @@ class SmallSet {
  public:
   SmallSet() { slots_.fill(kEmpty); }
 
-  /// Adds a number. Returns whether the set did not have it before. The set must hold fewer than kMost numbers
+  /// Adds a number. Returns true if the set did not have the number before. The set must hold fewer than kMost numbers
   bool add(std::uint32_t number) {
     for (std::size_t slot = number * 2654435761U >> 22;; slot = (slot + 1) % slots_.size()) {
       if (slots_[slot] == number) return false;
@@ -33,10 +33,10 @@ class SmallSet {
   std::array<std::uint32_t, 2 * kMost> slots_;
 };
 
-/// Positions of at most this many bytes may be read in any order, since they fit into a cache near the core.
+/// The largest size of positions, in bytes, that may be read in any order, since they fit into a cache near the core.
 inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 
-/// The number of lines per face up to which caches and their prefetchers keep up by themselves.
+/// The largest number of cache lines per face (lines_per_face()) for which caches and their prefetchers need no help.
 inline constexpr double kMostLinesPerFace = 1;
 
 /// Returns the number of cache lines of packed positions that a face reads and the preceding faces did not: about 0.2
@@ -60,8 +60,8 @@ inline constexpr double kMostLinesPerFace = 1;
   return static_cast<double>(lines) / static_cast<double>(faces);
 }
 
-/// Above this many lines per face, neighbours in the mesh are not neighbours in memory. Curves are then prepared from a
-/// copy of both ends, which takes kScatteredBytes per vertex.
+/// The number of cache lines per face above which neighbours in the mesh are not neighbours in memory. Curves are then
+/// prepared from a copy of both ends, which takes kScatteredBytes per vertex.
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 

@@ -78,12 +78,13 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   assert(start < end);
   if (!(start < time)) return std::isnan(time) ? time : 0.0;
   if (!(time < end)) return 1.0;
-  // Halves numbers whose difference exceeds the range of double; the halves are exact wherever that matters.
+  // Numbers whose difference exceeds the range of double are halved first. Such numbers are so large that halving is
+  // exact where it matters.
   const double scale = std::isfinite(end - start) ? 1 : 0.5;
   const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
                 whole = Twofold::sum(scale * end, -scale * start);
   LocalTime result(quotient(done, whole));
-  // Below kSmallest, the remainder of the division may be smaller than any double.
+  // The dividend below which the remainder of the division may be smaller than any double.
   constexpr double kSmallest = 0x1p-900;
   const bool is_exact =
       done.low == 0 && whole.low == 0 && done.high >= kSmallest && std::fma(result.t, whole.high, -done.high) == 0;

@@ -1,5 +1,5 @@
-// A window of keyframes. Keyframes that leave the window give their memory to keyframes that enter it, so that a pass
-// over a motion allocates memory once, for the window and for the keyframe that is read in advance.
+// A window of keyframes moves over a motion. Keyframes that leave the window give their memory to keyframes that enter
+// it, so that memory is allocated only once, for the window and for the keyframe that is read in advance.
 #include "chronormal/motion/motion.h"
 
 #include <algorithm>

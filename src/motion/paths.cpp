@@ -92,13 +92,13 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {
     const Vec3d p = to_double(before[v]), q = to_double(here[v]), r = to_double(after[v]);
-    // For equal time steps, the second difference is twice the distance from the middle.
+    // If the time steps are equal, the second difference is twice the distance of q from the middle between p and r.
     sums.bent += 2 * length(q - ((1 - part) * p + part * r));
     sums.way += length(q - p) + length(r - q);
   }
 }
 
-// A vector that is linear or quadratic over a piece, by its values at both ends.
+// A vector that changes linearly over a piece, by its values at both ends.
 struct Ends {
   Vec3d from, to;
 };
@@ -128,7 +128,7 @@ class Products {
   Vec3d from_, middle_, to_;
 };
 
-// Decides for faces of a segment whether a number of pieces is sufficient.
+// The bounds that decide, for faces of a segment, if a number of pieces is sufficient.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)
@@ -219,8 +219,8 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
     left.push_back(never.size());
   }
   auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces should be sufficient for every face for which larger ones were. Checks once more, since the result
-  // is guaranteed.
+  // Smaller pieces should suffice for every face for which larger pieces did. This is checked once more, because the
+  // tolerance is guaranteed.
   for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
     const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
     if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;
@@ -230,7 +230,7 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   return {ladder[rung], bounds.not_within(nullptr, ladder[rung]).size()};
 }
 
-// Makes the keyframes of pieces from the stream that they cut.
+// A maker of the keyframes of pieces, which reads the keyframes of the original stream when they are needed.
 struct Cutter {
   MotionStream source;
   PathKind kind;

@@ -57,7 +57,7 @@ class SegmentEnd {
       left = left - to_double(part);
     }
   }
-  static constexpr std::size_t kMostParts = 4;  // a position, and 53 bits by 24
+  static constexpr std::size_t kMostParts = 4;  // a float, and a residual of 53 bits in floats of 24 bits
 
   [[nodiscard]] Vec3d residual(std::size_t vertex) const noexcept {
     return has_residuals() ? residuals_[vertex] : Vec3d{};
