@@ -25,17 +25,17 @@ constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 constexpr double kLargestAngle = 8e-7;  // error of double, before the rounding of the result
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
-// Float32 terms guarantee 1e-6 rad if their bound is at most this multiple of 2^-24 |n(w)|: 14 roundings, plus the
-// rounding of the result.
+// The limits for float32 terms. They guarantee 1e-6 rad if their bound is at most 14 times 2^-24 |n(w)|, that is, 14
+// roundings; the rounding of the result is added.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-// Costs in nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of epyc-zen3-2cores of
-// docs/benchmarks.md. Only their ratios matter.
+// The costs of the model in nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of the
+// machine epyc-zen3-2cores in docs/benchmarks.md. Only their ratios matter.
 constexpr double kCopiedElement = 0.35;   // copying the base normals
 constexpr double kTargetElement = 3;      // adding the terms of a target
 constexpr double kPairElement = 1.4;      // adding the term of a pair
 constexpr double kFinishedElement = 5.5;  // making a result of length 1 from the base and the terms
-constexpr double kMovedVertex = 1.7;      // moving it by a target, and back again
+constexpr double kMovedVertex = 1.7;      // moving a vertex by a target, and back again
 constexpr double kPathPoint = 1.8;        // a point of the path around an element
 constexpr double kWrittenElement = 5;     // writing the result from the sum over its path
 constexpr double kWholeInFloat32 = 0.4;   // share of the time that the whole mesh takes in double
@@ -51,8 +51,8 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// Returns the number of elements that are computed from points in groups of four, as on every machine. Elements that
-// were not requested but are in the same group count, too.
+// Returns the number of elements that are computed from points. On every machine these are whole groups of four, so
+// elements that were not requested but are in the same group as a requested one count, too.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -66,7 +66,7 @@ std::span<const std::uint32_t> in(IndexRange part, std::span<const std::uint32_t
   return list.subspan(part.first, part.count);
 }
 
-// Returns the weights of the four lanes of a coefficient, of which the last is a bound.
+// Returns the weights of the four lanes of a coefficient. The last lane is a bound, so its weight is not negative.
 RowWeights row_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
 // Calls body for ranges of vertices whose points stay in a cache near the core while all targets move them.
@@ -127,8 +127,8 @@ void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) 
   pose.has_points = false;
 }
 
-// Computes the normals of a range of elements at the weights of a pose. It only writes results, so threads can share a
-// pose.
+// One call of evaluate(), which computes the normals of a range of elements at the weights of a pose. A call writes
+// nothing but results, so threads can share a pose.
 class Call {
  public:
   Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
@@ -163,7 +163,7 @@ class Call {
       const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
-    // The vector area is a sum over a fan. Edges and both products of a component are within 10 u of the absolute
+    // The error of the sum over the fan: edges, and both products of a component, are within 10 u of the absolute
     // products, each triangle adds a rounding, and points bring their own error.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
@@ -203,8 +203,8 @@ class Call {
     }
   }
 
-  // Writes the elements that are not to be made again. Adds to `again` the elements whose float32 terms promise
-  // nothing.
+  // Writes the elements that are not in `again` from their terms. Adds to `again` the elements for which terms in
+  // float32 do not guarantee the accuracy.
   void add_terms(IndexRange elements, IndexRange words, std::span<const std::uint64_t> touched, std::uint64_t* again,
                  const VectorView<float>& result) {
     copy_base(elements, result);
@@ -226,7 +226,7 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // An element that shares a face with the target is in its list too.
+      // The list of a target has all elements of the faces that it moves.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);
@@ -255,8 +255,8 @@ class Call {
     for (std::size_t i = 0; i < elements.count; ++i) result.set(i, {units[3 * i], units[3 * i + 1], units[3 * i + 2]});
   }
 
-  // Computes the same normals as unit_normals_of_rings(), for a few elements whose points are not blended yet. Blends
-  // the points of their paths, four elements at a time, in the layout of the kernel.
+  // Computes the normals that unit_normals_of_rings() would, for a few elements whose points are not blended yet.
+  // Blends the points of their paths, four elements at a time, in the layout of the kernel.
   std::uint64_t make_rings(std::uint64_t elements, std::size_t first_word, std::size_t word,
                            const VectorView<float>& result) const {
     constexpr std::size_t kLanes = 4;
@@ -282,7 +282,7 @@ class Call {
           row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
         }
       }
-      // Describes one slice as if it were at its place among the slices of the tile.
+      // Describes the only slice as if it were at its place among all slices of the tile.
       std::size_t first_row[kTileElements / kRingLanes + 1] = {};
       std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
                 std::end(first_row), row_count);
@@ -318,7 +318,7 @@ class Call {
     for (const std::uint32_t f : source_.groups->faces(e)) body(f);
   }
 
-  // Makes an element for which lanes promise nothing, with a separate bound for each face.
+  // Computes an element for which lanes do not guarantee the accuracy, with a separate error bound for each face.
   void make_element(std::size_t e, std::size_t place, const VectorView<float>& result) {
     Vec3d n;
     double noise = 0, count = 0;
@@ -328,8 +328,8 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // The error of each addition is within u times the sum of absolute normals, which are at most twice the products
-    // that make_face() counts 13 times.
+    // Each addition has an error of at most u times the sum of the absolute normals. These are at most twice the
+    // products that make_face() has counted 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {

@@ -14,14 +14,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Threads work on at most 1 / kShareOfWork of all terms at a time while computing them, unless a single term is larger.
+// The inverse of the share of all terms, in bytes, on which threads work at a time while computing them. A single term
+// may be larger.
 constexpr std::size_t kShareOfWork = 8;
 
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // bytes of an element
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
-// Bounds are slightly enlarged, so that they hold despite their rounding to float32, and for values near the end of its
-// range.
+// The factor by which bounds are enlarged, so that they hold despite their rounding to float32, and the smallest bound,
+// for values near the end of the range of float32.
 constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
 
 std::size_t bytes_of(const StoredTerm& term) {
@@ -53,8 +54,8 @@ void put(const Vec3d& value, double noise, double scale, float* lanes) {
   lanes[3] = static_cast<float>(bound);
 }
 
-// Puts the values of a term into the lanes from `first` on, `stride` for each element. All elements of the term must be
-// among the stored ones.
+// Writes the coefficients of a term to a stored term, which has `stride` lanes for each element: the four lanes of a
+// coefficient from lane `first` of its element on. All elements of the term must be among the stored ones.
 void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, StoredTerm& stored) {
   std::size_t e = 0;
   for (std::size_t i = 0; i < term.elements.size(); ++i) {
@@ -144,8 +145,8 @@ void BlendStorage::choose(std::vector<Candidate> candidates) {
   update_cost();
 }
 
-// Makes many terms side by side, since terms of few elements do not occupy several threads. Together they take no more
-// memory than work_together_.
+// Computes many terms at once, since terms of few elements do not occupy several threads. All terms that are computed
+// at once take at most work_together_ bytes.
 void BlendStorage::fill() {
   std::vector<ListedTerm> terms;
   terms.reserve(cost_.stored_targets + cost_.stored_pairs);
@@ -168,7 +169,8 @@ void BlendStorage::fill() {
   }
 }
 
-// The linear term stays in memory while the square term is computed, so the work counts twice.
+// Returns the bytes that the computation of a target's terms takes. The linear term stays in memory while the square
+// term is computed, so the bytes count twice.
 std::size_t BlendStorage::work_of(const StoredTarget& target) const {
   return 2 * terms_.term_bytes(target.moved_faces, target.moved_corners);
 }

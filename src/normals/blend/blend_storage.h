@@ -19,9 +19,9 @@ namespace chronormal::inline internal {
 /// The most points of a path around an element.
 inline constexpr std::size_t kMostRingPoints = 64;
 
-/// The coefficients at some elements: A and C_ii for a target, C_ij for a pair. A coefficient is `scale` times the four
-/// lanes that are stored, x y z and a bound: the length of the error of x y z is at most kFloatUnitRoundoff times the
-/// bound. All bounds are in this unit.
+/// The coefficients of n(w) (blend_terms.h) at some elements: A and C_ii for a target, C_ij for a pair of targets. A
+/// coefficient is `scale` times the four lanes that are stored, x y z and a bound: the length of the error of x y z is
+/// at most kFloatUnitRoundoff times the bound. All bounds are in this unit.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;
@@ -47,7 +47,7 @@ struct StoredTarget {
 class BlendStorage {
  public:
   /// Counts the terms, and decides which to store, but makes none. Without groups, the elements are faces. The set and
-  /// the groups must outlive it.
+  /// the groups must outlive the object.
   BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes);
 
   /// Makes the terms that are to be stored.

@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// Faces of at most this many corners need no memory on the heap.
+/// The largest number of corners of a face that needs no memory on the heap.
 inline constexpr std::size_t kSmallFace = 4;
 
 /// The vectors at the corners of a face.
@@ -46,7 +46,7 @@ class CornerVectors {
   return positions;
 }
 
-/// Adds up products of edges.
+/// A sum of products of edges.
 class ProductSum {
  public:
   /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times the edges of q.
@@ -72,7 +72,8 @@ class ProductSum {
   double products_ = 0, roundings_ = 0;
 };
 
-/// Adds up the faces around an element. Each adds a rounding, and four more are counted for setting noise to zero.
+/// A sum over the faces around an element. Each face adds one rounding to the error, and four more are counted for
+/// setting noise to zero.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {

@@ -1,4 +1,4 @@
-// Computes the terms of n(w) face by face in double, and adds them up for the elements around which the faces are.
+// Computes the terms of n(w) face by face in double, and adds them up for each element over its faces.
 #include "normals/blend/blend_terms.h"
 
 #include <algorithm>
@@ -32,14 +32,14 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// Finds the faces around each vertex.
+// A finder of the faces around vertices.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
   // Returns the faces around any of these vertices, ascending.
   [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
-    // For many vertices, goes through the whole mesh, which takes less memory than sorting.
+    // Many vertices are found by going through the whole mesh, which takes less memory than sorting.
     constexpr std::size_t kFew = 16;
     if (vertices.size() > topology_.vertex_count() / kFew) return among_all(vertices);
     if (offsets_.empty()) list();
@@ -88,7 +88,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// Counts the elements that targets have in common, from the targets that move each face.
+// A counter of the elements that two targets have in common, which uses a list of the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)
@@ -172,7 +172,8 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
   Indices elements;
-  // Marks take a bit for each element, and sorting takes 32 bits for each corner, so the cheaper one is used.
+  // Elements are found by marking a bit for each, or by sorting, which takes 32 bits for each corner. The method that
+  // needs less memory is used.
   if (faces.size() > size() / 64) {
     std::vector<bool> is_one(size());
     std::size_t count = 0;

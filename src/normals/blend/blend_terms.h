@@ -49,30 +49,31 @@ class BlendTerms {
   /// Returns n_b of one element. O(corners of its faces). Calling it for all elements needs no memory, but more time
   /// than base().
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const;
-  /// Returns A_i. O(n log n) in the faces that target i moves; uses all cores.
+  /// Returns the linear term A_i of target i. O(n log n) in the faces that target i moves; uses all cores.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
-  /// Returns C_ij, or C_ii if i = j. O(n log n) in the faces that both move, and linear in the shorter list; uses all
-  /// cores.
+  /// Returns the term C_ij of two targets, or the square term C_ii if i = j. O(n log n) in the faces that both move,
+  /// and linear in the shorter list; uses all cores.
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
 
-  /// Computes linear() and pair() element by element, so that the whole term need not be in memory. Keeps at most 4
-  /// bytes for each vertex of the mesh and of the target, and the contributions of faces: of faces with more than 4
-  /// corners, and of all faces if there are at most 100,000. The constructor is O(faces that target i moves).
+  /// A term that is computed element by element, with the results of linear() or pair(), so that the whole term need
+  /// not be in memory. It keeps at most 4 bytes for each vertex of the mesh and of the target, and the contributions of
+  /// faces: of faces with more than 4 corners, and of all faces if there are at most 100,000. The constructor is
+  /// O(faces that target i moves).
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
 
   /// Returns the faces that a target moves, ascending.
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t i) const noexcept { return faces_of_target_[i]; }
-  /// Returns the elements of these faces, ascending. All other elements have A_i = C_ii = 0.
+  /// Returns the elements of the faces that target i moves, ascending. All other elements have A_i = C_ii = 0.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const;
-  /// Returns the elements of the faces that both targets move, ascending. All other elements have C_ij = 0.
+  /// Returns the elements of the faces that both targets i and j move, ascending. All other elements have C_ij = 0.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i, std::size_t j) const;
   /// Returns whether two targets move a face in common.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const noexcept;
 
   /// Returns, for each other target that moves a face in common with target i, ascending, its index and the largest
-  /// number of elements that their pair() may have. It multiplies nothing: O(targets on each of the faces of target i).
+  /// number of elements that their pair() may have. No term is computed: O(targets on each of the faces of target i).
   struct PairCount {
     std::uint32_t other = 0;
     std::uint32_t elements = 0;
@@ -87,8 +88,9 @@ class BlendTerms {
 
   /// Returns the memory that is kept, in bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// Return the largest temporary memory of a call, including results: of linear() and pair() for some numbers of faces
-  /// and corners; of base_term(); and of pair_elements() with a given number of pairs in the results.
+  /// Return the largest temporary memory of calls in bytes, including results. term_bytes() is for linear() and pair()
+  /// with some numbers of faces and corners, base_bytes() for base_term(), and counting_bytes() for pair_elements()
+  /// with some number of pairs in the results.
   [[nodiscard]] std::size_t term_bytes(std::size_t faces, std::size_t corners) const noexcept;
   [[nodiscard]] std::size_t base_bytes() const noexcept;
   [[nodiscard]] std::size_t counting_bytes(std::size_t pairs) const noexcept;
@@ -125,7 +127,7 @@ class BlendTerms::Term {
     Vec3d value;
     double noise = 0;
   };
-  // Finds the deltas of a target for its vertices.
+  // A table that finds the delta of a target for a vertex.
   struct Places {
     explicit Places(const BlendTarget& listed);
     [[nodiscard]] const float* find(std::uint32_t vertex) const noexcept;
@@ -140,7 +142,8 @@ class BlendTerms::Term {
   Term(const BlendTerms& terms, std::size_t i, std::size_t j, std::span<const std::uint32_t> faces);
 
   void keep_large(std::span<const std::uint32_t> faces);
-  // Computes once what all its faces add, if they are dense enough to be found at once. Uses all threads.
+  // Computes the contributions of all faces of the term in advance, unless these are so far apart in the mesh that a
+  // table of them would be too large. Uses all threads.
   void keep_all(std::span<const std::uint32_t> faces);
   [[nodiscard]] Rounded at(std::uint32_t element) const;
   // Computes the contribution of a face. Returns false if the face is not moved.
@@ -151,7 +154,8 @@ class BlendTerms::Term {
   Places first_;
   std::optional<Places> second_;
   bool is_linear_;
-  // The large faces in ascending order. Computing their terms again for each of their elements would take too long.
+  // The large faces in ascending order, and their contributions. Computing these again for each element of a large face
+  // would take too long.
   std::vector<std::uint32_t> large_faces_;
   std::vector<Rounded> of_large_faces_;
   std::vector<Rounded> of_all_faces_;       // empty if contributions are not kept

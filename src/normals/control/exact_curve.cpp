@@ -19,7 +19,7 @@ struct PointParts {
   }
 };
 
-// The position of a vertex as integers whose sum it is.
+// The position of a vertex, as a sum of vectors of integers.
 struct PlaceParts {
   std::array<PointParts, SegmentEnd::kMostParts> parts;
   std::size_t count = 0;
@@ -72,8 +72,8 @@ WideInteger<kMost> product(const WideInteger<kA>& a, const WideInteger<kB>& b) n
   return result;
 }
 
-// A vector of integers, converted to doubles with a common unit that is chosen so that the largest is neither infinite
-// nor subnormal.
+// A vector of integers as doubles times 2^exponent. The exponent is chosen so that the largest component is neither
+// infinite nor subnormal.
 struct ScaledVector {
   Vec3d vector;
   int exponent = 0;
@@ -254,7 +254,7 @@ Vec3d ExactCurve::normal_at(const LocalTime& t) const noexcept {
 
 UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
   if (t.is_double()) return unit_normal_at_double(t.t);
-  // Such a t is inside the segment. The cases are those of unit_normal_at_double().
+  // From here on t is inside the segment. The cases are those of unit_normal_at_double().
   const TimeFraction fraction = TimeFraction::of(t);
   auto c = in_powers();
   if (const Vec3d n = value_at(c, fraction).vector; n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
@@ -284,8 +284,8 @@ Vec3d ExactCurve::normal_at_double(double t) const noexcept {
   return to_doubles(integers_at(fraction), unit() - 2 * static_cast<int>(fraction.scale));
 }
 
-// Returns twice n0 + (s + t) / 2 linear + s t bend, as the sum of two products of Horner's rule: one begins with s, one
-// with t.
+// Returns the blossom n0 + (s + t) / 2 linear + s t bend. Twice the blossom is a sum of two terms that Horner's rule
+// computes, one beginning with s and one with t.
 Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   const UnitFraction a = UnitFraction::of(s), b = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();
@@ -308,7 +308,7 @@ UnitNormal ExactCurve::unit_normal_at_double(double t) const noexcept {
   const Vec3d n = normal_at_double(t);
   if (n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
 
-  // If n(t) = 0, the curve near t is (x - t) n'(t) + (x - t)^2 bend.
+  // If n(t) = 0, the curve at x near t is (x - t) n'(t) + (x - t)^2 bend.
   const UnitFraction fraction = UnitFraction::of(t);
   const CoefficientVector c1 = linear();
   CoefficientVector c2 = bend();

@@ -55,7 +55,8 @@ struct TimeFraction {
 
 class ExactCurve {
  public:
-  // Products reach up to digit 23; the rest is for sums of 2^40 of them.
+  // The number of digits of a coefficient. Products reach up to digit 23; the other digits are for sums of 2^40
+  // products.
   static constexpr std::size_t kDigits = 26;
   using Coefficient = WideInteger<kDigits>;
   using CoefficientVector = std::array<Coefficient, 3>;
@@ -76,8 +77,8 @@ class ExactCurve {
   [[nodiscard]] ControlNormals rounded() const noexcept;
   /// Returns n(t), each component rounded a few times. t is a local_time()
   [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
-  /// Returns the middle control normal of the part [s, t] of the curve, rounded in the same way. It is the blossom of n
-  /// at (s, t), which is n(t) for s = t. Both arguments must be doubles from local_time()
+  /// Returns the middle control normal of the part [s, t] of the curve, rounded as by normal_at(). It is the blossom
+  /// (polar form) of n at (s, t), which is n(t) if s = t. Both arguments must be doubles from local_time()
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// Returns n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;

@@ -8,8 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// A smaller t counts as 0, so that t^2 times the smallest product of two floats is still far above the smallest
-/// double.
+/// The smallest t that does not count as 0. With it, t^2 times the smallest product of two floats is still far above
+/// the smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
 /// Returns t in [0, 1]: a t outside is moved to the nearer end. NaN stays NaN, which stands for no time at all.
@@ -18,8 +18,8 @@ inline constexpr double kSmallestTime = 0x1p-200;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// Returns the time in [0, 1] for a time that may be no double. A time closer than kSmallestTime to an end becomes that
-/// end.
+/// Returns a time, which need not be a double, moved into [0, 1]. A time closer than kSmallestTime to an end becomes
+/// that end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

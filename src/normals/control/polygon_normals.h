@@ -12,11 +12,12 @@
 
 namespace chronormal::inline internal {
 
-/// Coefficients below this share of the largest control normal count as zero in degree(). Direction errors of 2^-28
-/// stay far below the errors of float32 evaluation.
+/// The share of the largest control normal below which coefficients count as zero in degree(). Leaving them out causes
+/// errors of the direction of 2^-28, far below the errors of evaluating in float32.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
-/// If rounding of double may be a larger share of a control normal, the control normal is computed from integers.
+/// The largest rounding error of a control normal in double, relative to its length. If the error may be larger, the
+/// control normal is computed from integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
 /// Control normals in double, and a bound of the error of any component of each.
@@ -31,7 +32,8 @@ struct BoundedNormals {
                           maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
 
-  /// Takes a control normal from `exact`, rounded integers, if its rounding may be more than kLargestRounding.
+  /// Replaces each control normal whose rounding may be more than kLargestRounding by that of `exact`, which was
+  /// computed in integers and then rounded.
   void settle(const ControlNormals& exact) noexcept {
     const auto take = [](const Vec3d& from, Vec3d& to, double& error) {
       constexpr double kExactError = 0x1p-50;
@@ -46,8 +48,8 @@ struct BoundedNormals {
 };
 
 struct PolygonNormals : BoundedNormals {  ///< the normals, as face_control_normals() writes them
-  /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, those of both cross products are
-  /// added.
+  /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, the sums of both cross products
+  /// are added.
   double magnitude = 0;
 };
 

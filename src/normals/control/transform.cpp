@@ -8,7 +8,7 @@
 namespace chronormal {
 namespace {
 
-// Below this angle in radians slerp equals lerp to the last bit of double.
+// The angle in radians below which slerp equals lerp to the last bit of double.
 constexpr double kSmallAngle = 1e-8;
 
 using Quaternion = std::array<double, 4>;
@@ -88,7 +88,7 @@ Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept {
   const Vec3d sine = cross(from, to);
   const double cosine = dot(from, to);
   const Vec3d axis = unit(sine);
-  // The vectors are opposite up to rounding, so any perpendicular axis will do.
+  // If the vectors are opposite up to rounding, any perpendicular axis will do.
   constexpr double kOpposite = 1e-12;
   if (cosine < 0 && max_abs(sine) < kOpposite) {
     const Vec3d across = any_perpendicular(from);

@@ -44,9 +44,10 @@ template <std::size_t M>
 /// Returns the length of a vector that has been scaled, so that its square stays in range if the vector does.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// Below this size, the scale itself would be outside the range of double.
+/// The size below which the scale itself would be outside the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// This is added to a length if each control normal has its own exponent, since exponents go no lower.
+/// The number that is added to a length if each control normal has its own exponent, since such exponents have a lower
+/// limit.
 inline constexpr double kSmallestScale = 0x1p-30;
 
 /// Returns the fewest bits that keep this element within the tolerance at every t, or nothing if double is needed.
@@ -68,7 +69,7 @@ inline constexpr double kSmallestScale = 0x1p-30;
   return std::nullopt;
 }
 
-/// Control normals in double whose components have at most this relative error are precise enough for float32.
+/// The largest relative error of the components of control normals in double that are precise enough for float32.
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// Returns the share of sum w_k max_abs(c_k) above which the largest component of n(t) in double must be for n(t) to

@@ -35,7 +35,7 @@ std::size_t part_size(std::size_t size) {
 // cache miss, this halves the misses.
 class EndsSideBySide {
  public:
-  // Uses the given memory if it is large enough. This copies nothing yet.
+  // Takes memory, which is used if it is large enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -65,7 +65,7 @@ class EndsSideBySide {
   Segment from_, segment_;
 };
 
-// Builds curves, either part after part on one thread, a chunk at a time, or many parts on all threads.
+// A builder of curves, either part after part on one thread, a chunk at a time, or many parts at once on all threads.
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
@@ -138,7 +138,7 @@ class Build {
     });
   }
 
-  // Puts the results of the parts one after the other, as far as that is not done.
+  // Joins the results of all parts that are not joined yet, and returns the curves.
   CurveData finish() {
     std::size_t flagged = curves_.flagged.size();
     for (std::size_t p = next_; p < parts_.size(); ++p) flagged += parts_[p].flagged.size();
@@ -203,7 +203,7 @@ CurveData build(std::size_t size, const CurveOptions& options, Threads threads, 
   return build.finish();
 }
 
-// Returns the memory that earlier curves used for the ends of a mesh in no order.
+// Returns the memory in which earlier curves kept both ends of each vertex side by side.
 AlignedArray<float> scratch_of(CurveData* reuse) {
   return reuse != nullptr ? std::exchange(reuse->scratch, {}) : AlignedArray<float>();
 }

@@ -41,7 +41,7 @@ class CurveSlices {
 
   /// Does this share of the work, or the rest of the work if less is left. Returns true if all work is done.
   bool advance(double share);
-  /// Does the rest of the work, and returns the curves. It may be called once.
+  /// Does the rest of the work, and returns the curves. Must not be called again.
   [[nodiscard]] CurveData finish();
 
  private:

@@ -32,7 +32,7 @@ struct CurveCount {
   [[nodiscard]] std::size_t bytes(std::size_t size) const noexcept;
 };
 
-/// Ranges of elements that are counted together begin at a multiple of this number.
+/// The alignment of ranges of elements that are counted together: each begins at a multiple of this number.
 inline constexpr std::size_t kCountedTogether = 512;
 
 /// Counts the sizes of exact curves of some faces, and writes their control normals and longest edges, sixteen faces

@@ -26,7 +26,8 @@ struct CurveData {
     std::size_t offset = 0;  ///< first byte of the first block in `blocks`
     BlockKind kind = BlockKind::kUnit;
 
-    /// Returns the elements of these blocks, limited to the first `count` elements, which are all that the curves have.
+    /// Returns the elements of the run. `count` is the number of elements of the curves, which may end within the last
+    /// block.
     [[nodiscard]] IndexRange elements(std::size_t count) const noexcept {
       const std::size_t first = first_block * kTile, end = first + block_count * kTile;
       return {first, (end < count ? end : count) - first};
@@ -40,7 +41,7 @@ struct CurveData {
   std::vector<Run> runs;
   std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty if all exponents are 0
   FlaggedElements flagged;              ///< the elements that are evaluated in double
-  /// Names a flagged element for which double does not suffice at every t; elements are in ascending order. `digits` is
+  /// A flagged element for which double does not suffice at every t. These elements are in ascending order. `digits` is
   /// the place in exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
     std::size_t element = 0;
@@ -50,7 +51,7 @@ struct CurveData {
   std::vector<std::int32_t> exact_digits;
   AlignedArray<float> scratch;  ///< memory of preparing, kept for the next segment
 
-  /// Becomes empty, and keeps its memory.
+  /// Removes all elements, and keeps their memory.
   void clear() noexcept {
     size = 0;
     degree_counts = {};

@@ -21,7 +21,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the digits of a flagged element for which double is not enough at every t, or nullptr.
+/// Returns the digits of the ExactCurve of a flagged element, or nullptr if double suffices for the element at every t.
 inline const std::int32_t* digits_of(const CurveData& curves, std::size_t element) {
   const auto at = std::lower_bound(curves.exact.begin(), curves.exact.end(), element,
                                    [](const CurveData::ExactElement& e, std::size_t i) { return e.element < i; });
@@ -29,7 +29,7 @@ inline const std::int32_t* digits_of(const CurveData& curves, std::size_t elemen
   return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
 }
 
-/// Returns how many of the flagged elements [first, last) are neighbours, from the first one on.
+/// Returns how many elements of the list, from place `first` on and before place `last`, have consecutive numbers.
 inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first, std::size_t last) noexcept {
   if (flagged[last - 1] - flagged[first] == last - 1 - first) return last - first;
   std::size_t count = 1;
@@ -37,9 +37,9 @@ inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t
   return count;
 }
 
-/// Calls write(element, xyz, count) for neighbouring flagged elements of a range, with their normals at t in double.
-/// Then calls settle(index, element) for the elements for which double does not suffice; `index` counts flagged
-/// elements.
+/// Computes the normals of the flagged elements of a range in double at t, and calls write(element, xyz, count) for
+/// each run of neighbours. Then calls settle(index, element) for each element for which double does not suffice;
+/// `index` is its number among the flagged elements.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
                  const Settle& settle) {

@@ -1,5 +1,5 @@
-/// The elements of curves that float32 cannot carry, in ascending order: their numbers, and their values in tiles of
-/// sixteen.
+/// The elements of curves for which float32 is not accurate enough, in ascending order: their numbers, and their values
+/// in tiles of sixteen.
 #ifndef CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 

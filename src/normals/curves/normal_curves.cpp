@@ -25,11 +25,10 @@
 namespace chronormal {
 namespace {
 
-// A thread takes this many elements at a time. Work on fewer elements is not shared between threads.
+// The number of elements that a thread takes at a time. Work on fewer elements is not shared between threads.
 constexpr std::size_t kPiece = 8192;
-// If there are many t, this many elements are evaluated at all of them before the next elements: as many elements as
-// stay in the nearest cache. If results bypass the caches, the number is larger, so that each stream of results is
-// long.
+// The number of elements that are evaluated at all requested t before the next elements: as many as stay in the nearest
+// cache. If results bypass the caches, the number is larger, so that each stream of results is long.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 std::size_t many_times_step(MemoryAccess access) { return access.stream ? kManyTimesLarge : kManyTimes; }
@@ -41,7 +40,7 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Returns true if double is certain of the direction of n(t), or that n(t) has none, if the control normals are exact.
+// Returns true if double can tell, from exact control normals, the direction of n(t), or that n(t) has none.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
   const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);
@@ -138,7 +137,8 @@ const CurveData& NormalCurves::data() const noexcept {
   return none;
 }
 
-// Gives data to reused curves that have none: curves of no elements have no data, but can still hold memory.
+// Returns the data of curves whose memory is to be reused. Curves without elements may have no data, and then get empty
+// data, in which the memory can be kept.
 CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   if (reuse == nullptr) return nullptr;
   if (!reuse->data_) reuse->data_ = std::make_unique<CurveData>();
@@ -202,7 +202,7 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
 std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   const CurveData& curves = data();
   const double t = local_time(time);
-  // At both ends, n(t) is a control normal and nothing is rounded.
+  // At both ends, n(t) is a control normal and nothing is rounded, so no element is uncertain.
   if (!(0 < t && t < 1)) return 0;
   std::size_t count = 0;
   for_flagged(

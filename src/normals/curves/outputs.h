@@ -84,8 +84,8 @@ struct Rgb10A2Output {
   MemoryAccess access;
 };
 
-/// Writes any other form, by a function of index and vector. Results go through planes on the stack, a few blocks at a
-/// time.
+/// Any other form, which is written by a function of the index and the vector. Results go through planes on the stack,
+/// a few blocks at a time.
 template <class Set>
 struct AnyOutput {
   WorkingSet working_set;

@@ -41,7 +41,7 @@ inline ControlNormals scaled(double scale, const ControlNormals& c) {
   return {scale * c.n0, scale * c.m, scale * c.n1};
 }
 
-// A flagged element has these values in its block, whatever the kind of the block.
+// The values that a flagged element has in its block, whatever the kind of the block.
 inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
 // The precision and the degree that a block must be able to hold.
@@ -96,7 +96,7 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// The part that one thread builds at a time.
+// A part of the curves, which one thread builds.
 struct CurvePart {
   IndexRange elements;
   std::byte* begin = nullptr;  // start of its blocks; nullptr if they are only counted
@@ -134,8 +134,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   Examined result;
   result.normals = rounded.normals;
   double share = rounded.largest_share();
-  // Control normals that a caller gave are exact by definition, since there are no positions from which better control
-  // normals could be computed.
+  // Control normals from a caller count as exact, since there are no positions from which better ones could be
+  // computed.
   constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
   if constexpr (kHasExact) {
     if (!(share <= kLargestShare)) {
@@ -312,7 +312,7 @@ class PartBuilder {
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, std::size_t k, ControlTile& tile, Need& need,
                         TileSummary& summary) {
-    constexpr int kFewest = 3;  // sixteen at a time pay from here on
+    constexpr int kFewest = 3;  // the fewest elements for which sixteen at a time are faster
     const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
     TileCertificates& known = certificates_;
     known.clear();
@@ -355,8 +355,7 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    // The block now holds the new values, which may move or bend where the earlier sums, which were mere rounding, did
-    // not.
+    // The block now holds the new values, which replace sums that were only rounding error. Their degrees may differ.
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
     }
@@ -388,7 +387,7 @@ class PartBuilder {
                          std::span(certificates_.exponents).subspan(lane, count));
   }
 
-  // Adds elements that double cannot carry at every t.
+  // Adds elements for which double does not suffice at every t.
   template <class Source>
   void add_exact(const Source& source, std::size_t first, std::uint32_t lanes) {
     if constexpr (!std::is_same_v<Source, GivenNormals>) {
@@ -405,8 +404,8 @@ class PartBuilder {
     for (; lanes != 0; lanes &= lanes - 1) body(static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
-  // Gives a tile its own exponent, for which all its unflagged elements must be examined. Returns the elements that are
-  // too small for that exponent beside the others.
+  // Scales a tile by its own power of two, for which all its unflagged elements must be examined. Returns the elements
+  // that are so much smaller than the others that they do not fit into the range with this exponent.
   template <class Source>
   std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
                         std::array<std::optional<Examined>, kTile>& alone) {

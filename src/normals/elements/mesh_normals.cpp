@@ -127,7 +127,7 @@ void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.res
 
 // ---- the two sources of elements -----------------------------------------------------------------------------------
 
-// Writes elements, from number `first` on, to memory that begins with this first element.
+// A form that writes elements, from number `first` on, to memory that begins with element `first`.
 template <class Form>
 struct Shifted {
   Form form;
@@ -147,8 +147,8 @@ Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; 
 
 // An evaluation of a segment at one t.
 struct AtTime {
-  // The number is as large as the bits of write_tile() allow, since beginning an evaluation takes as long as evaluating
-  // some elements.
+  // The number of elements of a tile is as large as the bits that write_tile() returns, since beginning an evaluation
+  // takes as long as evaluating some elements.
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
   using Values = typename ValuesOf<Output>::type;
@@ -187,7 +187,7 @@ struct AtTime {
   CurveWeights weights;
 };
 
-// Evaluates blend shapes at the weights that are set.
+// An evaluation of blend shapes at the weights that are set.
 struct AtWeights {
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
@@ -443,8 +443,8 @@ struct MeshNormals::Parts {
   std::shared_ptr<const Topology> mesh;  // the mesh of all objects that another() has created
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
-  std::vector<float> normal_of_corner;       // kept until then, too
-  // Shared by all such objects, as soon as the groups are known; none for faces.
+  std::vector<float> normal_of_corner;       // kept until the outputs that share a normal are known
+  // The groups, which all objects of one mesh share as soon as they are known; nullptr for faces.
   std::shared_ptr<const NormalGroups> groups;
   bool shares = false;      // whether an output is not the element with its number
   CurveData curves, spare;  // the present segment, and memory for the next

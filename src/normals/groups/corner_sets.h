@@ -56,7 +56,7 @@ class CornerSets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Lists items by their owner: offsets and items, as in Topology.
+/// A list of items for each owner, stored as offsets and items like the faces of a Topology.
 struct Listing {
   std::vector<std::uint32_t> offsets, items;
 

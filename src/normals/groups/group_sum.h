@@ -1,5 +1,5 @@
-/// Sums of the control normals of faces, and the way out if faces cancel so far that the sum is hardly more than
-/// rounding.
+/// Sums of the control normals of faces. If faces cancel so far that a sum is hardly more than rounding error, integers
+/// compute it.
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 
@@ -51,8 +51,8 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Returns the control normals of an element. Each is within 2^-24 of its length of the exact one, and zero only if the
-/// exact one is zero. If faces cancel so far that the rounding of double could be more than 2^-26, the control normals
+/// Returns the control normals of an element. The error of each is at most 2^-24 of its length, and it is zero only if
+/// the exact one is zero. If faces cancel so far that the error of double could be more than 2^-26, the control normals
 /// are computed from integers. Pure. of_faces must have face_control_normals() of all faces
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,

@@ -22,7 +22,8 @@ constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 // The error of an edge's angle from the rounding of positions to float32, radians.
 constexpr double kCreaseRounding = 1e-6;
 
-// Edges with more faces are hard, which bounds the number of pairs.
+// The largest number of faces at a smooth edge. Edges with more faces are hard, which bounds the number of pairs of
+// faces to compare.
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 
 // Returns the faces in an order that follows from their vertices alone. Faces with the same vertices in the same order
@@ -80,7 +81,7 @@ void join_close_directions(std::vector<StoredNormal>& normals, double chord, Cor
   for (std::size_t i = 0; i < distinct; ++i) {
     for (std::size_t k = i + 1; k < distinct; ++k) {
       const Vec3d between = normals[k].direction - normals[i].direction;
-      if (between.x > chord) break;  // all that follow are too
+      if (between.x > chord) break;  // all later directions are farther than that, too
       if (dot(between, between) <= chord * chord) sets.join(normals[i].corner, normals[k].corner);
     }
   }
@@ -98,7 +99,7 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
   for (const std::uint32_t e : element_of_corner_) ++offsets_[e + 1];
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
 
-  // Deal the corners out, face by face, in an order that shuffling the mesh does not change.
+  // Corners are dealt out to their elements face by face, in an order that does not change if the mesh is shuffled.
   std::vector<std::uint32_t> next = offsets_;
   for (const std::uint32_t f : faces_by_vertices(topology)) {
     const std::size_t first = first_corner(topology, f);

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Limit on the pieces of a path; in longer paths, pieces are not put in order.
+// The largest number of pieces of a path that are put in order.
 constexpr std::size_t kMostSearched = 64;
 using Path = std::vector<std::uint32_t>;  // the first point is the centre
 
@@ -105,7 +105,9 @@ class PathMaker {
     return true;
   }
 
-  // Adds the corners of a face that follow this corner, or all corners back to this one if it is not the centre.
+  // Adds the piece that a face contributes at this corner: the other corners of the face in order. If the vertex of the
+  // corner is not the centre of the path (but a copy of it), the piece is the whole outline of the face, closed at this
+  // corner.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
     const std::size_t first = points_.size();
     const std::size_t at = corner - static_cast<std::size_t>(face.data() - topology_.corners().data());
@@ -186,7 +188,7 @@ Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std
   std::vector<std::uint32_t> left_out;
   Rings rings(groups.size(), [&](std::size_t e) -> const Path& {
     const Path& path = paths.make(e);
-    // Paths are requested twice, in ascending order.
+    // Each path is requested twice, in ascending order of elements, but counted once.
     if (paths.is_left_out() && (left_out.empty() || left_out.back() < e))
       left_out.push_back(static_cast<std::uint32_t>(e));
     return path;

@@ -79,7 +79,7 @@ struct RingsOfGroups {
   Rings rings;
 };
 
-/// The most points of a path that rings_around() has.
+/// The largest number of points of a path in rings_around().
 inline constexpr std::size_t kMostPathPoints = 64;
 
 /// Returns the paths of up to kMostPathPoints around the elements of groups. The groups and their copies keep the

@@ -34,7 +34,7 @@ inline constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
 /// A pair of polygons, by number, of which each is the back of the other; the smaller number comes first.
 using BackToBack = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Writes the points of the corners of polygon i, in order around it.
+/// A function that writes the points of the corners of polygon i, in order around it.
 using LoopOf = std::function<void(std::uint32_t i, std::vector<std::uint32_t>& loop)>;
 
 /// Returns the polygons of `count` that are back to back, in ascending order. Each polygon is the back of at most one
@@ -42,14 +42,15 @@ using LoopOf = std::function<void(std::uint32_t i, std::vector<std::uint32_t>& l
 /// polygon.
 [[nodiscard]] std::vector<BackToBack> find_backs(std::size_t count, const LoopOf& loop_of);
 
-/// An edge from or to the point that belongs to a node, to a neighbour.
+/// An edge between a point and a neighbour, as one face has it. The corner of this face at the point belongs to a node:
+/// a vertex, or a set of corners, that stays whole when the point is split.
 struct SideEdge {
   std::uint32_t node = 0, neighbour = 0;
   bool leaves = false;  ///< whether the face of the node goes along the edge from the point, not to it
 };
 
-/// Returns the side of each node at one point, numbered in the order of their first nodes. apart are pairs of different
-/// nodes.
+/// Returns the side of each node at one point; sides are numbered in the order of their first nodes. `apart` has pairs
+/// of different nodes that must not be on the same side.
 [[nodiscard]] std::vector<std::uint32_t> split_sides(std::size_t nodes, std::vector<SideEdge> edges,
                                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> apart);
 
@@ -57,7 +58,8 @@ struct SideEdge {
 /// stays as it is. O(F), and O(F log F) if sheets may have two sides
 void keep_sides_apart(const Topology& topology, Points& points);
 
-/// Splits sets of corners in this way. A set is named by any of its corners, and each side gets its own name.
+/// Splits sets of corners that have corners of both sides of a sheet. A set is named by any of its corners, and each
+/// side gets its own name.
 void take_sides_apart(const Topology& topology, const Points& points, std::vector<std::uint32_t>& set_of_corner);
 
 }  // namespace chronormal::inline internal

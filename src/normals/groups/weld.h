@@ -1,4 +1,5 @@
-/// Welds vertices, and returns what weld_coincident() finds in between. Private to normals and workflow.
+/// Welds the vertices that coincide in all keyframes, and also those that coincide in keyframe 0. Private to normals
+/// and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 
@@ -13,7 +14,7 @@ struct WeldedPoints {
   Points at_start;  ///< vertices that coincide in keyframe 0 are one point
 };
 
-/// Welds at keyframe 0 and in all keyframes at once. If sides are not kept apart (sides.h), vertices are one point
+/// Welds the vertices of a stream in both ways at once. If sides are not kept apart (sides.h), vertices are one point
 /// wherever they share a place. Errors: from the stream.
 [[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apart = true);
 

@@ -44,9 +44,9 @@ struct NormalAtTime {
   double error = 0;
 };
 
-// Computes n(t) with a bound. Edges, and both products of each component, are within 10 u of the absolute products, and
-// each triangle of a fan adds a rounding. The bound holds even if all roundings go the same way, so no test can tell 10
-// from 5; a search by hill climbing from 60 triangles finds no error above 3.4 u of these products.
+// Computes n(t) with a bound of its error. Edges, and both products of each component, are within 10 u of the absolute
+// products, and each triangle of a fan adds a rounding. The bound holds even if all roundings go the same way. Real
+// errors are smaller: a search by hill climbing from 60 triangles finds none above 3.4 u of these products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
@@ -78,7 +78,7 @@ FaceNormal rounded(const NormalAtTime& normal) {
   return {n.x, n.y, n.z, static_cast<float>(error)};
 }
 
-// The result of the kernel for a triangle, to the last bit.
+// The result for a triangle, with the bits that the kernel gives.
 struct QuickNormal {
   Vec3f n, unit;
   float error = 0;
@@ -184,7 +184,8 @@ UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& g
   return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
 
-// Returns the bits of the kernel if the kernel would trust the sum of its own face normals.
+// Returns the normal of an element with the bits of the kernel: from the sum of rounded face normals if the kernel
+// would trust this sum, and otherwise as unit_normal_of_group() does.
 UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& groups, std::size_t element,
                                       const LocalTime& t) {
   const Segment& segment = shared.faces.segment();
@@ -280,8 +281,8 @@ class Call {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
     FaceWindow window{window_};
-    // The credit is the number of faces that may be written to the window. It limits the cost of elements that jump to
-    // and fro to a few times the work of computing each face alone.
+    // The credit is the number of faces that may still be written to the window. If the faces of successive elements
+    // are far apart, it limits the cost to a few times the work of computing each face alone.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
       const IndexRange batch{e, std::min(kGroupBatch, elements.end() - e)};
@@ -345,7 +346,7 @@ class Call {
     }
   }
 
-  // Makes the window hold the needed faces. Returns false if they do not fit, or would cost more than the credit.
+  // Moves the window to the needed faces. Returns false if they do not fit, or would cost more than the credit.
   bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
     if (needed.count == 0 || window.holds(needed)) return true;
     const bool follows = window.begin <= needed.first && needed.first <= window.end;

@@ -43,7 +43,8 @@ struct MovingEdge {
 /// The error of a cross product of two such edges, relative to the product of their sizes, with a margin.
 inline constexpr double kCrossError = 32 * kUnitRoundoff;
 
-/// Returns what a corner of a face with normal n adds, which is zero if an edge has no length. n is not zero
+/// Returns the term that a corner adds to the normal of its element, for a face with the normal n, which must not be
+/// zero. If an edge of the corner has no length, the term is zero, except by area and uniform.
 [[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
                                        Weighting weighting, const LocalTime& t) noexcept {
   if (weighting == Weighting::kArea) return n;

@@ -74,7 +74,7 @@ struct Interval {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
   const double radius = (y.high - y.low) + (x.high - x.low);
-  // On the way from the point inside to any other, the distance to the origin is at least this.
+  // No point of the intervals is nearer to the origin than this distance.
   const double distance = 0.999 * portable::hypot(mx, my) - radius;
   if (!(distance > 0)) return Interval::whole();
   constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();

@@ -14,7 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// Taylor polynomials have 5 coefficients, and the sixth is the remainder.
+/// The number of terms of a series, and the degree of its polynomial: a Taylor polynomial has 5 coefficients, and the
+/// sixth term is the remainder.
 inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
 
 /// Returns the largest length of a vector that is somewhere in these intervals.
@@ -55,7 +56,8 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return least - (1 + 0x1p-50) * (remainder(around, half).magnitude() + slack);
 }
 
-/// Returns an upper bound of the length of a vector from the same two series.
+/// Returns an upper bound of the length of a vector over [c - half, c + half], from its series about c and about all of
+/// the interval. The true vector may differ by a length of `slack`.
 [[nodiscard]] inline double largest_length_over(const VectorSeries<kTerms>& here, const VectorSeries<kTerms>& around,
                                                 double half, double slack) noexcept {
   const auto x = bernstein(here[0], half), y = bernstein(here[1], half), z = bernstein(here[2], half);

@@ -83,7 +83,8 @@ template <std::size_t M>
   return {shifted(p[0], around), shifted(p[1], around), shifted(p[2], around)};
 }
 
-/// Returns p to a power, from p y' = exponent p' y. The first coefficient of the result is given.
+/// Returns the series y of p to the power `exponent`, by the recurrence that follows from p y' = exponent p' y. `first`
+/// is the first coefficient of y.
 template <std::size_t K, std::size_t M>
 [[nodiscard]] Series<K> power(const Series<M>& p, double exponent, const Interval& first) noexcept {
   Series<K> y;

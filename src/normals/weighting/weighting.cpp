@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kElementsAtOnce = 1024;
 
-// The normal of a face has at most this relative error, so sums of faces are right to 2^-23 = 1.2e-7 rad until they
-// have cancelled to a hundredth.
+// The largest relative error of the normal of a face, and the largest angle by which such errors may turn a sum of
+// faces. The angle of 2^-23 = 1.2e-7 rad is kept until the faces have cancelled to a hundredth.
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
 // Returns the normal of a face, in double, or in integers if double is not enough.

@@ -97,8 +97,8 @@ VectorSeries<2> about(const IntervalEdge& e, double t) {
   return result;
 }
 
-// Returns the squared length of a vector series about c, as a series about all c + around. The first coefficient is a
-// square.
+// Returns the squared length of a vector series about c, as a series about all c + around. The first coefficient is
+// computed as a sum of squares, so it is never negative.
 template <std::size_t M>
 Series<2 * M - 1> squared_length(const VectorSeries<M>& v, const Interval& around) {
   Series<2 * M - 1> squares = dot_product<2 * M - 1>(v, v);
@@ -122,7 +122,7 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   const Series<kTerms - 1> speed =
       product<kTerms - 1>(numerator, power<kTerms - 1>(lengths, -1, reciprocal(lengths[0])));
 
-  // The integration starts from the angle at the centre.
+  // The series of the derivative is integrated, starting from the angle at the centre.
   const Interval y_here = square_root(square(c[0][0]) + square(c[1][0]) + square(c[2][0]));
   Series<kTerms> angle;
   angle[0] = angle_of(y_here, x_here[0]);
@@ -262,8 +262,8 @@ struct Element {
     return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
-  // Returns the bound over the whole segment. Pieces are halved until their bounds are close to `goal`. If the shortest
-  // piece has no bound, the result is no bound.
+  // Returns the bound over the whole segment. Pieces are halved until their bounds are close to `goal`. If a piece of
+  // the smallest allowed length has no bound, the result is pi.
   [[nodiscard]] double bound_over_segment(double goal) const {
     struct Piece {
       double t0, t1;

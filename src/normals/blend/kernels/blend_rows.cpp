@@ -113,7 +113,7 @@ HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t first, std::uint32_t elements,
                                    const UnitLimits& limits, const VectorView<float>& result) {
   const Doubles square = Dot(n, n);
-  // Both comparisons are false for NaN.
+  // Both comparisons are false for NaN, which is then beyond the limits.
   const auto is_usual = hn::And(hn::Ge(square, hn::Set(kDoubles, limits.smallest_square)),
                                 hn::Le(square, hn::Set(kDoubles, limits.largest_square)));
   const Doubles most = hn::Mul(hn::Set(kDoubles, limits.largest_error * limits.largest_error), square);
@@ -155,8 +155,8 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
   });
 }
 
-// Bounds the error of a sum over a path, from its largest edge or half the largest distance of two neighbours whose
-// product is added.
+// The factors that bound the error of a sum over a path, from the largest component of its edges or of half the
+// distance of two neighbours whose product is added.
 struct RingError {
   double of_square, of_edge, alone;
 
@@ -184,7 +184,7 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
       indices += kRingLanes;
       return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(points, row[i]); }).xyz;
     };
-    // A NaN in an edge makes the sum NaN, so the value of `largest` does not matter then.
+    // A NaN in an edge makes the sum NaN. Then `largest` does not matter.
     const Doubles3 centre = next_row();
     Doubles3 before = next_row();
     const auto largest_of = [](const Doubles3& v) HWY_ATTR { return LargerAbs(LargerAbs(v.x, v.y), v.z); };

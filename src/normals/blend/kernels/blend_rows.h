@@ -19,17 +19,19 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kBlendLanes = 4;
 using RowWeights = std::array<double, kBlendLanes>;
 
-/// Adds to the row of each element of a target `linear` times its first four coefficients and `square` times the other
-/// four. rows begins with the row of element `first`. coefficients must have eight numbers for each element
+/// Adds the terms of a target to the rows of its elements: `linear` times the first four coefficients of each element,
+/// plus `square` times the other four. rows begins with the row of element `first`. coefficients must have eight
+/// numbers for each element
 void add_target_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& linear,
                      const RowWeights& square, std::size_t first, double* rows) noexcept;
-/// Adds to the row of each element of a pair `weight` times its four coefficients.
+/// Adds the term of a pair of targets to the rows of its elements: `weight` times the four coefficients of each
+/// element.
 void add_pair_rows(std::span<const std::uint32_t> elements, const float* coefficients, const RowWeights& weight,
                    std::size_t first, double* rows) noexcept;
 
-/// Adds `weight` times its delta to the point of each vertex. deltas must have three floats for each vertex
+/// Adds `weight` times the delta of each vertex to its point. deltas must have three floats for each vertex
 void move_points(std::span<const std::uint32_t> vertices, const float* deltas, double weight, double* points) noexcept;
-/// Puts a range of points back to the base, (V, 3). base must not end before the last of them
+/// Puts a range of points back to the base, (V, 3), which must contain all of them
 void reset_points(std::span<const float> base, IndexRange vertices, double* points) noexcept;
 
 /// Move points in float32, which are rows of four floats, and reset them.

@@ -11,7 +11,7 @@
 
 namespace chronormal::inline internal {
 
-/// Planes as in ControlTile, with the bits of face_control_normals().
+/// The normals of sixteen faces in double: planes as in ControlTile, with the bits of face_control_normals().
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
@@ -25,14 +25,14 @@ struct BoundedTile : ExactTile {
 
 /// Sixteen faces with the length of the longest of their edges from the first corner.
 struct EdgedTile : ExactTile {
-  /// Bounds every component of such an edge at either end of the segment; infinity if a face is no triangle.
+  /// A bound of every component of these edges at both ends of the segment; infinity if a face is not a triangle.
   float longest[kTile];
 };
 
 /// Writes an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
-/// The rounding error of a triangle is below half of this share of its magnitude.
+/// The share of the magnitude of a triangle that is more than twice its rounding error.
 inline constexpr double kErrorAbove = 0x1p-47;
 
 /// Returns a float that is not less than a magnitude, and 0 for 0.
@@ -41,7 +41,8 @@ inline constexpr double kErrorAbove = 0x1p-47;
 /// Writes one face into one lane, with any number of corners.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// A control normal above this share of the magnitude of a triangle is hardly touched by rounding (kLargestRounding).
+/// The share of the magnitude of a triangle above which a control normal is hardly changed by rounding
+/// (kLargestRounding).
 inline constexpr double kCertainAbove = 0x1p-22;
 
 /// Writes one triangle into one lane. Sets components to zero that are only rounding error, and computes control

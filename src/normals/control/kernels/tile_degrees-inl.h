@@ -1,7 +1,7 @@
-// Finds the degree of sixteen elements, as degree() in control_normals.h finds it in double, and as far as float32 can
-// know it.
+// Finds the degrees of sixteen elements: in double, as degree() in control_normals.h does, or in float32, which can
+// only tell if a degree is certainly 2.
 //
-// Included once for each instruction set, as lanes-inl.h.
+// This file is included once for each instruction set, as lanes-inl.h is.
 
 #include "simd/highway-inl.h"
 
@@ -23,9 +23,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Sets the degrees to 2 and returns true if float32 alone proves that they are. The error of float32 in n0 - 2 m + n1
-// is below 2^-20 of the largest component, which is far above the tolerance of degree(); but in most motions the term
-// itself is larger.
+// Sets the degrees to 2 and returns true if float32 alone proves that all degrees are 2. The error of float32 in n0 - 2
+// m + n1 is below 2^-20 of the largest component. This is far above the tolerance of degree(), but in most motions n0 -
+// 2 m + n1 is larger still.
 HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
   bool all = true;

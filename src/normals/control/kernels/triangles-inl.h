@@ -134,22 +134,25 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
   return p;
 }
 
-// Returns at least the sum of the absolute products in any component of e x f, whichever ends e and f belong to.
+// Returns an upper bound of the sum of the absolute products in any component of e x f, whichever ends e and f belong
+// to.
 HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1);
   const Floats f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  // Uses slightly more than twice the product, for its rounding, plus a tiny number in case it underflows.
+  // The factor is slightly more than 2, for the rounding of the product, and a tiny number is added in case the product
+  // underflows.
   const Floats tiny = hn::Min(hn::Min(e, f), hn::Set(kFloats, std::numeric_limits<float>::min()));
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Returns at least the largest component of an edge from the first corner, at either end.
+// Returns an upper bound of the components of the edges from the first corner, at both ends.
 HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
   return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the differences are rounded
 }
 
-// Returns such bounds for n0, m and n1, each from its own ends; the bound of m is for both products.
+// Returns the bounds of MagnitudeAbove() separately for n0, m and n1, each from the ends on which it depends. The bound
+// for m covers both of its products.
 HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
   const Floats f0 = MaxAbs(p.c0 - p.a0), f1 = MaxAbs(p.c1 - p.a1);
@@ -160,8 +163,8 @@ HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   return {above(e0, f0), hn::Add(above(e0, f1), above(e1, f0)), above(e1, f1)};
 }
 
-// Writes half of the lanes into tile. Returns whether one of the values may be noise, or a zero, or a vector hardly
-// larger than noise.
+// Writes half of the lanes into tile. Returns true if a value may be only rounding error or zero, or if a vector is
+// hardly larger than its rounding error.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);
@@ -191,8 +194,8 @@ HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], s
   hn::Store(e.z, kDoubles, errors[2] + lane);
 }
 
-// Turns -0 into 0. Recomputes every triangle with a component that may be only noise, or with a vector in which noise
-// may be significant.
+// Turns -0 into 0. Recomputes every triangle with a component that may be only rounding error, or with a vector to
+// which rounding errors are significant.
 HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
@@ -256,8 +259,8 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 template <PointAccess kAccess>
 using AccessConstant = std::integral_constant<PointAccess, kAccess>;
 
-// Calls body(access) with the access that sixteen triangles allow, as a constant. corners are their 48 vertices.
-// Returns whether these are far from each other in memory.
+// Calls body(access), with the fastest access that is possible for sixteen triangles as a constant. corners are their
+// 48 vertices. Returns true if these are far from each other in memory.
 template <class Body>
 HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {

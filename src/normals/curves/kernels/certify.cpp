@@ -98,8 +98,8 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// A comparison of |n(t)| with its limits at a few instants, which is far cheaper than a proof. A proof cannot succeed
-// if n(t) is too short at one of these instants.
+// A comparison of |n(t)| with its limits at a few instants, which is far cheaper than a proof. If n(t) is too short at
+// one of these instants, no proof can succeed.
 class Glance {
  public:
   HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {
@@ -181,7 +181,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Vectors given{VectorAt(tile, 0, lane), VectorAt(tile, 3, lane), VectorAt(tile, 6, lane)};
   const Doubles size0 = LargestOf(given.n0), size_m = LargestOf(given.m), size1 = LargestOf(given.n1);
   const Doubles largest = hn::Max(hn::Max(size0, size_m), size1);
-  // The larger of two numbers need not be NaN if one of them is NaN, but their sum is NaN.
+  // The maximum of two numbers may be a number although one of the two is NaN, but their sum is then NaN.
   const Doubles3 sums = (given.n0 + given.m) + given.n1;
   const Doubles sum = hn::Add(hn::Add(sums.x, sums.y), sums.z);
   const auto in_range =
@@ -229,7 +229,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const std::uint32_t flagged = BitsOf(kDoubles, open) & asked;
   if (flagged == 0) return;
   const Doubles certain = hn::Max(AllOf(0x1p-26), hn::Mul(AllOf(0x1p22), share));
-  // The largest component is a normal number, far from both ends of their range.
+  // The power of two is the inverse of the largest component, up to a factor of 2. Both are normal numbers here.
   const hn::RebindToSigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, largest), hn::Set(bits, std::int64_t{0x7FF} << 52));
   const Doubles power = hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, std::int64_t{0x7FE} << 52), exponent));

@@ -15,9 +15,9 @@ namespace chronormal::inline internal {
 
 /// The knowledge about the requested elements of a tile. Bit i of each set stands for element i.
 struct TileCertificates {
-  FlaggedTile scaled;             ///< the flagged elements, as in FlaggedNormals; other lanes hold anything
-  std::int16_t exponents[kTile];  ///< exponents of the flagged elements, as in FlaggedNormals
-  std::uint32_t known = 0;  ///< the others must be examined one by one: they are huge, tiny, or hardly more than noise
+  FlaggedTile scaled;                    ///< the flagged elements, as in FlaggedNormals; other lanes hold anything
+  std::int16_t exponents[kTile];         ///< exponents of the flagged elements, as in FlaggedNormals
+  std::uint32_t known = 0;               ///< decided elements; the others are huge, tiny, or mostly noise
   std::uint32_t flagged = 0;             ///< the known elements for which float32 does not suffice
   std::uint32_t needs_exact = 0;         ///< the flagged elements for which double does not suffice at every t
   Precision precision = Precision::k11;  ///< the precision of all known elements that are not flagged

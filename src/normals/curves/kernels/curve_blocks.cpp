@@ -8,7 +8,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kLargestWeight = 32767;
-// Control normals of 32767 times weights with this sum stay in the range of int32.
+// The largest sum of weights for which weighted sums of control normals of up to 32767 stay in the range of int32.
 constexpr double kLargestSum = 65532;
 
 std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF) | (high * 65536); }

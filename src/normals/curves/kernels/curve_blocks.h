@@ -71,8 +71,8 @@ inline constexpr int kNoDegree = -1;
   return degree == 1 ? BlockKind::kLinear32 : BlockKind::kQuadratic32;
 }
 
-// Blocks are scaled so that no component is above 2^50, and no end that counts is below 2^-52. Then |n(t)|^2 stays in
-// the range of float32, since the smallest |n(t)| is 2^-53 / 64.
+// The range to which blocks are scaled: no component is above 2^50, and n0 or n1 is below 2^-52 in no element that is
+// stored in float32. Then |n(t)|^2 stays in the range of float32, since the smallest |n(t)| is 2^-53 / 64.
 inline constexpr int kLargestExponent = 50;
 inline constexpr double kLargestComponent = 0x1p50;
 inline constexpr double kSmallestEnd = 0x1p-52;
@@ -92,7 +92,7 @@ struct CurveWeights {
   [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 
-/// The sum of the absolute errors of the int16 weights stays below this share of their sum, at every t.
+/// A bound, at every t, of the sum of the absolute errors of the int16 weights, as a share of the sum of the weights.
 inline constexpr double kWeightError = 1.5 / 32767;
 
 }  // namespace chronormal::inline internal

@@ -17,8 +17,8 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kPrefetchStep = 64;
 
-// Each struct is a kind of block. It has the weights in registers, and `direction` computes kLanes vectors from the
-// lanes at `lane`. Results have unit length only if kUnitLength.
+// The following structs are the kinds of blocks. Each has the weights in registers, and its `direction` computes kLanes
+// vectors from the lanes at `lane`. Results have unit length only if kUnitLength.
 
 struct Unit {
   static constexpr bool kUnitLength = true;
@@ -96,7 +96,8 @@ HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::BitCast(kShorts,
 HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) { return hn::ShiftLeft<11>(a); }
 
 // Returns start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers are exact in any
-// order. On NEON, both sums have their lanes in a different order until they are rearranged, so start is added then.
+// order. On NEON, both sums have their lanes in a different order until they are rearranged, so start is added
+// afterwards.
 HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
   Ints rest = hn::Zero(kInts);
   Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, hn::Zero(kInts), rest);
@@ -178,9 +179,9 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // The ends are in the upper 11 bits of their halves, which makes them 32 times their value. The two parts of m, moved
-  // there, are 2048 times their value. The part of m from the 16-bit halves is added first, so that no partial sum is
-  // outside the range.
+  // The ends are in the upper 11 bits of their halves, and count 32 times their value there. The two parts of m, moved
+  // to the same place, count 2048 times their value. The part of m from the 16-bit halves is added first, so that no
+  // partial sum leaves the range.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
@@ -190,7 +191,7 @@ struct Quadratic11 {
   Ints start;
 };
 
-// Each struct defines where results go, kLanes vectors at a time.
+// The following structs define where results go, kLanes vectors at a time.
 
 template <bool kPastCaches>
 struct Accesses {
@@ -229,7 +230,7 @@ template <bool kPastCaches>
 struct ToOctahedral : Accesses<kPastCaches> {
   using Accesses<kPastCaches>::kStream;
   std::uint32_t* bits;
-  // The octahedron needs no length of 1, and no square root.
+  // The octahedral encoding accepts vectors of any length, so no square root is needed.
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
     const Floats one = hn::Set(kFloats, 1.0f);
@@ -269,7 +270,7 @@ template <class Kind, class To>
 HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
   const Kind kind(weights);
   const std::size_t ahead = to.ahead;
-  // A copy, since the compiler assumes that stores might change an object behind a reference.
+  // The pointer is copied, since the compiler assumes that stores might change an object behind a reference.
   const std::byte* const blocks = span.blocks;
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
@@ -374,7 +375,8 @@ HWY_EXPORT(EvaluateRgb10A2);
 
 namespace {
 
-// Calls evaluate(part of the span, where its results go, how far ahead to prefetch) until all of the span is done.
+// Calls evaluate() for parts of a span until all of it is done, each time with the memory for the results of the part
+// and the distance to prefetch ahead.
 template <class Result, class Evaluate>
 void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
   if (span.kind == BlockKind::kNone) return;

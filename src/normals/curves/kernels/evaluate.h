@@ -36,7 +36,7 @@ constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noe
   return {set, all > kStreamFrom};
 }
 
-/// Results of a span go to these pointers, which point to the result of its first element.
+/// The memory for the results of a span. Its pointers point to the result of the first element of the span.
 struct PackedResult {
   float* xyz;
   MemoryAccess access = {};

@@ -45,7 +45,7 @@ void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double s, d
       }
       const auto certain = hn::Gt(largest, limit);
       results[i].uncertain |= BitsOf(kFloats, hn::Not(certain)) << lane;
-      // An element that is not certain may have a zero vector; divide by something else then.
+      // An element whose direction is uncertain may have the zero vector. A positive minimum avoids dividing by zero.
       const Floats square = hn::Max(Dot(u, u), hn::Set(kFloats, 0x1p-100f));
       StorePacked<false>(Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u), results[i].xyz + 3 * lane);
     }

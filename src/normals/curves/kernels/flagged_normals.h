@@ -20,14 +20,14 @@ namespace chronormal::inline internal {
 /// of float32.
 struct FlaggedNormals {
   ControlNormals normals;
-  /// n(t) has a direction if its largest component is above the quadratic with these control values. Each value is the
-  /// share smallest_certain() of a control normal, and large enough for float32 to hold the square of n(t). A value is
-  /// infinite if the element cannot be scaled.
+  /// The control values of a quadratic: n(t) has a direction if its largest component is above this quadratic. Each
+  /// value is the share smallest_certain() of a control normal, and large enough for float32 to hold the square of
+  /// n(t). A value is infinite if the element cannot be scaled.
   std::array<float, 3> limits{};
   std::int16_t exponent = 0;  ///< the stored value is the element times 2^-exponent
 
-  /// Scales control normals whose n(t) has a direction if its largest component is above the share `certain` of sum w_k
-  /// max_abs(c_k) (certificate.h).
+  /// Scales the control normals of an element. Their n(t) has a direction if its largest component is above the share
+  /// `certain` of sum w_k max_abs(c_k) (certificate.h).
   [[nodiscard]] static FlaggedNormals scaled(const ControlNormals& normals, double certain) noexcept;
 };
 
@@ -54,7 +54,7 @@ struct alignas(64) FlaggedTile {
   }
 };
 
-/// Limits are rounded up, and none is below the least.
+/// The factor by which limits are rounded up, and the smallest limit.
 inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
 /// The unit normals of a tile.

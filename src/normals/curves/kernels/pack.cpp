@@ -41,17 +41,18 @@ struct PieceTest {
   Floats shortest_square;
 };
 
-// If a test of the whole piece is inconclusive, halves are tested down to this depth.
+// The depth down to which halves of a piece are tested if a test of the whole piece is inconclusive.
 inline constexpr int kPieceDepth = 2;
 
 HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }
 HWY_INLINE Lanes3 Middle(const Lanes3& a, const Lanes3& b) { return Scale(hn::Set(kFloats, 0.5f), a + b); }
 
-// Tests eq. 11, for whole pieces first and then for halves, until every lane is known or has `enough`, the square that
-// is wanted. The result of a lane does not depend on the other lanes.
+// Tests eq. 11, for whole pieces first and then for halves, until every lane is decided, or its |n(t)|^2 is known to be
+// at least `enough`. The result of a lane does not depend on the other lanes.
 template <int kDepth>
 HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floats enough) {
-  // This is a safe part of the ratio 3 up to which float32 is exact enough; docs/theory.md, section 13.
+  // The largest ratio for which float32 is exact enough is 3 (docs/theory.md, section 13). Its square is reduced from 9
+  // for safety.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f), third = hn::Set(kFloats, 1.0f / 3);
   const auto in_middle = [&](Floats ends, Floats middle)
                              HWY_ATTR { return hn::Mul(third, hn::Add(ends, hn::Add(middle, middle))); };
@@ -73,7 +74,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
-    // Both halves end at this point, so halving does not help a lane that is too short here.
+    // Both halves meet in this middle point, so halving does not help a lane whose n(t) is too short here.
     open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
     if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
@@ -83,10 +84,11 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
   }
 }
 
-// Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1, n(t).a >= min c(k).a for all t.
+// Tests the elements in some lanes. Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1,
+// n(t).a >= min c(k).a for all t.
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16,
                                Floats noise_square) {
-  // This is the ratio of TestPiece.
+  // The ratio is the one of TestPiece().
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 
@@ -124,7 +126,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
   const auto unknown = hn::AndNot(certain, in_range);
   if (!hn::AllFalse(kFloats, unknown)) {
-    // Eleven bits rarely suffice for such elements, unless the tolerance is large.
+    // Eleven bits rarely suffice for elements that come so close to zero, unless the tolerance is large.
     const Floats fewest = hn::Set(kFloats, 3.0f);
     const auto try11 = hn::Ge(square11, fewest), try16 = hn::Gt(square16, hn::Zero(kFloats));
     const Floats wanted = hn::IfThenElse(try11, square11, square16);
@@ -146,7 +148,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
 void SummarizeTiles(const ControlTile* tiles, std::size_t count, const PrecisionLimits& limits,
                     TileSummary* summaries) {
-  // The limits are reduced to a safe part, for the rounding of the tests themselves.
+  // The limits are reduced slightly, to make up for the rounding of the tests themselves.
   constexpr double kSafe = 0.99;
   const auto square = [](double ratio) { return static_cast<float>(kSafe * ratio * ratio); };
   const Floats square11 = hn::Set(kFloats, square(limits.largest_ratio11));
@@ -251,13 +253,14 @@ void PackQuadratic16(const ControlTile& tile, std::int32_t* to) {
   }
 }
 
-// Returns by how many powers of two the largest component of c is below `largest`, rounded down, and at most 31.
+// Returns the number of powers of two by which the largest component of c is below `largest`, rounded down, and at most
+// 31.
 HWY_INLINE Ints ExponentBelow(Floats largest, const Lanes3& c) {
   const auto field = [](Floats v) HWY_ATTR { return hn::ShiftRight<23>(hn::BitCast(kInts, v)); };
   const Floats own = MaxAbs(c);
   const Ints difference = hn::Sub(field(largest), field(own));
-  // The exponent is one less if the digits of own are above the digits of largest, so that own 2^e does not exceed
-  // largest.
+  // The exponent is one less if the fraction of `own` is above that of `largest`, so that own 2^e does not exceed
+  // `largest`.
   const auto fraction = [](Floats v) HWY_ATTR { return hn::And(hn::BitCast(kInts, v), hn::Set(kInts, 0x7FFFFF)); };
   const Ints one_less = hn::VecFromMask(kInts, hn::Gt(fraction(own), fraction(largest)));
   const Ints exponent = hn::Add(difference, one_less);
@@ -345,7 +348,7 @@ namespace chronormal::inline internal {
 
 PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   constexpr double kSqrt3 = 1.7320508075688772;
-  // A chord is turned into its angle, and some of the tolerance is left for the rounding of float32 itself.
+  // The tolerance is an angle, and errors are chords. Some of the tolerance is left for the rounding of float32 itself.
   const double error = 0.99 * (std::fmin(radians, kLargestTolerance) - 5e-7);
 
   PrecisionLimits limits;

@@ -12,8 +12,8 @@
 
 namespace chronormal::inline internal {
 
-/// Limits how short n(t) may get for each precision to keep a tolerance (docs/theory.md, section 13). A precision that
-/// cannot keep it at all has a limit of 0.
+/// The limits, for each precision, of how short n(t) may get if the blocks are to keep a tolerance (docs/theory.md,
+/// section 13). A precision that cannot keep the tolerance at all has a limit of 0.
 struct PrecisionLimits {
   /// The limits of M / |n(t)| for k11 and k16, where M is the largest absolute component of the control normals.
   double largest_ratio11 = 0, largest_ratio16 = 0;
@@ -25,7 +25,7 @@ struct PrecisionLimits {
   /// are added). So noise turns n(t) by less than 2^-24, and no control normal is below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
-  /// Above this tolerance, in radians, the difference between a chord and its angle would matter.
+  /// The largest tolerance in radians. Above it, the difference between a chord and its angle would matter.
   static constexpr double kLargestTolerance = 0.2;
   [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
   /// Returns the limits for tiles that were computed in float32, where `magnitude` is a bound on the error of a

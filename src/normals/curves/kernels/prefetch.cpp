@@ -8,8 +8,7 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // Several threads may pass the first line at once, and each of them takes a number here. Later threads do not
-  // increase the counter.
+  // Each thread that gets past the following comparison takes the number of a trial. Several threads may do so at once.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -48,8 +47,8 @@ class Rules {
   PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
 
  private:
-  // In small caches, a trial may find that other data has evicted the curves, and would then choose to prefetch too far
-  // ahead.
+  // Small working sets have fewer distances to try. Other data may have evicted their curves from the small cache
+  // during a trial, which would then choose to prefetch too far ahead.
   std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
 };
 

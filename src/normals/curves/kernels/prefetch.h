@@ -3,9 +3,9 @@
 ///
 /// Cores differ. One core is fastest if it prefetches 8 KiB or more ahead, another if it prefetches 2 KiB ahead, and a
 /// third needs no help and loses a third of its speed to prefetches. So the first passes over a working set try several
-/// distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance that was fastest in
-/// the median. Now and then the trials are repeated, since other work on the machine may have influenced them, and that
-/// work changes. Normals do not depend on the distance.
+/// distances in turn, with 128 KiB of curves each time. From then on, all threads use the distance with the shortest
+/// median time. Now and then the trials are repeated, since other work on the machine may have influenced them, and
+/// that work changes. Normals do not depend on the distance.
 ///
 ///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_

@@ -145,7 +145,7 @@ HWY_INLINE void SumRing(const PointColumns* points, std::size_t rows, ExactTile&
   }
 }
 
-// Returns at least the sum of the absolute products in any component, whichever ends the factors belong to.
+// Returns an upper bound of the sum of the absolute products in any component, whichever ends the factors belong to.
 HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, std::size_t lane) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -179,7 +179,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   };
   const auto distance = [&](std::size_t a, std::size_t b, std::size_t end) HWY_ATTR {
     const auto d = at(a, end) - at(b, end);
-    // The result is a little more, for the rounding of the difference.
+    // The bound is enlarged a little, for the rounding of the difference.
     return hn::Mul(hn::Set(kDoubles, 1 + 0x1p-20),
                    hn::PromoteTo(kDoubles, hn::Max(hn::Max(hn::Abs(d.x), hn::Abs(d.y)), hn::Abs(d.z))));
   };
@@ -193,7 +193,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   for (; r + 1 < rows; r += 2)
     add(distance(r, 0, 0), distance(r, 0, 1), distance(r + 1, r - 1, 0), distance(r + 1, r - 1, 1));
   if (r < rows) add(distance(r - 1, 0, 0), distance(r - 1, 0, 1), distance(r, 0, 0), distance(r, 0, 1));
-  // Each component has two of these products for each pair of points, and m is half of a sum.
+  // Each component has two of these products for each pair of points. m is half of a sum of such products.
   const std::size_t most_products = rows / 2 + 1;
   const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * static_cast<double>(most_products + 4));
   hn::Store(hn::Mul(share, n0), kDoubles, errors[0] + lane);
@@ -203,7 +203,8 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
 
 // ---- tiles ---------------------------------------------------------------------------------------------------------
 
-// Rounds the sums into the tile. Returns the bits of the elements with a component that may be nothing but rounding.
+// Rounds the sums to float32 in the tile. Returns the bits of the elements with a component that may be only rounding
+// error.
 HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows, const ExactTile& exact,
                                    ControlTile& tile) {
   std::uint32_t doubtful = 0;
@@ -216,7 +217,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);
       hn::Store(v, kFloats, tile.normals[k] + lane);
-      // A zero is not doubtful, unless a negative number was rounded to this zero.
+      // A zero is not doubtful, unless it is -0, to which a negative number may have been rounded.
       const auto has_bits =
           hn::MaskFromVec(hn::BitCast(kFloats, hn::VecFromMask(kInts, hn::Ne(hn::BitCast(kInts, v), hn::Zero(kInts)))));
       some = hn::Or(some, hn::And(has_bits, hn::Le(hn::Abs(v), error)));
@@ -412,7 +413,7 @@ void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<C
     ControlTile& tile = tiles[i / kTile];
     put(tile, i % kTile, normals);
     tile.degree[i % kTile] = degree(normals);
-    // Infinity tells the reader not to trust this tile, but to request the element in double.
+    // Infinity tells the reader not to trust this element of the tile, but to request it in double.
     tile.magnitude[i % kTile] = std::numeric_limits<float>::infinity();
   }
 }

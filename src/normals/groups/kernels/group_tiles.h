@@ -16,13 +16,13 @@
 
 namespace chronormal::inline internal {
 
-/// Writes tiles of elements, from the points on the paths around them (groups/rings.h). The first object for some
+/// A writer of tiles of elements, from the points on the paths around them (groups/rings.h). The first object for some
 /// groups makes these paths, which the groups keep.
 class GroupTiles {
  public:
-  /// Throws std::bad_alloc only. groups must outlive the object, belong to the topology of the segment, and have their
-  /// corners (or paths made before the corners were forgotten). `fetch` prefetches points, which pays if neighbours are
-  /// scattered in memory.
+  /// Prepares for the elements of groups. Throws std::bad_alloc only. groups must outlive the object, belong to the
+  /// topology of the segment, and have their corners (or paths made before the corners were forgotten). `fetch`
+  /// prefetches points, which pays if neighbours are scattered in memory.
   GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
   /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals() except

@@ -1,5 +1,5 @@
-// Computes triangles a few at a time, one per lane. Sums are computed one by one, each row in as few registers as the
-// machine has for four doubles.
+// Computes the areas of a few triangles at a time, one per lane. Sums are computed one by one, with a row of four
+// doubles in as few registers as possible.
 #include "normals/groups/kernels/vector_areas.h"
 
 #include <algorithm>

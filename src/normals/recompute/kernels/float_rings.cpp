@@ -58,7 +58,7 @@ HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t
 template <ResultLayout kLayout>
 HWY_INLINE std::size_t WriteUnit(const Lanes3& n, std::size_t place, const VectorView<float>& result) {
   const Floats square = Dot(n, n);
-  // This is false for NaN, too.
+  // NaN is out of range, too.
   const auto in_range =
       hn::And(hn::Ge(square, hn::Set(kFloats, 0x1p-126f)), hn::Le(square, hn::Set(kFloats, 0x1.fffffep127f)));
   const Floats scale = hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square));

@@ -49,7 +49,7 @@ HWY_INLINE Lanes4 LoadRows(const float* rows) {
       {RowsAt(rows, kOffsets), RowsAt(rows + 4, kOffsets), RowsAt(rows + 8, kOffsets), RowsAt(rows + 12, kOffsets)});
 }
 
-// Adds up x, y, z and error of normals in double.
+// A sum of normals and of their errors in double.
 template <std::size_t kRegisters>
 struct SumOf {
   using Tag = hn::CappedTag<double, 4 / kRegisters>;
@@ -247,7 +247,7 @@ HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to
 }
 template <int kHalf>
 HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
-  // Each of the two steps of Newton's method doubles the number of digits.
+  // 1 / |n| is refined by two steps of Newton's method, each of which doubles the number of correct digits.
   const Doubles half_square = hn::Mul(hn::Set(kDoubles, 0.5), Dot(n, n)), three_halves = hn::Set(kDoubles, 1.5);
   Doubles y = ToDouble<kHalf>(scale);
   for (int step = 0; step < 2; ++step) y = hn::Mul(y, hn::Sub(three_halves, hn::Mul(hn::Mul(half_square, y), y)));
@@ -267,8 +267,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  // The square is not multiplied by the largest share, since it may be infinite, and then would not be below an
-  // infinite product.
+  // A B is divided by the largest ratio. The square times this ratio could be infinite, and then even an infinite A B
+  // would count as small enough.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -290,7 +290,7 @@ HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   return !hn::AllFalse(kIndices, found);
 }
 
-// Prefetches this far ahead, enough for some 50 misses under way.
+// The numbers of faces, and of terms of sums, by which prefetches are ahead: enough for about 50 cache misses at once.
 constexpr std::size_t kFacesAhead = 48, kTermsAhead = 64;
 
 template <std::size_t kStride>
@@ -371,7 +371,7 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
                                  FaceNormal* result, std::uint32_t* doubtful) {
   std::size_t count = 0;
   const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
-    // The factor has 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
+    // The factor 3.32 has 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
     Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
     Lanes3 n = normals.n;
     if (HWY_UNLIKELY(!hn::AllTrue(kFloats, normals.trusted))) {
@@ -409,7 +409,7 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       Sum sum;
       const std::uint32_t* const faces_end = f + groups.faces(elements.first + i + k).size();
       if (!window.fetch && faces_end - f == 6) {
-        // A vertex has six faces far more often than any other number.
+        // Six faces are unrolled, since vertices have six faces far more often than any other number.
         for (int term = 0; term < 6; ++term) sum.Add(window.normals[f[term] & window.mask]);
         f = faces_end;
       }

@@ -29,7 +29,7 @@
 
 namespace chronormal::inline internal {
 
-/// Triangles are not thin if A B is at most this share of |n|^2: 2.31 sqrt(40) <= 14.7.
+/// The largest A B of a triangle that is not thin, in units of |n|^2: 2.31 sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
 /// Triangles as the kernels read them. Positions are packed, or paired as x0 y0 z0 _ x1 y1 z1 _ for each vertex.
@@ -48,7 +48,7 @@ struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
 
-/// Up to this multiple of |n|^2, the product A B leaves double precise enough. The remaining error is below kThinError
+/// The largest A B, in units of |n|^2, for which double is precise enough. The error that remains is below kThinError
 /// sqrt(A B), in units of 2^-24.
 inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
@@ -56,7 +56,7 @@ inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 struct NormalWindow {
   const FaceNormal* normals = nullptr;
   std::size_t mask = 0;
-  bool fetch = false;  ///< whether they are scattered in memory, and have to be prefetched
+  bool fetch = false;  ///< true if the normals are scattered in memory, and have to be prefetched
 };
 
 /// Writes the unit normals of a range of faces, and into `doubtful` the places in the range whose normals are not
