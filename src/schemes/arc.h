@@ -48,7 +48,7 @@ struct CircleFamily {
   } kind;
 
   CircleFamily(const Vec3d& start, const Vec3d& end) : u0(start), u1(end) {
-    // Below this sine, the direction of u0 x u1 is mostly rounding.
+    // The sine below which the direction of u0 x u1 is mostly rounding error.
     constexpr double kSmallestSine = 1e-10;
     const Vec3d normal = cross(u0, u1);
     if (length(normal) > kSmallestSine) {
@@ -63,7 +63,8 @@ struct CircleFamily {
     }
   }
 
-  /// Returns the arc from u0 to u1 about axis(phi): at most half a turn for phi in [-pi/2, pi/2], more beyond.
+  /// Returns the arc from u0 to u1 about axis(phi). It turns by at most half a turn for phi in [-pi/2, pi/2], and by
+  /// more for other phi.
   [[nodiscard]] Arc arc(double phi) const {
     if (kind == Kind::kEqual) return {{}, u0, {}, 0};
     Arc arc = arc_about(portable::cos(phi) * pole + portable::sin(phi) * bisector, u0, 0);
@@ -71,7 +72,7 @@ struct CircleFamily {
     return arc;
   }
 
-  /// Returns the phi of an axis, which should be as far from u0 as from u1.
+  /// Returns the phi of an axis. The axis should have the same angle to u0 as to u1.
   [[nodiscard]] double phi_of(const Vec3d& axis) const { return portable::atan2(dot(axis, bisector), dot(axis, pole)); }
 
   /// Returns the arc of phi = 0, which is vector slerp. Equal ends stay where they are; antipodal ends turn about a
@@ -79,8 +80,8 @@ struct CircleFamily {
   [[nodiscard]] Arc great_arc() const { return arc(0); }
 };
 
-/// Arcs at uniform speed that are played have this state: (cos, sin) of the current angle, and of the angle of one
-/// step.
+/// The number of planes of the state with which arcs at uniform speed are played: (cos, sin) of the current angle, and
+/// of the angle of one step.
 inline constexpr std::size_t kTurnPlanes = 4;
 
 inline void put_turn(double* state, double angle, double step_angle) {
@@ -100,7 +101,7 @@ inline void put_arc(double* c, const Arc& arc) {
   c[9] = arc.angle;
 }
 
-/// The parts that all policies on arcs at uniform speed share; a policy adds fit().
+/// The parts that all schemes on arcs at uniform speed share (curve_scheme.h); each adds its own fit().
 struct UniformArc {
   [[nodiscard]] std::size_t plane_count() const { return kArcPlanes; }
 

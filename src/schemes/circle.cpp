@@ -5,8 +5,8 @@
 //   circle:timed   reaches the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
 //                  the share of the arc that lies before the middle; monotone for every r in (0, 1)
 //
-// If the three normals do not span a circle (u1 = u0, or the middle one is equal or opposite to an end), both fall back
-// to slerp.
+// If the three normals do not span a circle (u1 = u0, or the middle one is equal or opposite to an end), both schemes
+// fall back to slerp.
 
 #include "schemes/arc.h"
 #include "schemes/makers.h"
@@ -34,7 +34,8 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     const double middle_angle = angle_along(arc, middle);
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
-  // A turn that float32 cannot show is no loss, so it does not count as a fallback; every other case does.
+  // A turn too small for float32 loses nothing, so it does not count as a fallback. Every other case without a circle
+  // does.
   constexpr double kInvisibleTurn = 1e-7;
   if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);

@@ -49,7 +49,7 @@ namespace chronormal::inline internal {
 /// One element while it is fitted.
 class ElementMotion {
  public:
-  /// Makes the i-th element of a block.
+  /// Creates the i-th element of a block.
   ElementMotion(const ElementBlock& block, std::size_t i)
       : segment_(*block.segment),
         element_(block.elements.first + i),
@@ -124,7 +124,7 @@ class BlockedValues {
 
   [[nodiscard]] CoefficientBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
   [[nodiscard]] float* data() noexcept { return values_.data(); }
-  /// Returns the bytes without the filling of the last block.
+  /// Returns the number of bytes, without the filling of the last block.
   [[nodiscard]] std::size_t bytes() const noexcept { return element_count_ * plane_count_ * sizeof(float); }
 
  private:
@@ -139,7 +139,7 @@ class BlockedValues {
   AlignedArray<float> values_;
 };
 
-/// A policy that computes by itself the values that all elements have in common at t.
+/// A policy that has its own shared(), which computes the values that all elements have in common at t.
 template <class Policy>
 concept SharesValues = requires(const Policy& policy, float* values) {
   policy.shared(0.0, values);
@@ -284,7 +284,8 @@ class CurveScheme final : public Scheme {
     }
   }
 
-  // The example is a face that turns from +x to +y, so that no formula takes a shortcut.
+  // Returns the coefficients of an example for counting operations: a face that turns from +x to +y, so that no formula
+  // takes a shortcut.
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
@@ -295,7 +296,7 @@ class CurveScheme final : public Scheme {
     return {c.begin(), c.end()};
   }
 
-  // Returns a triangle with edges to go with these control normals, for schemes that read the face itself.
+  // Returns the segment of the example, whose triangle has edges, for schemes that read the face itself.
   [[nodiscard]] static Segment example_segment() {
     static const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
     static const float from[] = {0, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,5 +1,5 @@
-/// The data of a scheme for a block, as the scheme evaluates them, for code that must know a scheme as a curve instead
-/// of through samples.
+/// The coefficients of a scheme for a block of elements, exactly as the scheme evaluates them. Certificates need these
+/// curves, and not samples of them.
 #ifndef CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 #define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 

@@ -76,7 +76,7 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
 
 std::optional<FramePair> edge_frames(const ElementMotion& element) {
   const EdgeMotion edges = edges_of(element);
-  // An edge of length zero has the direction in which it starts to grow, or in which it shrinks to zero.
+  // An edge of length zero gets the direction in which it begins to grow, or from which it has shrunk to zero.
   const Vec3d& u0 = element.start().vector;
   const Vec3d& u1 = element.end().vector;
   const Vec3d start = edges.start.e == Vec3d{} ? within_plane(edges.e_delta, u0) : edges.start.e;
@@ -89,9 +89,9 @@ std::optional<FramePair> polar_frames(const ElementMotion& element) {
   const auto frames = edge_frames(element);
   if (!frames) return std::nullopt;
 
-  // M maps the plane of the face to the plane of the face and u0 to u1, so its polar rotation is the rotation of the 2
-  // x 2 map between the planes. Over the edge frames that map is upper triangular, S = [s11 s12; 0 s22], and its
-  // rotation factor turns by atan2(s21 - s12, s11 + s22). The determinant of S is not negative.
+  // M (frames.h) maps the plane of the face at t = 0 to its plane at t = 1, and u0 to u1. So its polar rotation is the
+  // rotation of the 2 x 2 map between the planes. Over the edge frames that map is upper triangular, S = [s11 s12; 0
+  // s22], and its rotation factor turns by atan2(s21 - s12, s11 + s22). The determinant of S is not negative.
   const EdgeMotion edges = edges_of(element);
   const double e0x = dot(edges.start.e, frames->at_start.tangent), f0x = dot(edges.start.f, frames->at_start.tangent);
   const double f0y = dot(edges.start.f, frames->at_start.binormal);
@@ -148,8 +148,8 @@ Rotation shorter_rotation(const FramePair& frames) {
       v = {c2.x + c0.z, c1.z + c2.y, 1 + 2 * c2.z - trace};
       break;
   }
-  // Both q and -q are this rotation; w >= 0 gives the shorter arc. At exactly half a turn, v decides, so that the
-  // choice is always the same.
+  // The quaternions q and -q are the same rotation; the one with w >= 0 gives the shorter arc. At exactly half a turn w
+  // is 0, and the sign of v decides, so that the choice is always the same.
   if (w < 0) {
     w = -w;
     v = -v;

@@ -25,9 +25,10 @@ struct FramePair {
 [[nodiscard]] std::optional<FramePair> matrix_frames(const ElementMotion& element);
 /// Returns frames whose tangent is along the first edge of the face at both ends.
 [[nodiscard]] std::optional<FramePair> edge_frames(const ElementMotion& element);
-/// Returns frames in which F1 is F0 turned by the rotation factor of the polar decomposition of M.
+/// Returns frames in which F1 is F0 turned by the rotation of M (see matrix_frames()), by its polar decomposition.
 [[nodiscard]] std::optional<FramePair> polar_frames(const ElementMotion& element);
-/// Returns the edge frames, the second turned about its normal by an angle drawn from (seed, segment, element).
+/// Returns the edge frames, with the second frame turned about its normal by an angle that is drawn from (seed,
+/// segment, element).
 [[nodiscard]] std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed);
 
 /// A rotation about an axis.

@@ -30,13 +30,13 @@ class ScaledLinear {
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
     if (u0 == u1) return 1;
-    // An s beyond e^6 would be a jump; in float32 it would also cost digits at the other end.
+    // With s beyond e^6, the curve would practically jump, and in float32 the other end would lose digits.
     constexpr double kRange = 6;
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;
     for (std::size_t i = 0; i < kGrid; ++i)
       points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among the points
-    // An element of degree 1 is met exactly by the ratio of its areas.
+    // The ratio of the areas at both ends is exact for an element of degree 1, so it is one of the points.
     const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
     points[kGrid] = std::isnormal(areas) ? std::clamp(portable::log(areas), -kRange, kRange) : 0;
     std::sort(points.begin(), points.end());

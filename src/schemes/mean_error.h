@@ -49,7 +49,7 @@ class ExactSamples {
 
   /// Returns the mean angle between the exact normal and the arc, over t.
   [[nodiscard]] double mean_error(const Arc& arc) const {
-    // The position on the arc advances by a rotation of (cos, sin), so the loop has no sine.
+    // Positions on the arc follow from each other by a rotation, so the loop computes no sine.
     const double step_cosine = portable::cos(arc.angle / intervals_), step_sine = portable::sin(arc.angle / intervals_);
     double cosine = 1, sine = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {

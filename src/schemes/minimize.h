@@ -16,7 +16,7 @@ template <class F>
 [[nodiscard]] double minimize(std::span<const double> points, F f) {
   constexpr std::size_t kMaxPoints = 64, kMinima = 3;
   constexpr double kGolden = 0.6180339887498949;
-  // A bracket is narrow enough when it can only gain far less than anybody measures.
+  // A bracket is narrow enough if the gain that is left is far below what anybody measures.
   constexpr double kGain = 2e-3, kNarrowest = 1e-7;
   const std::size_t n = points.size();
   assert(0 < n && n <= kMaxPoints);
@@ -50,7 +50,7 @@ template <class F>
     while (b - a > kNarrowest) {
       offer(x1, f1);
       offer(x2, f2);
-      // The slope across the bracket bounds what is left to gain, for a smooth minimum or a kink.
+      // The slope across the bracket bounds the gain that is left, whether the minimum is smooth or a kink.
       const double span = b - a;
       if (std::fabs(f1 - f2) / (x2 - x1) * span < kGain * best && span < 1e-2) break;
       if (f1 <= f2) {

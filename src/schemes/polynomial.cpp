@@ -14,10 +14,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// An element that shrinks by more than this must not be played, since the error of the state is absolute
+// The factor beyond which an element shrinks too much to be played, since the error of the state is absolute
 // (docs/theory.md, section 4.9).
 constexpr double kMaxShrinkage = 4;
-// Between these sizes, squares of normals and of their differences are normal (not subnormal) numbers of float32.
+// The sizes between which squares of normals and of their differences are normal (not subnormal) numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
 // Returns whether the drift of an element stays within the stated bound.

@@ -41,7 +41,7 @@ struct OptimalQuaternion : UniformArc {
 
   static double best_phi(const ElementMotion& element, const CircleFamily& circles) {
     const ExactSamples exact(element.control_normals());
-    // Antipodal ends are half a turn apart about every axis of the family, both ways round.
+    // If the ends are antipodal, they are half a turn apart about every axis of the family, in both directions.
     const double limit = circles.kind == CircleFamily::Kind::kAntipodal ? kPi : kPi / 2;
     constexpr std::size_t kGrid = 21;
     std::array<double, kGrid + 4> points;

@@ -10,8 +10,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Relative to control normals of length 1, this length is below the rounding of float32, and its square is well above
-// zero.
+// A length, relative to control normals of length 1, that is below the rounding of float32 but whose square is well
+// above zero.
 constexpr double kVanishingLength = 1e-7;
 
 class Rational {

@@ -37,8 +37,8 @@ class Recompute final : public Scheme {
   [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
-  // Counts the corners of the faces, and six floats per vertex at both ends. On a closed triangle mesh a vertex serves
-  // 2 faces.
+  // Counts the indices of all corners, and six floats for each vertex, for both ends. A closed triangle mesh has half
+  // as many vertices as faces.
   [[nodiscard]] std::size_t bytes() const noexcept override {
     const std::size_t faces = segment_.topology == nullptr ? 0 : segment_.topology->face_count();
     if (faces == 0) return 0;

@@ -27,7 +27,7 @@ WeightBasis::WeightBasis(std::size_t degree, std::vector<Coefficients> weights, 
     : degree_(degree), weights_(std::move(weights)) {
   assert(degree >= 1 && degree <= kMostDegree);
   conversion_error_ = 32 * static_cast<double>(degree) * kUnitRoundoff * largest_sum;
-  // On each piece, a polynomial is at most its largest Bernstein coefficient.
+  // The sum is bounded piece by piece, since a polynomial is at most its largest Bernstein coefficient.
   const std::size_t pieces = 4 * degree;
   for (std::size_t i = 0; i < pieces; ++i) {
     double sum = 0;

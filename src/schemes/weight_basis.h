@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keep the part of a polynomial after t, or the part before it, in place: the halves of de Casteljau's triangle over
-/// all its Bernstein coefficients.
+/// Restrict a polynomial, given by its Bernstein coefficients, to the part after t or the part before t, in place, by
+/// de Casteljau's algorithm.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {
@@ -31,7 +31,8 @@ void restrict_in_place(std::span<T> p, double a, double b) {
 
 class WeightBasis {
  public:
-  /// Beyond this degree, Lagrange weights are so large that the result in float32 is mere rounding.
+  /// The largest degree. Lagrange weights of a higher degree are so large that results in float32 are mere rounding
+  /// error.
   static constexpr std::size_t kMostDegree = 27;
   using Coefficients = std::array<double, kMostDegree + 1>;
 
@@ -52,8 +53,8 @@ class WeightBasis {
   [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
 
  private:
-  // largest_sum is the largest sum of the |coefficients| of all weights at one place, without any cancellation in the
-  // weights.
+  // Makes a basis whose weights may cancel. largest_sum is the largest sum of the |coefficients| of all weights at one
+  // place, before any cancellation in the weights.
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
 
   std::size_t degree_;

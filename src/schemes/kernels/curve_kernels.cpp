@@ -58,7 +58,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 template <class F>
 HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
-  // Both are copied, so that the compiler sees that no store changes them.
+  // The result and the shared values are copied, so that the compiler sees that no store changes them.
   const BlockResult result = result_of_caller;
   const SharedValues common = shared;
 
@@ -123,8 +123,8 @@ auto Visit(Formula formula, Visitor visit) {
   }
 }
 
-// Calls write(first block, number of blocks, where) until all elements have their normals. A layout that vectors cannot
-// be stored in, and a last block that is not full, go through a buffer.
+// Calls write(first block, number of blocks, memory) until all elements have their normals. The memory is a buffer if
+// vectors cannot be stored in the layout of the result, and for a last block that is not full.
 template <class Write>
 void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;

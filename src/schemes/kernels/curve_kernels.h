@@ -50,7 +50,7 @@ enum class Formula {
 /// and of its square.
 [[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
 
-/// Refers to coefficients in blocks, aligned to 64 bytes. The memory is the caller's.
+/// A reference to coefficients in blocks, aligned to 64 bytes, in memory of the caller.
 struct CoefficientBlocks {
   const float* values = nullptr;
   std::size_t plane_count = 0;

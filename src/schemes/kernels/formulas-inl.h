@@ -39,8 +39,8 @@ HWY_INLINE Triple<S> normalized_or(const Triple<S>& v, const Triple<S>& fallback
   return select(has_length, scale * v, fallback);
 }
 
-// Adds up kCount vectors (0: all that there are) times shared weights, and normalises the sum. If the sum vanishes
-// (opposite ends meet in the middle) the result is the first vector.
+// The sum of kCount vectors (0: all that there are) times shared weights, normalised. If the sum vanishes, because
+// opposite ends meet in the middle, the result is the first vector.
 template <std::size_t kCount>
 struct WeightedSum {
   static constexpr std::size_t kPlanes = 3 * kCount, kStatePlanes = 3 * kCount;
@@ -68,7 +68,7 @@ struct WeightedSum {
   }
 };
 
-// Evaluates eq. 3 of the paper: three quadratics over the root of the quartic in the planes 9 to 13.
+// Eq. 3 of the paper: three quadratics over the root of a quartic, whose coefficients are in the planes 9 to 13.
 struct RationalQuadratic {
   static constexpr std::size_t kPlanes = 14;
 
@@ -78,7 +78,8 @@ struct RationalQuadratic {
         S(weights[0]) * vector_of(c, 0) + S(weights[1]) * vector_of(c, 1) + S(weights[2]) * vector_of(c, 2);
     S square = S(weights[3]) * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + S(weights[3 + k]) * c[9 + k];
-    // Below this share of the largest coefficient, the quartic has too few correct digits, so n is measured instead.
+    // If the quartic is below this share of its largest coefficient, too few of its digits are correct, so the length
+    // of n is computed from n itself.
     const auto has_digits = square > S(0.1f);
     const Triple<S> u = (S(1.0f) / sqrt(select(has_digits, square, S(1.0f)))) * n;
     if (!any(!has_digits)) return u;
@@ -88,8 +89,8 @@ struct RationalQuadratic {
 };
 
 // Returns (sine, cosine) of the current angle, and advances it by a step. The state holds (cos, sin) of the angle on
-// the arc, and of the angle of one step. The code rotates at each step. The Chebyshev recurrence x' = 2 cos(step) x -
-// x'' would need no sine, but loses digits a hundred times faster.
+// the arc, and of the angle of one step. Each step is a rotation. The Chebyshev recurrence x' = 2 cos(step) x - x''
+// would need no sine, but loses digits a hundred times faster.
 template <class S>
 HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   const S cosine = state[0], sine = state[1], step_cosine = state[2], step_sine = state[3];
@@ -98,7 +99,7 @@ HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   return {sine, cosine};
 }
 
-// Evaluates an arc about the origin: u0, q, A, and u(t) = cos(t A) u0 + sin(t A) q.
+// An arc about the origin, u(t) = cos(t A) u0 + sin(t A) q. Its planes are u0, q, A.
 struct GreatArc {
   static constexpr std::size_t kPlanes = 7, kStatePlanes = 4;
 
@@ -118,7 +119,7 @@ struct GreatArc {
   }
 };
 
-// Evaluates an arc about any centre (eq. 7): w, p, q, A.
+// An arc about any centre (eq. 7). Its planes are w, p, q, A.
 struct CircleArc {
   static constexpr std::size_t kPlanes = 10, kStatePlanes = 4;
 
@@ -138,7 +139,7 @@ struct CircleArc {
   }
 };
 
-// Evaluates an arc that passes the share in plane 10 at t = 1/2.
+// An arc that reaches the share in plane 10 of its angle at t = 1/2.
 struct TimedCircleArc {
   static constexpr std::size_t kPlanes = 11;
 
@@ -182,7 +183,7 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   return select(opposite, far, chord);
 }
 
-// Uses slerp in place of every linear interpolation of de Casteljau's triangle, over all vectors of the element.
+// De Casteljau's triangle over all vectors of the element, with slerp in place of every linear interpolation.
 struct SphericalDeCasteljau {
   static constexpr std::size_t kPlanes = 0;
 

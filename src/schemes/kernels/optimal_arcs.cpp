@@ -84,7 +84,7 @@ struct Bracket {
   Real at_low, at_middle, at_high;
 
   HWY_INLINE RealMask holds() const { return !((at_low < at_middle) | (at_high < at_middle)); }
-  // Returns by how much a convex function that has these three values can still fall below the middle one.
+  // Returns a bound of the amount by which a convex function with these three values can fall below the middle one.
   HWY_INLINE Real gain() const {
     const Real left = middle - low, right = high - middle;
     return larger_of((at_low - at_middle) * right / left, (at_high - at_middle) * left / right);
@@ -93,10 +93,10 @@ struct Bracket {
 
 HWY_INLINE Real3 unit(const Real3& v) { return (Real(1.0) / sqrt(dot(v, v))) * v; }
 
-// Returns tan(phi) of the best arcs, and NaN for an unknown best arc.
+// Returns tan(phi) of the best arcs, and NaN for elements whose best arc this search cannot find.
 HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) {
   const Real zero(0.0), one(1.0), none(std::numeric_limits<double>::quiet_NaN());
-  // The lengths must have squares that neither overflow nor vanish.
+  // Only elements are accepted whose normals at both ends have squares that neither overflow nor vanish.
   const auto has_length = [](const Real3& v) HWY_ATTR {
     const Real square = dot(v, v);
     return (square > Real(1e-200)) & (square < Real(1e200));
@@ -137,7 +137,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   good = good & (along > zero) & (absolute(g) < Real(kLargestG));
   if (!any(good)) return none;
 
-  // The first step moves the middle by a part of the mean error.
+  // The search starts with the arc through the middle normal and one arc on each side of it, at a distance that is a
+  // part of the mean error.
   Bracket bracket;
   bracket.middle = select(good, g, zero);
   bracket.at_middle = search.mean_error(bracket.middle);
@@ -172,8 +173,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     open = open & (bracket.gain() > larger_of(Real(kGain) * bracket.at_middle, Real(kNoError)));
     if (!any(open)) break;
     const Real left = bracket.middle - bracket.low, right = bracket.high - bracket.middle;
-    // Take the lowest point of the parabola through the three, and every third time the golden section of the longer
-    // side.
+    // The next arc is at the lowest point of the parabola through the three arcs, and every third time at the golden
+    // section of the longer side.
     const Real of_low = (bracket.at_low - bracket.at_middle) / left,
                of_high = (bracket.at_high - bracket.at_middle) / right;
     const Real sum = of_low + of_high;
@@ -188,7 +189,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     const Real x = bracket.middle + move;
     const Real at_x = search.mean_error(select(open, x, zero));
     const RealMask better = at_x<bracket.at_middle, to_right = move> zero;
-    // The point that is no longer the middle, or did not become it, is a new end.
+    // The old middle becomes an end if the new point is better. Otherwise the new point becomes an end.
     const Real end_x = select(better, bracket.middle, x), at_end = select(better, bracket.at_middle, at_x);
     const RealMask is_low = open & ((better & to_right) | !(better | to_right));
     const RealMask is_high = open & !is_low;

@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 
 /// Writes phi of eq. 6 for each element, and NaN for elements that are left to the other search. The mean error, as
 /// ExactSamples (mean_error.h) defines it, is within 0.01 percent of the least. Results have the same bits on every
-/// instruction set. Both must have the same size
+/// instruction set. normals and phis must have the same size
 void find_optimal_arcs(std::span<const ControlNormals> normals, std::span<double> phis) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -22,8 +22,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// A step evaluates as many elements as two vectors hold. If a formula is a long chain of operations, such as a sine, a
-// processor cannot look far enough ahead to stay busy with one vector after the other.
+// The number of elements that a step evaluates: as many as two vectors hold. If a formula is a long chain of
+// operations, such as a sine, a processor cannot look far enough ahead to stay busy with one vector after the other.
 inline constexpr std::size_t kStep = 2 * kLanes;
 
 // One number of each of kStep elements. Every operation is one IEEE operation on each number.
@@ -66,7 +66,8 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
   return {hn::IfThenElse(mask.low, a.low, b.low), hn::IfThenElse(mask.high, a.high, b.high)};
 }
 
-// Returns whether it holds for any of the elements. This lets a rare case be skipped, and never changes a result.
+// Returns true if a condition holds for any of the elements. Code uses this to skip rare cases, which never changes a
+// result.
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
