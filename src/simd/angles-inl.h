@@ -26,8 +26,8 @@ struct Real {
   Doubles v;
 
   Real() = default;
-  // Both constructors convert implicitly on purpose, so that a formula with lanes and numbers reads like a formula with
-  // double.
+  // The following two constructors convert implicitly on purpose, so that a formula with lanes and numbers reads like a
+  // formula with double.
   HWY_INLINE Real(Doubles of_v) : v(of_v) {}                      // NOLINT(google-explicit-constructor)
   HWY_INLINE Real(double value) : v(hn::Set(kDoubles, value)) {}  // NOLINT(google-explicit-constructor)
   static HWY_INLINE Real load(const double* from) { return hn::LoadU(kDoubles, from); }
@@ -56,7 +56,7 @@ HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(ma
 HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
 HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
 HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
-// The result is b if a or b is NaN.
+// Return the larger and the smaller of two numbers, or b if one of the two is NaN.
 HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
 HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
 // Tells whether the sign bit is set, also for -0.
@@ -77,7 +77,7 @@ HWY_INLINE Real dot(const Real3& a, const Real3& b) { return a.x * b.x + a.y * b
 HWY_INLINE Real3 cross(const Real3& a, const Real3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-// Like core/vec3.h, the function ignores components that are NaN.
+// Returns the largest absolute component. Components that are NaN are ignored, as in core/vec3.h.
 HWY_INLINE Real max_abs(const Real3& a) {
   const Real x = absolute(a.x), y = absolute(a.y), z = absolute(a.z);
   const Real largest = larger_of(z, larger_of(y, x));
@@ -104,8 +104,8 @@ HWY_INLINE Real arc_tangent(Real q) {
   return series * (x * q) + q;
 }
 
-// Returns the angle of the vector (x, y) with y >= 0, in [0, pi]: 0 for the zero vector, pi if its x is -0. Both must
-// be finite, or the result is NaN.
+// Returns the angle of the vector (x, y) with y >= 0, in [0, pi]: 0 for the zero vector, pi if its x is -0. If x or y
+// is not finite, the result is NaN.
 HWY_INLINE Real upper_angle(Real y, Real x) {
   const Real ax = absolute(x);
   const RealMask steep = y > ax;

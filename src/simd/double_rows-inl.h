@@ -21,7 +21,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// A row takes one register if a register holds four doubles, else two, or four if Highway is plain C++.
+// The number of doubles of a row in one register. A row takes one register if a register holds four doubles, otherwise
+// two, or four if Highway is plain C++.
 inline constexpr std::size_t kRowStep = kDoubleLanes < 4 ? kDoubleLanes : 4;
 using DoubleRowTag = hn::CappedTag<double, kRowStep>;
 
@@ -64,7 +65,7 @@ struct DoubleColumns {
   Doubles w;
 };
 
-// Returns columns whose lane i is from the row at row(i).
+// Returns four columns. Lane i of each column is a component of the row at row(i).
 template <class RowOf>
 HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
 #if HWY_TARGET == HWY_SCALAR

@@ -1,6 +1,6 @@
 // Finds the smallest and the largest of a list of indices.
 //
-// Included once for each instruction set, as lanes-inl.h.
+// This file is included once for each instruction set, as lanes-inl.h is.
 
 #include "simd/highway-inl.h"
 

@@ -55,7 +55,7 @@ HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 template <bool kStream>
 HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 #if HWY_TARGET == HWY_AVX3
-  // Two permutations per vector replace the generic ones by 128-bit pieces.
+  // Each vector takes two permutations, in place of the general ones of pieces of 128 bits.
   const auto index = [](int a0, int a1, int a2, int b0, int b1, int b2, int c0, int c1, int c2, int d0, int d1, int d2,
                         int e0, int e1, int e2, int f0) HWY_ATTR {
     return _mm512_setr_epi32(a0, a1, a2, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1, e2, f0);
@@ -90,7 +90,7 @@ HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 template <class AddressOf>
 HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #if HWY_TARGET == HWY_AVX3
-  // A load that fills some of the lanes needs no permutation, as insertions do.
+  // A load that fills only some of the lanes needs no permutation, unlike an insertion.
   __m512 blocks = _mm512_castps128_ps512(_mm_loadu_ps(address(0)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x00F0, _mm_loadu_ps(address(1)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x0F00, _mm_loadu_ps(address(2)));
@@ -116,8 +116,9 @@ HWY_INLINE Doubles OddPairs(Doubles a, Doubles b) {
 #endif
 }
 
-// Returns the k-th of four vectors with all rows of four doubles at row(i), in the order in which interleaving
-// neighbours and then EvenPairs() and OddPairs() leave lane i of row i. Vectors have four doubles, or eight on AVX-512.
+// Loads the rows of four doubles at row(i) into four vectors, and returns the k-th of these. The rows are placed so
+// that they become columns, with row i in lane i, if neighbouring vectors are interleaved and the results passed to
+// EvenPairs() and OddPairs(). Vectors have four doubles, or eight on AVX-512.
 template <class RowOf>
 HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #if HWY_TARGET == HWY_AVX3
@@ -151,7 +152,7 @@ HWY_INLINE void StoreTwoColumns(Doubles a, Doubles b, double* to, std::size_t st
 template <class ColumnOf>
 HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_t stride) {
 #if HWY_TARGET == HWY_AVX3
-  // Neighbours are joined in pairs, fours, and eights.
+  // Neighbouring columns are joined to pairs, then to fours, and then to eights.
   __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the columns 2 i and 2 i + 1
   for (std::size_t i = 0; i < 4; ++i) {
     even[i] = _mm512_unpacklo_pd(column(2 * i).raw, column(2 * i + 1).raw);

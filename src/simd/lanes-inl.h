@@ -73,7 +73,7 @@ HWY_INLINE Ints RoundToInt(Floats v) {
   return hn::Sub(hn::BitCast(kInts, hn::Add(v, large)), hn::BitCast(kInts, large));
 }
 
-// Stores a vector; with kStream past the caches, for which `to` must be aligned to a vector.
+// Stores a vector. With kStream the store bypasses the caches, and `to` must be aligned to a vector.
 template <bool kStream>
 HWY_INLINE void StoreOne(Floats v, float* to) {
   if constexpr (kStream) {

@@ -19,8 +19,8 @@
 #error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif
 
-// This is the only place that uses instructions by name. Compilers do not find these instructions by themselves without
-// flags.
+// The following intrinsics are the only instructions that this file uses by name. Compilers do not find these
+// instructions by themselves without flags.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1
@@ -63,7 +63,7 @@ HWY_INLINE void Prefetch([[maybe_unused]] const T* place) {
 #endif
 }
 
-// Ends the stores of Stream().
+// Completes the stores of Stream(), so that other threads see them.
 HWY_INLINE void FlushStream() {
 #ifdef CHRONORMAL_PLAIN_SSE2
   _mm_sfence();
@@ -72,7 +72,7 @@ HWY_INLINE void FlushStream() {
 
 namespace N_PLAIN {
 
-// Names a kind of vectors: kLanes numbers of type T.
+// A kind of vectors, which have kCount numbers of type T.
 template <class T, std::size_t kCount>
 struct Simd {
   using Lane = T;
@@ -239,7 +239,7 @@ template <class D>
 HWY_INLINE void Store(const Vec<D>& v, D d, typename D::Lane* to) {
   StoreU(v, d, to);
 }
-// Stores past the caches, if the compiler can.
+// Stores a vector, bypassing the caches if the compiler supports this.
 template <class D>
 HWY_INLINE void Stream(const Vec<D>& v, D d, typename D::Lane* to) {
 #ifdef CHRONORMAL_PLAIN_SSE2
@@ -467,7 +467,7 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t count) {
 
 // ---- other types
 
-// Converts from float to integers, by the whole part.
+// Converts floats to integers by dropping their fractions.
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> ConvertTo(D, const Vector<T, kCount>& v) {
   return {Converted<Raw<typename D::Lane, kCount>>(v.raw)};
@@ -500,7 +500,7 @@ HWY_INLINE Vector<std::int32_t, 4> RearrangeToOddPlusEven(const Vector<std::int3
 
 // ---- lanes in other places
 
-// Picks the lanes kFrom... of a and, counted on, of b.
+// Picks the lanes kFrom..., which are numbered through a and then through b.
 template <class D, std::size_t kCount, std::size_t... kFrom>
 HWY_INLINE Vec<D> Picked(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                          std::index_sequence<kFrom...>) {

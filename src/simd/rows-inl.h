@@ -1,6 +1,6 @@
 // Vectors of doubles beside vectors of floats, and rows of four floats that become lanes.
 //
-// Included once for each instruction set, as lanes-inl.h.
+// This file is included once for each instruction set, as lanes-inl.h is.
 
 #include "simd/highway-inl.h"
 
@@ -18,7 +18,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// A vector of floats makes two of doubles; a single lane (Highway's plain C++) makes one.
+// The number of doubles in a vector. A vector of floats becomes two vectors of doubles, or one if it has a single lane
+// (Highway's plain C++).
 inline constexpr std::size_t kDoubleLanes = kLanes > 1 ? kLanes / 2 : 1;
 using DoubleTag = hn::CappedTag<double, kDoubleLanes>;
 using HalfFloatTag = hn::Rebind<float, DoubleTag>;
@@ -51,7 +52,8 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
-// Joins both halves of the lanes, in the range of float. A single lane is the lower one.
+// Joins both halves of the lanes, whose values must be in the range of float. If there is a single lane, it is the
+// lower one.
 HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::DemoteTo(kFloats, lower);
@@ -81,7 +83,8 @@ struct Lanes4 {
   HWY_INLINE Lanes3 xyz() const { return {x, y, z}; }
 };
 
-// Columns(row) returns the columns of a matrix with a row of four floats for each lane, row(i).
+// The following function Columns(row) returns the columns of a matrix. The matrix has a row of four floats, at row(i),
+// for each lane i.
 #if HWY_TARGET == HWY_SCALAR
 
 using Row = Lanes4;

@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 /// Returns the target that runs now.
 [[nodiscard]] std::int64_t current_target();
 
-/// Runs all kernels on one instruction set while it lives. Other threads must not run kernels meanwhile.
+/// Runs all kernels on one instruction set while the object lives. Other threads must not run kernels meanwhile.
 class ScopedTarget {
  public:
   explicit ScopedTarget(std::int64_t target);

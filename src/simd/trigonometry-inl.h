@@ -62,7 +62,8 @@ HWY_INLINE SinCos<S> sin_cos(const S& x) {
 
 template <class S>
 HWY_INLINE S upper_angle(const S& y, const S& x) {
-  // The code computes atan of a quotient in [0, 1], folded once more at tan(pi/8), then unfolds the result by octant.
+  // The arc tangent of a quotient in [0, 1] is computed, with quotients above tan(pi/8) folded once more. The octant of
+  // the vector then gives the angle.
   const S zero(0.0f);
   const S ax = absolute(x), larger = larger_of(y, ax), smaller = smaller_of(y, ax);
   const auto steep = y > ax;
