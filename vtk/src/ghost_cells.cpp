@@ -56,7 +56,8 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() drops the flags of the cells that stay, so the flags get another name for the moment.
+  // RemoveGhostCells() also drops the ghost flags of the cells that stay. So the flags get another name until it is
+  // done.
   const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
   for (vtkDataSetAttributes* const attributes : all) {
     vtkDataArray* const flags = attributes->GetArray(kFlags);

@@ -192,8 +192,8 @@ struct Vectors {
 
 // The faces whose control normals each element adds up.
 struct Groups {
-  // Calls for_pairs(body) twice; it must call body(element, face) for each face of each element, in the same order both
-  // times.
+  // Calls for_pairs(body) twice. for_pairs must call body(element, face) for each face of each element, in the same
+  // order both times.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
     // This is a counting sort: ends[e + 1] first counts the faces of e; then ends[e] is the first index of e, and

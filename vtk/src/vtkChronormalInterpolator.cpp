@@ -37,7 +37,7 @@ struct vtkChronormalInterpolator::Request {
   std::vector<double> times;  // times of the steps
   std::size_t from = 0;       // the earlier of the two steps around the time
   double t = 0;               // from 0 at that step to 1 at the next step
-  int ghosts = -1;            // levels of ghost cells to keep, or -1 for a whole
+  int ghosts = -1;            // levels of ghost cells to keep, or -1 if there are no pieces
   std::string place;          // place in composite data, for messages
 };
 
@@ -51,7 +51,8 @@ bool has_normals(vtkDataSet* data) {
   return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
 }
 
-// Tells whether an array holds names and not amounts: ids, ghost flags, and texts. Names must not be interpolated.
+// Tells whether the values of an array are names and not amounts: ids, ghost flags, and texts. Names must not be
+// interpolated.
 bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
   return array == of->GetGlobalIds() || array == of->GetPedigreeIds() ||
          array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
@@ -124,7 +125,8 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
   const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  // vtkMultiTimeStepAlgorithm keeps steps of one piece. A request for information makes it forget the steps.
+  // vtkMultiTimeStepAlgorithm keeps steps whatever piece they belong to. So a request for another piece is preceded by
+  // a request for information, which makes it forget the steps.
   const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
   if (piece != this->KeptPiece) {
     vtkNew<vtkInformation> forget;

@@ -1,8 +1,8 @@
 /// A vtkTemporalInterpolator with true normals.
 ///
-/// It replaces vtkTemporalInterpolator in a pipeline. Positions and all other arrays are interpolated in the same way,
-/// but the normals of every vtkPolyData, alone or in blocks of composite data, are the true normals of the mesh at the
-/// requested time, and not mixtures of stored normals. See docs/simulation.md.
+/// The filter replaces vtkTemporalInterpolator in a pipeline. Positions and all other arrays are interpolated in the
+/// same way, but the normals of every vtkPolyData, alone or in blocks of composite data, are the true normals of the
+/// mesh at the requested time, and not mixtures of stored normals. See docs/simulation.md.
 ///
 /// Normals    Point normals are sums over the faces around a point, weighted by area; cell normals are the normals of
 ///            the cells. Both are of length 1, or (0, 0, 0) where there is no face. Normals of the input are replaced;
@@ -37,17 +37,17 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkChronormalInterpolator(const vtkChronormalInterpolator&) = delete;
   void operator=(const vtkChronormalInterpolator&) = delete;
 
-  /// Tells whether points without stored normals get normals; on by default.
+  /// Sets whether points without stored normals get normals; on by default.
   vtkSetMacro(ComputePointNormals, bool);
   vtkGetMacro(ComputePointNormals, bool);
   vtkBooleanMacro(ComputePointNormals, bool);
 
-  /// Tells whether cells without stored normals get normals; off by default.
+  /// Sets whether cells without stored normals get normals; off by default.
   vtkSetMacro(ComputeCellNormals, bool);
   vtkGetMacro(ComputeCellNormals, bool);
   vtkBooleanMacro(ComputeCellNormals, bool);
 
-  /// Tells how points move between steps; straight by default.
+  /// Selects the path of points between steps; a straight line by default.
   enum { LINEAR = 0, CATMULL_ROM = 1 };
   vtkSetClampMacro(Path, int, LINEAR, CATMULL_ROM);
   vtkGetMacro(Path, int);
