@@ -97,8 +97,8 @@ Result<Topology> topology_of(const chronormal_mesh* mesh) {
                             {mesh->corners, mesh->corners + offsets.back()});
 }
 
-// Checks a structure that begins with its size. A structure of a newer header may have further fields, which this
-// library does not know: they must be 0.
+// Checks a structure that begins with its size. A structure from a newer header may have further fields, which this
+// library does not know. Their bytes must be 0.
 template <class Struct>
 Status check_size(const Struct& given, const char* name) {
   const std::string place = std::string(name) + ".size";

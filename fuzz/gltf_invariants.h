@@ -178,7 +178,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
       reading.require(mesh.has_value(), "a track drives a mesh");
       if (mesh) detail::check_keys(track, document.meshes()[*mesh].target_count, keys.value(), reading);
     }
-    // Another animation may have this number as its name; then that animation is read twice.
+    // If another animation has this number as its name, that animation is read twice.
     options.animation = std::to_string(a);
     read_motion();
   }
