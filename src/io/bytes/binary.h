@@ -27,7 +27,7 @@ template <class T>
   return bit_cast<T>(raw);
 }
 
-/// Writes the bytes of a number to `at` and behind it.
+/// Writes the bytes of a number from `at` on.
 template <class T>
 void store(char* at, T value, std::endian order) noexcept {
   auto raw = bit_cast<std::array<char, sizeof(T)>>(value);
@@ -42,16 +42,17 @@ void append(std::string& text, T value, std::endian order) {
   text.append(raw.data(), raw.size());
 }
 
-/// Says what is wrong with a coordinate that is to be a float32; nullptr where it is fine.
+/// Returns the reason why float32 cannot hold a coordinate, or nullptr if it can.
 [[nodiscard]] inline const char* coordinate_fault(double value) noexcept {
   if (!std::isfinite(value)) return "the coordinate is NaN or infinite";
   if (std::fabs(value) > std::numeric_limits<float>::max()) return "the coordinate is too large for float32";
   return nullptr;
 }
 
-/// Reads count coordinates of the type Real, float or double, from the bytes at `at`, rounded to float32. Returns how
-/// many were read: fewer than count where the next one has a coordinate_fault(). The origin is subtracted before a
-/// coordinate is rounded; the first one is coordinate `first` of a list (V, 3).
+/// Reads up to `count` coordinates of type Real (float or double) from the bytes at `at`, subtracts the origin, and
+/// rounds them to float32. Stops before the first coordinate that has a coordinate_fault(), and returns the number of
+/// coordinates that were read. `first` is the index of the first coordinate in a list (V, 3); it tells which axis of
+/// the origin applies.
 template <class Real>
 [[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order, float* result,
                                            const std::array<double, 3>& origin = {}, std::size_t first = 0) noexcept {
@@ -64,8 +65,8 @@ template <class Real>
   return count;
 }
 
-/// Returns the bytes of numbers in this order: those of the array itself, or a copy in storage where the machine has
-/// another order.
+/// Returns numbers as bytes in the given byte order. The result is a view of `values` if the machine has this byte
+/// order, and otherwise a view of a copy in `storage`.
 [[nodiscard]] inline std::string_view bytes_of(std::span<const float> values, std::endian order, std::string& storage) {
   if (order == std::endian::native) return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
   storage.resize(values.size_bytes());

@@ -1,5 +1,6 @@
-/// Checksums (CRC-32, as in zip files) of bytes, of numbers, and of texts that carry their own. By them, journals,
-/// parts of shards and zip files tell what was damaged or belongs to something else. Private to io and workflow.
+/// Checksums (CRC-32, as in zip files) of bytes, of numbers, and of texts that end or begin with their own checksum.
+/// Journals, parts of shards and zip files use them to detect data that are damaged or belong to another run. Private
+/// to io and workflow.
 #ifndef CHRONORMAL_IO_BYTES_CHECKSUM_H_
 #define CHRONORMAL_IO_BYTES_CHECKSUM_H_
 
@@ -15,7 +16,8 @@ namespace chronormal::inline internal {
 /// Continues a checksum: `so_far` is the checksum of all bytes before these.
 [[nodiscard]] std::uint32_t checksum_of(std::string_view bytes, std::uint32_t so_far = 0);
 
-/// Returns the checksum of some bytes and of the second_size bytes behind them, from the checksums of both.
+/// Returns the checksum of two blocks of bytes in a row from the checksum of each block. `second_size` is the size of
+/// the second block in bytes.
 [[nodiscard]] std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
 
 /// A checksum that grows with numbers and is the same on machines of either byte order.
@@ -36,10 +38,11 @@ class NumberChecksum {
 
 /// Returns a text as a line with its checksum, "1a2b3c4d TEXT" and a line feed; the text has no line feed of its own.
 [[nodiscard]] std::string checked_line(std::string_view text);
-/// Returns the text of such a line, which is given without its line feed; nothing where it is damaged.
+/// Returns the text in a line that checked_line() made, or nothing if the line is damaged. Pass the line without its
+/// line feed.
 [[nodiscard]] std::optional<std::string_view> text_of_checked(std::string_view line);
 
-/// Adds the checksum of everything before it to the text of a JSON object, as its last member: {"a": 1} becomes
+/// Appends a last member with the checksum of all bytes before it to the text of a JSON object: {"a": 1} becomes
 /// {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
 [[nodiscard]] std::string with_checksum(std::string object);
 /// Returns true if a text ends with its checksum and was not changed since.

@@ -39,8 +39,8 @@ class Expansion {
 
   /// Returns the most bytes that may be asked for.
   [[nodiscard]] std::uint64_t most() const noexcept;
-  /// Checks that so many bytes may be asked for; 2^64 - 1 stands for more than can be counted. Errors: kInvalidInput;
-  /// the message gives the number of bytes, and the --max-expansion that allows it.
+  /// Checks that the file may ask for this number of bytes; pass 2^64 - 1 for a number that overflowed. Errors:
+  /// kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow it.
   [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
 
  private:

@@ -10,8 +10,8 @@
 namespace chronormal {
 namespace {
 
-// Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure.
-// `expected` is what the file has now.
+// Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure. `expected` is the
+// present size of the file.
 bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most, std::string& bytes) {
   const std::size_t first_block = std::max(std::size_t{1} << 16, expected + 1);
   std::size_t size = 0;
@@ -27,7 +27,7 @@ bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most
   return true;
 }
 
-// Refuses a large file that is nearly all holes: it would make us hold far more than there is of it.
+// Refuses a large file that is nearly all holes: we would hold far more bytes in memory than the file has on the disk.
 Status check_holes(int descriptor, std::uint64_t size, const std::string& place) {
   constexpr std::uint64_t kLarge = std::uint64_t{1} << 30;
   if (size <= kLarge) return Success{};
@@ -50,12 +50,13 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
   if (!status) return failure(place, errno);
   if (status->kind == FileStatus::Kind::kFolder)
     return Error{ErrorCode::kFailed, place, "this is a folder; name a file"};
-  // A device such as /dev/zero may have no end. Terminals are not among them: a key ends their input.
+  // A device such as /dev/zero may have no end. A terminal is accepted, because the user can end its input with a key.
   if (status->kind == FileStatus::Kind::kDevice)
     return Error{ErrorCode::kFailed, place, "this is a device, whose data may never end; name a file"};
 
   FileBytes file;
-  // Files of the kernel have no size. Most have an end, but the one with its messages waits for more.
+  // The kernel's own files, as in /proc, report size 0. Most of them have an end, but reading the kernel's log waits
+  // for more messages.
   const bool has_no_size = !is_stdin && status->is_file() && status->size == 0;
   if (has_no_size) never_wait(descriptor);
   if (!is_stdin && status->is_file() && !has_no_size) {

@@ -1,5 +1,5 @@
-/// Files as bytes, read by memory mapping, or from memory where the caller has them there, or part by part. Private to
-/// io and the program; chronormal/io/output.h writes files.
+/// Files as bytes: mapped into memory, taken from the caller's memory, or read part by part. Private to io and the
+/// program; chronormal/io/output.h writes files.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_BYTES_FILE_H_
@@ -19,7 +19,7 @@
 
 namespace chronormal::inline internal {
 
-/// The most bytes that are read of a pipe, a terminal, or a file without a size, since these are held in memory.
+/// The most bytes that are read from a pipe, a terminal, or a file without a size. They are all held in memory.
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
 /// Holds the bytes of a file as long as the object lives. A regular file is mapped: if another program shortens it
@@ -32,7 +32,8 @@ class FileBytes {
   /// stream of more than most_of_stream bytes.
   [[nodiscard]] static Result<FileBytes> open(const std::string& path, std::size_t most_of_stream = kMostOfStream);
 
-  /// Opens bytes that a resolver finds by the path, without a copy; without a resolver it opens the file, as above.
+  /// Returns the bytes that the function `resolve` finds for the path, without a copy. If `resolve` is empty, opens the
+  /// file as open() above does.
   [[nodiscard]] static Result<FileBytes> open(
       const std::string& path, const std::function<Result<std::string_view>(const std::string& name)>& resolve);
 
@@ -42,8 +43,8 @@ class FileBytes {
   FileBytes& operator=(const FileBytes&) = delete;
   ~FileBytes();
 
-  /// Releases the memory that holds what was read of a mapped file. Its bytes stay valid: the system reads them again
-  /// when they are looked at again.
+  /// Releases the memory that holds pages of a mapped file. bytes() stays valid: the system reads a page again when
+  /// somebody accesses it.
   void release() const noexcept;
 
   /// Returns all bytes; they are valid until the object is destroyed or moved from.
@@ -53,24 +54,24 @@ class FileBytes {
   FileBytes() = default;
 
   std::string_view view_;   // the mapping, or the memory of a resolver's owner
-  bool is_mapped_ = false;  // where false, view_ belongs to the resolver's owner
-  std::string owned_;       // the bytes where there is no view
+  bool is_mapped_ = false;  // if false, view_ points into the memory of a resolver's owner
+  std::string owned_;       // the bytes, if they were read and not mapped
 };
 
-/// A file whose parts are read wherever they lie, by a descriptor and without a mapping: it may be larger than memory,
+/// A file whose parts are read in any order, by a descriptor and without a mapping. So it may be larger than memory,
 /// and may be shortened while it is read.
 ///
 /// Threads    several may call read() at the same time.
 class PositionedFile {
  public:
-  /// Opens a regular file; returns nothing for any other, and for one that cannot be opened.
+  /// Opens a regular file. Returns nothing if the path is not a regular file or cannot be opened.
   [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
 
   /// Returns the size of the file in bytes when it was opened.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, where the file
-  /// has become shorter or the system refuses to read.
+  /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, if the file has
+  /// become shorter or the system refuses to read.
   [[nodiscard]] Status read(std::uint64_t at, std::span<char> bytes) const;
 
  private:

@@ -37,7 +37,7 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
       ErrorCode::kFailed, path,
       "this file is in the way of the journal, but is not one; remove the file, or choose another output"};
   if (!status->is_file()) return foreign;
-  // If the file system has no locks, two runs that write the same output are not noticed.
+  // If the file system has no locks, nothing detects two runs that write the same output.
   if (!lock_file(file) || !(status = status_of(file)) || status->is_removed)
     return Error{ErrorCode::kFailed, path,
                  "another run is writing to the same output; wait until that run has ended, or choose another output"};

@@ -4,11 +4,11 @@
 ///     1a2b3c4d {"chronormal": "0.2.0", ...}       the run: what decides its result, as a text that the caller chooses
 ///     5e6f7081 {"segment": 0, ...}                a record for each piece of work that was done, in order
 ///
-/// A line is the CRC-32 of a text in hexadecimal, a blank, the text, and a line feed. A record that was written only in
-/// part is noticed by that, and dropped with all records behind it; the line of the run itself is written all or
-/// nothing.
+/// A line is the CRC-32 of a text in hexadecimal, a blank, the text, and a line feed. The checksum reveals a record
+/// that was written only in part; the journal then drops this record and all records behind it. The first line, which
+/// names the run, is written completely or not at all.
 ///
-/// Threads    one journal belongs to one thread at a time, and to one process: it is locked.
+/// Threads    one journal belongs to one thread at a time, and to one process: its file is locked.
 #ifndef CHRONORMAL_IO_BYTES_JOURNAL_H_
 #define CHRONORMAL_IO_BYTES_JOURNAL_H_
 
@@ -25,8 +25,9 @@ namespace chronormal::inline internal {
 
 class Journal {
  public:
-  /// Opens the journal at path, whichever run it belongs to, or begins one for this run. A text has no line feeds.
-  /// Errors: kFailed with the path as the place, where it is no journal, another process has it, or the system refuses.
+  /// Opens the journal at path, whichever run it belongs to, or begins one for this run. The text `run` has no line
+  /// feeds. Errors: kFailed with the path as the place, if the file is not a journal, another process has locked it, or
+  /// the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
   /// The text of the run that began the journal, and the texts of its records.
@@ -39,7 +40,7 @@ class Journal {
 
   /// Writes a record behind the last one at once; records() does not list it. Errors: kFailed with the path
   [[nodiscard]] Status append(std::string_view record);
-  /// Keeps the first `count` of the records that there were when the journal was opened, and drops all others. Errors:
+  /// Keeps the first `count` of the records that the journal had when it was opened, and drops all others. Errors:
   /// kFailed with the path
   [[nodiscard]] Status keep_first(std::size_t count);
   /// Removes the file. Errors: kFailed with the path
@@ -54,8 +55,8 @@ class Journal {
   Descriptor file_;
   std::string run_;
   std::vector<std::string> records_;
-  std::size_t count_ = 0;            // all records, new ones included
-  std::vector<std::uint64_t> ends_;  // where the line of the run ends, and then each record
+  std::size_t count_ = 0;            // all records, including new ones
+  std::vector<std::uint64_t> ends_;  // offset at which the line of the run ends, and then the end of each record
 };
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,5 @@
-// A new file is a temporary sibling until it is whole; a stream takes bytes as they come.
+// Writes a new file as a temporary file in the same folder, which gets its name when it is whole. Writes to a stream at
+// once.
 #include "io/bytes/output_file.h"
 
 #include <algorithm>
@@ -37,19 +38,19 @@ Error exists_already(const std::string& path) {
 
 }  // namespace
 
-// The output is one of three: a stream of this process, a device or a pipe of the file system, or a new file.
+// The output is one of three kinds: a stream of this process, a device or pipe that has a path, or a new file.
 struct internal::OutputFile::State {
   std::string path;
   bool force = false;
   std::optional<int> stream = {};
   Descriptor device{-1};
-  std::string target = {};  // the file behind the symbolic links of path
-  bool replaces = false;    // whether target exists already, as:
+  std::string target = {};  // path with its symbolic links resolved
+  bool replaces = false;    // whether target already exists; `old` describes it
   FileStatus old = {};
   std::unique_ptr<TemporaryFile> file = {};
-  bool is_joined = false;  // whether another process gives the file its name
+  bool is_joined = false;  // whether another process will give the file its name
   bool is_sealed = false;
-  std::string gathered = {};  // what a stream or a device gets when it is finished
+  std::string gathered = {};  // bytes from put() to a stream or a device, which are written at the end
 
   [[nodiscard]] int descriptor() const noexcept {
     return stream ? *stream : file != nullptr ? file->descriptor() : device.number();
@@ -85,7 +86,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   state->force = force;
   state->stream = stream_of(path);
   if (state->stream) {
-    // The bytes that the program printed before are still in a buffer, and must come first.
+    // Bytes that the program printed before may still be in a buffer; they must come first.
     (void)std::fflush(*state->stream == kStandardError ? stderr : stdout);
     return OutputFile(std::move(state));
   }

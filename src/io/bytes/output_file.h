@@ -5,8 +5,8 @@
 ///     ... file.value().append(header); file.value().append(row);      // each a Status
 ///     ... file.value().finish();                                      // now the file is there
 ///
-/// An object that is destroyed before finish() leaves nothing behind, except on streams, which have received all that
-/// was appended.
+/// An object that is destroyed before finish() leaves no file behind. Bytes that were appended to a stream have already
+/// been sent.
 ///
 /// Threads    one file belongs to one thread at a time.
 #ifndef CHRONORMAL_IO_BYTES_OUTPUT_FILE_H_
@@ -28,15 +28,15 @@ class OutputFile {
   /// Begins a file. Errors: those of write_output() in chronormal/io/output.h that are known before a byte is written.
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
-  /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; 0 begins it. The bytes stand in the
-  /// file partial_name(path) until finish(), and stay there if the object or the process ends before. Errors: those of
-  /// create(); kUsage for a path that is no file.
+  /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; with 0, begins the file. Until
+  /// finish(), the bytes are in the file partial_name(path), and they stay there if the object or the process ends
+  /// early. Errors: those of create(); kUsage for a path that is not a file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
   [[nodiscard]] static std::string partial_name(const std::string& path);
-  /// Opens a file that another process has begun and whose temporary_name() is the name, to write other parts of it by
-  /// put(). That process must call finish() after the others have called seal(), and the others call finish() after it;
-  /// or they destroy the object, which removes the file. Both need the same file system. Errors: kFailed with path as
-  /// the place.
+  /// Opens a file that another process (the owner) has begun, to write other parts of it by put(). `name` is the
+  /// owner's temporary_name(). The order is: all others call seal(), then the owner calls finish(), then the others
+  /// call finish(). A process that destroys its object instead removes the file. All processes need the same file
+  /// system. Errors: kFailed with path as the place.
   [[nodiscard]] static Result<OutputFile> join(const std::string& path, const std::string& name);
   /// Returns the name that the file has until it is whole; empty for a stream or a device.
   [[nodiscard]] std::string temporary_name() const;
@@ -45,21 +45,21 @@ class OutputFile {
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();
 
-  /// Begins a spool for bytes whose place in this file is not yet known: in the folder of the file, or in memory if
-  /// this is a stream or a device. Errors: those of Spool::beside().
+  /// Begins a spool for bytes whose place in this file is not yet known. It lies in the folder of the file, or in
+  /// memory if the output is a stream or a device. Errors: those of Spool::beside().
   [[nodiscard]] Result<Spool> spool() const;
 
   /// Writes bytes behind everything that was appended.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }
-  /// Writes several pieces, one after the other, likewise.
+  /// Appends several pieces, one after the other.
   [[nodiscard]] Status append(std::span<const std::string_view> pieces);
 
   /// Writes bytes from byte `at` on. A stream gets them when it is finished, and they are all held in memory until
   /// then. A file must be written either by append() or by this function alone.
   [[nodiscard]] Status put(std::uint64_t at, std::string_view bytes);
 
-  /// Ends the file and closes its descriptor; finish() gives it its name later. By that, many files can be made
-  /// together, so that nobody reads one before all are whole. Nothing may be appended any more.
+  /// Ends the file and closes its descriptor; finish() gives it its name later. So several files can be completed
+  /// before any of them gets its name. Nothing may be appended after this call.
   [[nodiscard]] Status seal();
 
   /// Ends the file and gives it its name.

@@ -12,16 +12,16 @@
 
 namespace chronormal::inline internal::scan {
 
-/// Returns true for a blank inside a line. CR counts as one, so that CRLF needs no care.
+/// Returns true for a blank inside a line. CR counts as a blank, so lines that end in CRLF need no special case.
 [[nodiscard]] constexpr bool is_blank(char c) noexcept {
   return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Checks that bytes may be text, before lines are looked for in them. A text has no page of zero bytes, but a file has
-/// such pages where nothing was ever written, and may then seem to be a terabyte long. Errors: kInvalidInput with the
-/// place "NAME, byte N"
+/// Checks that bytes may be text, before they are searched for line ends. Text has no page of zero bytes, but a sparse
+/// file has such pages where nothing was ever written, and may seem to be a terabyte long. Errors: kInvalidInput with
+/// the place "NAME, byte N"
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
 /// Hands out the lines of a text without their ends, counted from 1.
@@ -52,7 +52,7 @@ class Lines {
   char separator_;
 };
 
-/// Takes the next word off the front of a line; returns an empty one at its end.
+/// Takes the next word off the front of a line; returns an empty word at the end of the line.
 [[nodiscard]] inline std::string_view take_word(std::string_view& line) noexcept {
   std::size_t first = 0;
   while (first < line.size() && is_blank(line[first])) ++first;
@@ -68,11 +68,12 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// Reads the whole word as a float32, rounded to nearest. A number that is too small becomes a denormal or 0.
 [[nodiscard]] NumberFault parse_float(std::string_view word, float& value) noexcept;
 
-/// Reads the whole word as a double in the range of float32; last_digit gets the unit of its last decimal digit.
+/// Reads the whole word as a double in the range of float32. `last_digit` gets the value of a 1 in the place of its
+/// last decimal digit: 0.001 for "1.250".
 [[nodiscard]] NumberFault parse_double(std::string_view word, double& value, double& last_digit);
 
 /// Takes the next word off a line if it is a number in plain digits that two exact operations can convert. The result
-/// is the one of parse_float(), in less time. Otherwise the line stays as it is.
+/// equals that of parse_float(), but takes less time. For any other word, returns false and leaves the line unchanged.
 [[nodiscard]] bool take_plain_float(std::string_view& line, float& value) noexcept;
 
 /// Reads the whole word as an integer.
@@ -81,10 +82,10 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// Returns the word in quotes, cut short and without control characters, for a message.
 [[nodiscard]] std::string quoted(std::string_view word);
 
-/// Says what is wrong with a word that did not parse: "'abc' is not a number".
+/// Returns the reason why a word did not parse: "'abc' is not a number".
 [[nodiscard]] std::string describe(NumberFault fault, std::string_view word);
 
-/// Appends the fewest digits that read back as the same number.
+/// Appends the shortest digits from which the same number is read back.
 template <class Number>
 void append_number(std::string& text, Number number) {
   char digits[32];

@@ -38,23 +38,24 @@ class Spool {
 
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-  /// Puts bytes behind all others. If that fails, status() has the error from then on, and nothing more is added.
+  /// Adds bytes behind all others. If that fails, status() has the error from then on, and nothing more is added.
   void add(std::string bytes);
-  /// Adds bytes that remain with the caller; a file needs no copy of them.
+  /// Adds bytes that the caller still owns. They are copied only if the spool is in memory.
   void append(std::string_view bytes);
   /// Forgets all bytes.
   void clear();
   [[nodiscard]] const Status& status() const noexcept { return status_; }
 
-  /// Gives the bytes from `at` on to take, until it returns an error. Bytes in memory live as long as the spool.
-  /// Errors: status(), and those of take. at + size must not exceed size()
+  /// Passes the bytes from `at` on to `take`, in parts, until `take` returns an error. Bytes in memory live as long as
+  /// the spool. Errors: status(), and those of take. at + size must not exceed size()
   [[nodiscard]] Status hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const;
 
-  /// Hands bytes over and forgets each part when take has it; its room on the disk becomes free again where the system
-  /// can do that. Nobody may ask for these bytes again.
+  /// Passes bytes to `take` like hand_over(), and forgets each part afterwards. The disk space of that part becomes
+  /// free again if the system supports it. These bytes must not be read again.
   [[nodiscard]] Status give_away(std::uint64_t at, std::uint64_t size, const Take& take);
 
-  /// Returns true if these bytes lie at `at`. If they cannot be read, status() has the error from then on.
+  /// Returns true if the bytes in the spool from `at` on equal `bytes`. If they cannot be read, status() has the error
+  /// from then on.
   [[nodiscard]] bool has(std::uint64_t at, std::string_view bytes);
 
  private:
@@ -66,7 +67,7 @@ class Spool {
   std::uint64_t size_ = 0;
   Status status_ = Success{};
   std::deque<Block> blocks_ = {};        // in memory; none is empty
-  std::optional<Descriptor> file_ = {};  // in place of blocks
+  std::optional<Descriptor> file_ = {};  // holds the bytes instead of blocks_
   std::string place_ = {};
 };
 

@@ -25,7 +25,7 @@ constexpr std::uint32_t kEnd64Word = 0x06064B50, kLocator64Word = 0x07064B50;
 constexpr std::size_t kMemberSize = 30, kEntrySize = 46, kEndSize = 22, kEnd64Size = 56, kLocator64Size = 20;
 constexpr std::uint16_t kStored = 0, kDeflated = 8, kZip64Field = 1;
 constexpr std::uint32_t kSaturated = 0xFFFFFFFF;  // "see the zip64 field"
-// No byte of deflated data stands for more than 1032 bytes, and a few come on top.
+// Limits the size of unpacked data: deflate stores at most 1032 bytes in one byte, and a few bytes more in total.
 constexpr std::uint64_t kMostPerByte = 1032, kSlack = 64;
 
 std::uint16_t load16(std::string_view text, std::size_t at) {
@@ -38,7 +38,8 @@ std::uint64_t load64(std::string_view text, std::size_t at) {
   return binary::load<std::uint64_t>(text.data() + at, kOrder);
 }
 
-// Finds the record at the very end of the file: the one whose comment has the length that it declares.
+// Finds the end record, which is the last part of the file. It ends with a comment whose length it declares, so the
+// record is where this length fits.
 std::optional<std::size_t> find_end(std::string_view file) {
   constexpr std::size_t kLongestComment = 0xFFFF;
   for (std::size_t comment = 0; comment <= kLongestComment && comment + kEndSize <= file.size(); ++comment) {
@@ -52,8 +53,8 @@ struct Directory {
   std::uint64_t begin = 0, size = 0, count = 0;
 };
 
-// Replaces numbers that do not fit into the last record by those of the zip64 record before it. Returns false if there
-// is none.
+// Replaces numbers that are too large for the end record by the numbers of the zip64 record before it. Returns false if
+// there is no zip64 record.
 bool read_end64(std::string_view file, std::size_t end, Directory& directory) {
   if (end < kLocator64Size || load32(file, end - kLocator64Size) != kLocator64Word) return false;
   const std::uint64_t at = load64(file, end - kLocator64Size + 8);
@@ -86,8 +87,8 @@ bool read_zip64_field(std::string_view extra, Member& member) {
   return false;
 }
 
-// Unpacks at most `most` bytes. The result has fewer if the data are damaged; at_end tells whether they ended well.
-// Throws std::bad_alloc if zlib gets no memory.
+// Unpacks at most `most` bytes. The result is shorter if the data end earlier or are damaged; at_end tells whether the
+// deflated data ended properly. Throws std::bad_alloc if zlib gets no memory.
 std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
   std::string result(most, '\0');
@@ -96,7 +97,7 @@ std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end
   if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw std::bad_alloc();
   std::size_t done = 0;
   int code = Z_OK;
-  unsigned char none = 0;  // where to put nothing, so that an empty result can end well
+  unsigned char none = 0;  // a place to write to, so that even an empty result can end properly
   while (code == Z_OK) {
     if (stream.avail_in == 0) {
       stream.avail_in = static_cast<uInt>(std::min(packed.size(), kMostAtOnce));
@@ -210,7 +211,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
 
 Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) {
   Frame frame;
-  std::uint64_t end = 0;  // where the file ends so far
+  std::uint64_t end = 0;  // offset at which the file ends so far
   std::string& directory = frame.directory.bytes;
   const auto put16 = [](std::string& text, std::uint64_t value) {
     binary::append(text, static_cast<std::uint16_t>(value), kOrder);

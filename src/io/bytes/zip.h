@@ -1,7 +1,7 @@
 /// Zip files: members stored or deflated, with zip64. Private to io.
 ///
-/// The directory at the end of the file says where each member is and how large. It is believed only if the member
-/// agrees. (PKWARE's APPNOTE defines the layout.)
+/// The directory at the end of the file gives the place and the size of each member. The reader believes it only if the
+/// header of the member agrees. (PKWARE's APPNOTE defines the layout.)
 #ifndef CHRONORMAL_IO_BYTES_ZIP_H_
 #define CHRONORMAL_IO_BYTES_ZIP_H_
 
@@ -30,11 +30,11 @@ struct Member {
 /// directory that does not lie inside it, the same name twice.
 [[nodiscard]] Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name);
 
-/// Reads the first `most` bytes of a member, or all of a shorter one: a view into file, or into storage if they had to
-/// be unpacked. The checksum is verified if all bytes are read. Takes no more memory than `most` bytes, and none for a
-/// size that deflate can not have reached.
-/// Errors: kInvalidInput with the place "NAME, MEMBER": encrypted, another method, data that are damaged or of another
-/// size than the directory says.
+/// Reads the first `most` bytes of a member, or all bytes of a shorter member. Returns a view into file, or into
+/// storage if the bytes had to be unpacked. The checksum is verified if all bytes are read. Never takes more than
+/// `most` bytes of memory, and refuses a declared size that deflate cannot produce before it takes memory. Errors:
+/// kInvalidInput with the place "NAME, MEMBER": encrypted, another method, data that are damaged or of another size
+/// than the directory says.
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
                                                    std::string& storage, const std::string& name);
 
@@ -45,8 +45,9 @@ struct StoredMember {
   std::uint32_t checksum = 0;
 };
 
-/// A zip file without the bytes of its members: the place of each header, which its member's bytes follow, and the
-/// records behind the last member. Checksums do not move any place, so they may be 0 until they are known.
+/// A zip file without the bytes of its members: the header of each member with its offset, and the records behind the
+/// last member. The bytes of a member follow its header. A checksum affects no offset, so it may be 0 until it is
+/// known.
 struct Frame {
   struct Header {
     std::uint64_t at = 0;
@@ -64,8 +65,8 @@ struct Part {
   std::string_view bytes;
 };
 
-/// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets from `zip64_from` on take zip64 fields;
-/// tests make it small.
+/// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets of at least `zip64_from` are written to
+/// zip64 fields; tests set it to a small number.
 [[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
 
 }  // namespace chronormal::inline internal::zip

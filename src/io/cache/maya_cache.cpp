@@ -144,7 +144,8 @@ Result<std::vector<std::string>> list_frame_files(const std::filesystem::path& f
   return files;
 }
 
-// Returns the first time that a regular channel should have and the sorted samples do not.
+// Returns the first time at which a regularly sampled channel should have a sample and has none. The samples must be
+// sorted.
 std::optional<std::int64_t> find_missing(const MayaCacheDescription::Channel& channel, const PositionCache& cache) {
   std::size_t k = 0;
   for (std::int64_t ticks = channel.start; ticks <= channel.end; ticks += channel.step, ++k) {
@@ -210,8 +211,9 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
     if (!list) return list.error();
     return use(opened.value().bytes(), list.value());
   };
-  // The first file decides which channel is meant, since in the others a channel that is sampled less often may be
-  // missing. It also decides the origin from which positions count; any file may tell whether they need it.
+  // The first file decides which channel is read, because a channel that is sampled less often may be missing from
+  // other files. The first file also decides the origin from which positions are measured. Every file is checked for
+  // positions that need the origin, because they have more digits than float32.
   maya::FarPoints far;
   for (const std::string& file : files) {
     const bool is_first = &file == files.data();

@@ -54,10 +54,10 @@ struct MayaCacheDescription {
 /// another root, unknown types and formats, malformed numbers, more than 16 MiB.
 [[nodiscard]] Result<MayaCacheDescription> read_maya_description(std::string_view bytes, const std::string& name);
 
-/// Reads a single .mc or .mcx file. Errors: kInvalidInput with the place "NAME, byte N", followed by channel and point
-/// for a coordinate that is not finite or too large: chunks that do not lie inside the one around them, or are in a
-/// meaningless order; no channel that the options choose, or several (the message names them); a channel whose number
-/// of points changes.
+/// Reads a single .mc or .mcx file. The place of an error is "NAME, byte N", followed by channel and point for a
+/// coordinate. Errors: kInvalidInput for a coordinate that is not finite or too large; chunks that do not lie inside
+/// their parent chunk, or are in a meaningless order; no channel that the options choose, or several (the message names
+/// them); a channel whose number of points changes.
 [[nodiscard]] Result<PositionCache> read_maya_points(std::string_view bytes, const std::string& name,
                                                      const CacheOptions& options = {});
 

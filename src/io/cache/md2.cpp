@@ -125,9 +125,9 @@ class Md2Reader {
     return Success{};
   }
 
-  // Sets the times of frames. Frames of one clip follow each other. A model of several clips is an animation in which
-  // each clip begins at the time at which the previous one ends: there are two keyframes at this time, and no segment
-  // between them.
+  // Sets the times of frames. The frames of a clip follow each other. A model of several clips becomes an animation:
+  // each clip begins at the time at which the previous clip ends, so there are two keyframes at this time, and no
+  // segment between these two.
   static void set_times(double frames_per_second, Motion& motion) {
     std::size_t clips = 1;
     double frame = 0;
@@ -143,8 +143,8 @@ class Md2Reader {
     motion.connect(are_clips ? MotionKind::kAnimation : MotionKind::kSequence);
   }
 
-  // Tells whether a frame begins another clip: run1 after stand02, and death201 after death106. Names without numbers
-  // tell nothing.
+  // Returns true if the names of two neighbouring frames show that a new clip begins: run1 after stand02, or death201
+  // after death106. Names without numbers show nothing.
   static bool begins_clip(const std::string& before, const std::string& name) {
     const auto digits_at = [](const std::string& text) {
       const std::size_t last = text.find_last_not_of("0123456789");
@@ -153,7 +153,7 @@ class Md2Reader {
     const std::size_t at = digits_at(name), at_before = digits_at(before);
     if (at == name.size() || at_before == before.size()) return false;
     if (name.compare(0, at, before, 0, at_before) != 0) return true;
-    // A name of MD2 has 16 characters.
+    // Names in MD2 have 16 characters, so these digits fit into 64 bits.
     constexpr std::size_t kMostDigits = 15;
     if (name.size() - at > kMostDigits || before.size() - at_before > kMostDigits) return false;
     const unsigned long long number = std::stoull(name.substr(at)), last = std::stoull(before.substr(at_before));

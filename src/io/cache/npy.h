@@ -45,21 +45,21 @@ struct Array {
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< other kinds; 2^64 - 1 if negative
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger
 
-  /// Returns "(2, 3, 3) of '<f4'", for messages.
+  /// Returns shape and type for messages: "(2, 3, 3) of '<f4'".
   [[nodiscard]] std::string text() const;
 };
 
-/// Reads the text of an array that is a single string of ASCII ("<U7", "|S7"), in the form of NumPy. bytes are all of
-/// the array. Errors: kInvalidInput with place.
+/// Reads an array that is a single string of ASCII ("<U7", "|S7"). `bytes` is the whole .npy file. Errors:
+/// kInvalidInput with place.
 [[nodiscard]] Result<std::string> read_text(std::string_view bytes, const std::string& place);
 
-/// Returns the bytes of such an array.
+/// Returns the .npy file of such a string.
 [[nodiscard]] std::string write_text(std::string_view text);
 
-/// Reads the header of an array of total_size bytes, of which `start` is the beginning (all bytes, or kLongestHeader +
-/// 12). Afterwards the sizes in `shape` do not overflow when multiplied, and the elements are exactly the bytes after
-/// data_begin; if more_may_follow, they are the first data_end() - data_begin of these. Errors: kInvalidInput with
-/// place, and a message that says what is wrong.
+/// Reads the header of an array of total_size bytes. `start` is its beginning: all bytes, or the first kLongestHeader +
+/// 12. Afterwards the product of the sizes in `shape` does not overflow, and the elements fill the bytes from
+/// data_begin to data_end() exactly. Bytes behind data_end() are refused unless more_may_follow. Errors: kInvalidInput
+/// with place, and a message that says what is wrong.
 [[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
                                         bool more_may_follow = false);
 

@@ -1,4 +1,4 @@
-// Reads the arrays of NumPy files as a motion, completely or as a layout, and writes motions as arrays.
+// Reads NumPy files as a motion, with its positions or only with their layout, and writes motions as arrays.
 #include "io/cache/npz.h"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ Status check_positions(const Array& array, const std::string& place, const std::
       place, what + " must be an array (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
-// Returns the layout of positions in C order, in a file that has the array from byte `begin` on.
+// Returns the layout of positions in C order. The array begins at byte `begin` of its file.
 CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
@@ -53,9 +53,9 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin from which positions are measured, by the first sample of an array with data. It is (0, 0, 0) if no
-// sample has more digits than float32. In an array that is too large to examine, only the first, the middle and the
-// last sample are examined.
+// Finds the origin from which positions are measured. The first sample decides its value; it is (0, 0, 0) if no sample
+// has more digits than float32. If the array is too large to examine, only the first, the middle and the last sample
+// are examined.
 Origin origin_of(const Array& array) {
   constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;  // coordinates
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
@@ -116,8 +116,9 @@ constexpr const char* kPadded =
     "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
     "faces.reshape(-1, 4)[:, 1:]";
 
-// Tells whether each row of so many numbers begins with the number of the others. Polygons around a vertex with that
-// number do so too, but they have it only once, and share no edge on the far side.
+// Returns true if each row of `width` numbers begins with the number of corners that follow, width - 1. The faces
+// around vertex number width - 1 may begin like this too, but such faces contain that number once, and share no edge
+// opposite to it.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);
@@ -290,15 +291,15 @@ class Archive {
     return nullptr;
   }
 
-  // Checks against the limit that an array may take memory, as bytes and as numbers, in addition to everything that was
-  // read before.
+  // Checks that the limit of expansion allows the memory of an array, as bytes and as numbers, in addition to
+  // everything that was read before.
   [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
     constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
     const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;
     asked_ += 2 * std::min(member.size, kMost) + kBytesPerRow * std::min(rows, kMost);
     return expansion_.check(asked_, place(member.name.substr(0, member.name.find('.'))));
   }
-  // This is larger than any real size; adding a few cannot overflow.
+  // An upper bound for one size, larger than any real size. Adding a few of them cannot overflow.
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
   std::string_view bytes_;
@@ -309,8 +310,8 @@ class Archive {
   std::string storage_;
 };
 
-// Reads a motion. With a layout, positions that can be read sample by sample stay in the file, and the layout tells
-// their place.
+// Reads a motion. If `layout` is not nullptr, positions that can be read sample by sample stay in the file, and
+// `layout` gets their place.
 Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
                                std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);
@@ -354,7 +355,7 @@ Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, 
     if (!read) return read.error();
     kind = read.value();
   }
-  // Targets have no times, but each has all of its weight at the end of its segment.
+  // Targets have no times in the file. Here each target's segment goes from time 0 (weight 0) to time 1 (weight 1).
   for (std::size_t k = 0; k < cache.value().samples.size() && kind == MotionKind::kTargets; ++k)
     cache.value().samples[k].time = k == 0 ? 0 : 1;
   Result<Motion> motion = motion_from_cache(std::move(topology).value(), std::move(cache).value(), name, name, kind);

@@ -50,9 +50,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// Reads a motion, but leaves positions that are stored in C order in the file: `layout` tells their place, the
-/// keyframes have no positions, and the checksum of the positions is not verified. Other positions are read, and
-/// `layout` has no value.
+/// Reads a motion, but leaves positions in the file if they are stored uncompressed and in C order. Then `layout` gets
+/// their place, the keyframes have no positions, and the checksum of the positions is not verified. Otherwise the
+/// positions are read, and `layout` has no value.
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
@@ -73,8 +73,7 @@ namespace chronormal::inline internal {
 /// array cannot represent; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
-/// Builds the bytes of a .npy file: an array in C order, little endian, that is filled from its first element to its
-/// last.
+/// Builds the bytes of a .npy file: an array in C order, little endian, whose elements are appended in order.
 class NpyBytes {
  public:
   /// Begins an array of float32.
@@ -95,7 +94,8 @@ class NpyBytes {
   std::string bytes_;
 };
 
-/// Returns the faces of a mesh in the form of write_npz(). Errors: kUsage for faces of different numbers of corners.
+/// Returns the faces of a mesh as a .npy file, in the form that write_npz() uses. Errors: kUsage for faces with
+/// different numbers of corners.
 [[nodiscard]] Result<std::string> write_npy_faces(const Topology& topology);
 
 struct NpzMember {
@@ -106,7 +106,7 @@ struct NpzMember {
 /// Returns a .npz file of arrays, stored.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
-/// Returns the bytes of positions (V, 3) as float64, to which their origin was added.
+/// Returns the bytes of positions (V, 3) as float64, with the origin added.
 [[nodiscard]] std::string placed_bytes(std::span<const float> positions, const Origin& origin);
 
 /// Writes a .npz file of uncompressed arrays, several of which may grow at the same time.
@@ -117,12 +117,13 @@ struct NpzMember {
 ///     ... npz.begin(); npz.append(normals, row); ... npz.finish(); file.finish();      // each a Status
 class NpzOutput {
  public:
-  /// The file must outlive this object.
+  /// Begins a .npz file in `file`, which must outlive this object.
   explicit NpzOutput(OutputFile& file) : file_(&file) {}
 
   /// Adds an array that is whole.
   void add(const NpzMember& member);
-  /// Adds an array of float32, or of float64, in C order that grows, and returns its number for append().
+  /// Adds an array in C order, of float32 or float64, whose elements are appended later. Returns its number for
+  /// append().
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape,
                                         bool is_double = false);
 
@@ -130,10 +131,10 @@ class NpzOutput {
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
-  /// join() continues a file that another process has begun (OutputFile::join()), after the same arrays were added.
-  /// skip() skips the bytes of a growing array that other processes write. The process that has called begin() calls
-  /// finish(), but first add_checksum() for the data that each of the others, in order, has appended to each growing
-  /// array.
+  /// Several processes can write one file together by these functions. join() continues a file that another process
+  /// has begun (OutputFile::join()); add the same arrays before. skip() skips the bytes of a growing array that other
+  /// processes write. The process that called begin() ends the file: it calls add_checksum() for the data of each other
+  /// process and each growing array, in the order of the data, and then finish().
   void join();
   void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
   /// Returns the checksum of the bytes that were appended to an array.

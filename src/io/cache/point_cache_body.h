@@ -22,8 +22,9 @@ struct Counts {
   std::int32_t samples = 0;
 };
 
-/// Checks that there are vertices and samples, and that the file has from `begin` on exactly their bytes: times_size
-/// bytes for times, and 3 x vertices float32 for each sample. Afterwards products of the counts do not overflow.
+/// Checks that there are vertices and samples, and that the file has exactly the bytes for them from `begin` on:
+/// times_size bytes for times, and 3 x vertices float32 for each sample. Afterwards products of the counts do not
+/// overflow.
 [[nodiscard]] inline Status check_counts(std::uint64_t file_size, const std::string& name, Counts counts,
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);

@@ -1,4 +1,4 @@
-// Makes a motion of a mesh and the samples of a cache, and gives the coordinates of keyframes to writers.
+// Combines a mesh and the samples of a cache into a motion, and passes the coordinates of keyframes to writers.
 #include "io/cache/position_cache.h"
 
 #include <utility>

@@ -54,15 +54,15 @@ struct CacheOptions {
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                                const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
-/// Checks that the keyframes of a motion are a list of two samples or more. Errors: kUsage without a place.
+/// Checks that a motion has keyframes in a list, at least two. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
 /// Checks that segments join all neighbouring keyframes: such a motion is a plain sequence, which even the simplest
 /// format can store. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
-/// Calls each() with the coordinates of one keyframe after the other, as bytes of float32, to which the origin of the
-/// motion was added. Errors: from the stream and from each().
+/// Passes the coordinates of each keyframe in order to each(), as bytes of float32 with the origin of the motion added.
+/// Errors: from the stream and from each().
 [[nodiscard]] Status each_keyframe(MotionStream& stream, std::endian order,
                                    const std::function<Status(std::string_view bytes)>& each);
 

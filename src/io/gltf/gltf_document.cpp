@@ -96,15 +96,15 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
 Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   Result<GltfDocument> document = read(file.bytes(), name, folder, options);
-  // The bytes stay at their address when `file` is moved: they are mapped, or in a string that is too long to be stored
-  // inside its object.
+  // Views into the file stay valid after `file` is moved: its bytes are mapped, or in a string that is too long to be
+  // stored inside its own object.
   if (document) document.value().state_->file = std::move(file);
   return document;
 }
 
 namespace {
 
-// Returns the times of all keys of the channels of single weights, ascending.
+// Returns the times of the keys of all these channels, each of which drives a single weight. The times ascend.
 Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
   std::vector<float> times;
   std::set<std::size_t> inputs;
@@ -122,7 +122,8 @@ Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSou
   return times;
 }
 
-// Puts the channels of single weights together. All other weights are at rest, and so are their tangents.
+// Assembles the keys of a track from channels that drive one weight each. Weights without a channel keep their rest
+// value, with tangents of 0.
 Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& source, const GltfTrack& track) {
   const Result<std::vector<float>> times = times_of_all(bytes, source);
   if (!times) return times.error();
@@ -144,8 +145,8 @@ Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& sou
   return keys;
 }
 
-// Counts the keys of tracks that are assembled from channels with different times. If these cannot be read, the number
-// does not change, and reading the keys reports the error later.
+// Counts the keys of tracks that are assembled from channels with different times. If the times cannot be read, the
+// count stays as it is, and reading the keys reports the error later.
 void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   for (std::size_t a = 0; a < model.animations.size(); ++a) {
     for (std::size_t t = 0; t < model.animations[a].tracks.size(); ++t) {
@@ -159,10 +160,10 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   }
 }
 
-// Drops the tracks whose numbers cannot be read, with a note for each array at fault. Arrays without their own bytes
-// are only checked when keys are read.
+// Drops the tracks whose numbers cannot be read, with a note for each array at fault. An array without bytes of its own
+// (no buffer view) is not checked here, but when its keys are read.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
-  std::map<std::pair<std::size_t, bool>, bool> known;  // by the accessor, and whether it has times
+  std::map<std::pair<std::size_t, bool>, bool> known;  // key: the accessor, and whether it has times
   const auto can_read = [&](std::size_t accessor, bool has_times) {
     const auto [found, is_new] = known.try_emplace({accessor, has_times}, true);
     if (!is_new || !model.accessors[accessor].view) return found->second;
@@ -185,7 +186,7 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
       if (!can_read_all(sources[t])) continue;
       now[t] = kept;
-      // A track with the same keys was read like this one, so it exists too.
+      // The track with the same keys has the same numbers, so it was kept too.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
       if (kept != t) {
         tracks[kept] = std::move(tracks[t]);
@@ -312,7 +313,7 @@ Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shadin
 }
 
 void GltfDocument::State::release(std::size_t vertices) const noexcept {
-  constexpr std::size_t kMany = std::size_t{1} << 16;  // fewer are not worth the calls
+  constexpr std::size_t kMany = std::size_t{1} << 16;  // a call that releases less is not worth its time
   if (vertices < kMany) return;
   if (file) file->release();
   bytes.release();

@@ -48,10 +48,10 @@ bool is_same_folder(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(path_of(a.empty() ? "." : a), path_of(b.empty() ? "." : b), error);
 }
 
-// Returns what is wrong with text that is to be a JSON value at this level of nesting, or an empty text if nothing is.
+// Returns the reason why a text cannot become a JSON value at this level of nesting, or an empty text if it can.
 std::string value_fault(const std::string& json, std::size_t level) {
   constexpr const char* kNone = "the new value is not valid JSON: ";
-  // The parser takes a zero byte for the end of the text, and skips a byte order mark.
+  // The parser would take a zero byte for the end of the text, and skip a byte order mark.
   if (json.find('\0') != std::string::npos) return std::string(kNone).append("the text has a zero byte");
   if (json.starts_with(kByteOrderMark)) return std::string(kNone).append("the text begins with a byte order mark");
   const Result<nlohmann::json> parsed = parse_json(json, "", 0, {"", [](std::size_t, const nlohmann::json&) {}});

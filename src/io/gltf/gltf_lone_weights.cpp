@@ -1,11 +1,11 @@
-// Evaluates the channel of one weight at the keys of all weights of its node. Pieces of lines, steps and cubics are
-// lines, steps and cubics again, so nothing is lost.
+// Evaluates the channel of one weight at the keys of all weights of its node. This splits the curve into more pieces,
+// and a piece of a line, step or cubic is a line, step or cubic again. So the curve stays exact.
 #include "io/gltf/gltf_lone_weights.h"
 
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// The three numbers of a cubic spline at a key.
+// The value of a cubic spline at a key, and its tangents on both sides.
 struct Row {
   double in_tangent = 0, value = 0, out_tangent = 0;
 };
@@ -23,7 +23,7 @@ double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }
 
-// Returns the row at a key of the channel. If the channel is constant on one side of the key, so is the row.
+// Returns the row at key k of the channel. On a side where the channel is constant, the tangent is 0.
 Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
   Row row = key_at(keys, k);
   const bool begins = k == 0, ends = k + 1 == keys.times.size();
@@ -37,7 +37,7 @@ Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last)
   return row;
 }
 
-// Returns a row at a time between key k and the next.
+// Returns the row at a time between key k and key k + 1.
 Row row_between(const LoneKeys& keys, std::size_t k, double time) {
   const Row from = key_at(keys, k), to = key_at(keys, k + 1);
   const double begin = number(keys.times, k), duration = number(keys.times, k + 1) - begin;
@@ -52,7 +52,7 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
     case GltfInterpolation::kCubicSpline:
       break;
   }
-  // This is appendix C.4 of the specification, and its derivative by the time.
+  // This is the formula in appendix C.4 of the specification, and its derivative with respect to time.
   const double rise = to.value - from.value;
   const double value = from.value + s * s * (3 - 2 * s) * rise +
                        duration * s * (1 - s) * ((1 - s) * from.out_tangent - s * to.in_tangent);

@@ -21,7 +21,7 @@ namespace {
 
 using gltf::WeightCurve;
 
-// A face that speaks for a quarter of an hour needs some 200,000 pieces at the usual tolerance.
+// An animation of a face that speaks for 15 minutes needs some 200,000 pieces at the default tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
 // Collects the primitives of a motion in order, with the targets and tracks that move them.
@@ -41,7 +41,7 @@ class Assembly {
     }
   }
 
-  // Adds the meshes that `wanted` names. In the world, each is added for every node that carries it.
+  // Adds the meshes for which wanted() is true. In the world, adds each mesh once for every node that carries it.
   template <class Wanted>
   void add_meshes(const Wanted& wanted) {
     if (world_) {
@@ -58,7 +58,8 @@ class Assembly {
   [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
   [[nodiscard]] const std::vector<GltfPart>& parts() const noexcept { return result_.parts; }
 
-  // Checks whether so many keyframes fit in memory, with their sources: targets, corners, and other_bytes of weights.
+  // Checks that this number of keyframes fits into most_bytes, together with the data from which they are computed:
+  // targets, corners, and other_bytes for weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
@@ -161,7 +162,8 @@ class Assembly {
  private:
   static constexpr std::size_t kBlockOfCoordinates = 3 * 2048;
 
-  // Returns the coordinates of one block of vertices of a part at these weights, in the mesh or in the world.
+  // Returns the coordinates of a block of vertices of a part at the given weights, in the space of the mesh or of the
+  // world.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -189,8 +191,8 @@ class Assembly {
   bool world_;
   GltfMotion result_;
   std::size_t vertex_count_ = 0;
-  std::vector<GltfGeometry> geometries_;     // beside parts
-  std::vector<AffineTransform> transforms_;  // beside parts
+  std::vector<GltfGeometry> geometries_;     // one for each part
+  std::vector<AffineTransform> transforms_;  // one for each part
 };
 
 std::string target_name(const GltfDocument& document, std::size_t target) {
@@ -301,8 +303,8 @@ class AnimationReader {
     return jump ? 2 * pieces : pieces + 1;
   }
 
-  // Finds the largest distance that a weight of 1 moves a vertex, for every target of every part, and the size of the
-  // whole.
+  // Finds reach_, the largest distance by which a weight of 1 moves a vertex, for each target of each part, and size_,
+  // the diagonal of the whole.
   void measure() {
     double low[3], high[3];
     std::fill_n(low, 3, std::numeric_limits<double>::infinity());
@@ -332,7 +334,7 @@ class AnimationReader {
         size_ = std::max(size_, longest);
       }
     }
-    // A base that is a point has the size of its targets.
+    // If the base is a single point, the size of the targets counts instead.
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
@@ -350,7 +352,8 @@ class AnimationReader {
     return largest;
   }
 
-  // Cuts curves into chords. A chord is never farther from its curve than h^2 / 8 times the largest acceleration.
+  // Cuts curves into chords, short enough that a chord stays within the tolerance. The distance between a curve and its
+  // chord is at most h^2 / 8 times the largest acceleration, where h is the duration of the piece.
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
     double curve_error = 0;
@@ -384,8 +387,8 @@ class AnimationReader {
     return weights;
   }
 
-  // Adds the keyframes at both ends of a piece of time. The first one is shared with the previous piece unless the
-  // weights jump there.
+  // Adds the keyframes at both ends of a piece of time. The previous piece has added the first one already, except if
+  // the weights jump there.
   Status add_piece(double from, double to) {
     const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {
@@ -403,7 +406,7 @@ class AnimationReader {
   const GltfMotionOptions& options_;
   Assembly assembly_;
   std::vector<WeightCurve> curves_;
-  std::map<std::size_t, std::size_t> curve_of_track_;  // key: same_keys_as of a track
+  std::map<std::size_t, std::size_t> curve_of_track_;  // key: the track's same_keys_as
   std::vector<std::size_t> curve_of_part_;
   std::size_t weight_bytes_ = 0;
   std::vector<double> keys_, pieces_;       // times

@@ -44,7 +44,7 @@ struct GltfMotion {
   std::vector<GltfPart> parts;
   /// A bound of the distance between cut cubic splines and the true ones, in units of the file; 0 if there are none.
   double curve_error = 0;
-  /// The times of the keys of an animation, ascending. The cuts of cubic splines are not among them.
+  /// The times of the keys of an animation, ascending, without the times at which cubic splines were cut.
   std::vector<double> key_times = {};
 };
 
@@ -63,9 +63,9 @@ struct GltfMotion {
 /// kInvalidInput if there are no primitives, or they take more than most_bytes.
 [[nodiscard]] Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options = {});
 
-/// Reads the normals that a file stores for the base, one for each corner of a motion that was read from it: (corners,
-/// 3), in the space of the mesh; (0, 0, 0) for primitives without normals. Empty if no primitive has any. Errors: those
-/// of GltfDocument.
+/// Reads the stored normals of the base: one for each corner of `motion`, (corners, 3), in the space of the mesh; (0,
+/// 0, 0) for primitives without normals. `motion` must have been read from this document. Returns an empty list if no
+/// primitive has normals. Errors: those of GltfDocument.
 [[nodiscard]] Result<std::vector<float>> read_gltf_corner_normals(const GltfDocument& document, const Motion& motion,
                                                                   std::span<const GltfPart> parts);
 

@@ -35,10 +35,10 @@ class GltfSkin {
   [[nodiscard]] static Result<GltfSkin> read(const GltfDocument& document, std::size_t node,
                                              std::optional<std::size_t> animation);
 
-  /// Appends the shares of the vertices of a primitive, and to first the index at which the shares of each vertex
-  /// begin. They add up to 1: other weights are divided by their sum, and a vertex without any weight follows its first
-  /// joint, as in three.js. Joints without a weight are left out. Errors: kInvalidInput with the JSON pointer, also for
-  /// joints that this skin does not have
+  /// Appends the joints and shares of all vertices of a primitive to `shares`, and for each vertex the index of its
+  /// first share to `first`. The shares of a vertex add up to 1: other weights are divided by their sum, and a vertex
+  /// without any weight follows its first joint, as in three.js. Joints without a weight are left out. Errors:
+  /// kInvalidInput with the JSON pointer, also for joints that this skin does not have
   [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
                                    std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
 

@@ -23,8 +23,8 @@ class WeightCurve {
 
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
 
-  /// Writes the weights at a time. If they jump, they are those just after the time, or just before it if just_before
-  /// is set.
+  /// Writes the weights at a time. If the weights jump at this time, writes the weights just after the jump, or just
+  /// before it if just_before is set.
   void at(double time, bool just_before, std::span<double> weights) const noexcept;
 
   /// Writes a bound of |w''| for every weight between two times within the same key interval; 0 if the weights are

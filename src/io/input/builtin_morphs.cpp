@@ -155,8 +155,7 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
-// Makes an egg with ripples, and targets that push parts of its front about. Neighbouring targets overlap, as in a
-// face.
+// Makes an egg with ripples, and targets that move parts of its front. Neighbouring targets overlap, as in a face.
 Motion bumps() {
   constexpr std::size_t kTargets = 12;
   const Grid grid{64, 48, true};
@@ -168,8 +167,8 @@ Motion bumps() {
       const double radius = 1 + 0.03 * portable::sin(5 * around) * portable::sin(6 * down);
       const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
       if (target == 0) return base;
-      // The front, which faces x, has four rows of three targets. Every other one pushes outwards, the others move
-      // along the skin.
+      // The front of the egg, which faces x, has four rows of three targets. Every second target pushes outwards; the
+      // others move vertices along the surface.
       const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
       const double centre_around = 0.45 * (static_cast<double>(column) - 1);
       const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);

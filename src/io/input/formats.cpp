@@ -28,7 +28,7 @@ constexpr std::array<Extension, 1> kObj = {".obj"}, kPly = {".ply"}, kNpz = {".n
 constexpr std::array<Extension, 2> kMaya = {".mc", ".mcx"}, kTarget = {".target", ".target.gz"};
 constexpr std::array<Extension, 3> kGltf = {".gltf", ".glb", ".vrm"};
 
-// Tells whether the first line that is neither empty nor a comment begins with a common word of OBJ.
+// Returns true if a common keyword of OBJ begins the first line that is neither empty nor a comment.
 bool is_obj(std::string_view first_bytes) {
   constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o",      "g",
                                                           "mtllib", "s",  "l",  "p", "usemtl", "vp"};
@@ -61,7 +61,7 @@ std::string write_plain_obj(const Topology& topology, VectorView<const float> po
   return write_obj(topology, positions, origin);
 }
 
-// Needs no limit of expansion, since no count of the format is larger than the file.
+// Ignores the limit of expansion, because no count in MD2 can be larger than the file.
 Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, double frames_per_second,
                               std::size_t /*max_expansion*/) {
   return read_md2(bytes, name, frames_per_second);

@@ -38,9 +38,9 @@ struct Format {
   /// only the extension tells.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
 
-  // Only the reader for the kind of data of the format is set. None is set for glTF, targets and Maya's descriptions,
-  // which need more than bytes. `name` is for messages. Errors: kInvalidInput, always with a place. The origin is
-  // subtracted from positions (io/mesh/far_origin.h).
+  // The reader for the kind of data that the format holds; the other readers are nullptr. All are nullptr for glTF,
+  // targets and Maya's descriptions, which cannot be read from one block of bytes alone. `name` is for messages.
+  // Errors: kInvalidInput, always with a place. The origin is subtracted from positions (io/mesh/far_origin.h).
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
   /// Reads a mesh with smoothing groups and normals; nullptr if the format is read without them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,
@@ -73,22 +73,24 @@ struct Format {
 /// Returns the format with the extension of the file name, in upper or lower case, or nullptr if there is none.
 [[nodiscard]] const Format* find_format(std::string_view file_name) noexcept;
 
-/// Returns the format of a file by its extension, or else by its content (the standard input, an unknown extension).
-/// Returns nullptr if neither tells.
+/// Returns the format of a file by its extension. If the extension is unknown or missing, as for the standard input,
+/// returns the format by the content. Returns nullptr if the content does not tell the format either.
 [[nodiscard]] const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept;
 
-/// Returns the beginning of a message about a file of unknown format: "neither the name nor the content tells the
-/// format", where `what` is "the format"; or "this is a PNG image", if the bytes are of a known kind.
+/// Returns the first words of a message about a file of unknown format. If the kind of the bytes is known, they are
+/// "this is a PNG image"; otherwise "neither the name nor the content tells the format", where `what` gives the last
+/// two words.
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
-/// Recommends what to do about a file, recognised by its name or its first bytes, that is not supported but that other
-/// programs can convert: "this is an FBX file, which is not read: ...". Returns an empty text for other files.
+/// Returns advice for a file that is not supported but that other programs can convert: "this is an FBX file, which is
+/// not read: ...". The name or the first bytes of the file tell its format. Returns an empty text for other files.
 [[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
 
-/// Returns ".obj, .ply" for messages: the extensions of all formats of these kinds, with `last` before the last one.
+/// Returns the extensions of all formats of these kinds for messages: ".obj, .ply". `last` stands before the last one.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 
-/// The data to read from a mesh file besides positions and faces, if its format has them. No format has both.
+/// The data to read from a mesh file besides positions and faces, if its format has them. No format has both shading
+/// and velocities.
 struct WantedOfMesh {
   bool shading = false;
   bool velocities = false;

@@ -1,5 +1,5 @@
-// Finds the glTF files among inputs. Keyframes and glTF files are distinguished only by their names. A folder whose own
-// files are meshes is a sequence, whatever its subfolders contain.
+// Finds the glTF files among inputs. The names of files decide which are glTF files and which are keyframes. A folder
+// that directly contains meshes is a sequence, whatever its subfolders contain.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -22,8 +22,8 @@ bool holds(const std::string& path, Holds kind) {
   return format != nullptr && format->holds == kind;
 }
 
-// Returns the glTF files in a folder and its subfolders, or none if its own files are meshes. A folder that cannot be
-// listed is reported when it is opened.
+// Returns the glTF files in a folder and its subfolders, or none if the folder directly contains meshes. A folder that
+// cannot be listed is reported when it is opened.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
   fs::recursive_directory_iterator entries(path_of(folder), fs::directory_options::skip_permission_denied, code);
@@ -67,7 +67,7 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
     } else if (is_pattern) {
       InputOptions pattern;
       pattern.files = {input};
-      // A pattern that matches nothing is reported when it is opened.
+      // A pattern without matches is reported when the input is opened.
       Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder);
       found = matches ? std::move(matches).value() : pattern.files;
     } else if (is_folder) {

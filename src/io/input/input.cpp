@@ -1,6 +1,6 @@
 // The entry point for reading any input. open_input() tries the forms of an input in this order: a built-in morph, a
-// base with its targets, a cache with its mesh, a single file with everything, the files of a sequence. The extension
-// of a file tells its format, or else its content; no file is opened twice.
+// base with its targets, a cache with its mesh, a single file that holds everything, the files of a sequence. The
+// format of a file is found by its extension, or else by its content; no file is opened twice.
 #include "chronormal/io/input.h"
 
 #include <algorithm>
@@ -41,7 +41,8 @@ Error not_animated(const std::string& input) {
   return misuse(input, "--animation is only for glTF files, and this is not one; leave --animation out");
 }
 
-// Returns the error for a choice of keyframes in an input that is no sequence.
+// Returns the error for options that choose keyframes (--from, --to, --every, --loop) of an input that is not a
+// sequence.
 Error chooses_nothing(const InputOptions& options) {
   return misuse(options.from > 0     ? "--from"
                 : options.to         ? "--to"
@@ -50,11 +51,11 @@ Error chooses_nothing(const InputOptions& options) {
                 "this option is only for sequences of keyframes, and the input is not one; leave the option out");
 }
 
-// The result of opening: a document, or else a motion or a mesh.
+// The result of opening an input: either a document, or a motion or a mesh.
 struct Opened {
   std::optional<GltfDocument> document;
   std::size_t file_size = 0;  // size of the document
-  ReadMotion read;            // empty until read, for a document
+  ReadMotion read;            // for a document: empty until it is read
 };
 
 // Return the names of a file and of several files, for messages and tables.
@@ -112,7 +113,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
-  // A part of several clips that has jumps stays an animation, and a part without jumps is a sequence like any other.
+  // Keyframes from several clips, between which the motion jumps, stay an animation. Keyframes without a jump become an
+  // ordinary sequence.
   const std::size_t last = options.to.value_or(motion.keyframes.size() - 1);
   bool jumps = false;
   for (std::size_t k = options.from + 1; k <= last && motion.kind == MotionKind::kAnimation; ++k)
@@ -123,7 +125,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
                   "--from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
-    // The ends may depend on chosen keyframes and on others.
+    // Velocities at the ends may depend on this keyframe and on keyframes that were not chosen, so it is copied for
+    // curves and loops.
     Motion::Keyframe& keyframe = motion.keyframes[k];
     kept.push_back(options.is_curved() || options.loop ? keyframe : std::move(keyframe));
   }
@@ -175,8 +178,8 @@ Result<PositionCache> outline_of(const CacheLayout& layout) {
   return cache;
 }
 
-// The layout of a cache whose samples can be read one by one. It is missing if they cannot, or if the file has a fault,
-// which the reader of the whole file then reports.
+// A file with a cache whose samples can be read one by one, and its layout. There is none if the samples cannot be read
+// like this, or if the file has a fault, which the reader of the whole file then reports.
 struct FoundSamples {
   PositionedFile file;
   CacheLayout layout;
@@ -193,20 +196,23 @@ std::optional<FoundSamples> find_samples(const CacheInput& input, const CacheOpt
   return FoundSamples{std::move(*file), std::move(layout).value()};
 }
 
-// Adds a note if positions that were float32 in their file have lost digits; `first` are the first positions.
+// Adds a note if positions were float32 in their file and lost digits there, because they are far from the origin.
+// `first` are the positions of the first keyframe.
 void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion& read) {
   if (origin != Origin{} || far_origin(first) == Origin{}) return;
   if (std::string note = note_of_lost_digits(first); !note.empty()) read.notes.push_back(std::move(note));
 }
 
-// Returns a warning if a cache seems to have the vertices of a mesh in another order, or to belong to another mesh;
-// otherwise an empty text. Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong
-// order, edges are as long as the distances between arbitrary points, which are much longer except in the smallest
-// meshes. In small meshes the coordinates are compared, each axis separately: if they are the coordinates of the mesh
-// in another order, so are the vertices.
+// Returns a warning if a cache seems to belong to another mesh, or to have the vertices of this mesh in another order;
+// otherwise an empty text.
+//
+// Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong order, edges are as long as
+// the distances between arbitrary points. In all but the smallest meshes these are much longer. In small meshes the
+// coordinates are compared too, separately on each axis: if the cache has the coordinates of the mesh in another order,
+// its vertices are in another order.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
-  constexpr std::size_t kFewCoordinates = 1 << 20;  // are sorted in no time
+  constexpr std::size_t kFewCoordinates = 1 << 20;  // few enough to be sorted quickly
   const std::size_t vertices = faces.vertex_count();
   double size = 0, moved = 0, radius_of_mesh = 0, radius = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -299,7 +305,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
   const Origin of_mesh_origin = read.motion.origin, of_cache_origin = cache.value().origin;
-  // The size of the files of a cache is estimated by its positions.
+  // A cache may consist of several files, so their size is estimated from the number of positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
@@ -340,8 +346,8 @@ Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& pa
   return read;
 }
 
-// Returns true if an input is a single file, not a pattern or a folder, that may contain everything. A mesh counts only
-// if meshes without motion are allowed.
+// Returns true if an input is a single file, not a pattern or a folder, and may hold everything: positions, faces and
+// motion. A mesh file counts only if meshes without motion are allowed.
 bool may_be_whole(const std::string& input, const InputOptions& options) {
   const Format* const format = find_format(input);
   if (format != nullptr && format->holds == Holds::kMesh && !options.allow_mesh) return false;
@@ -388,7 +394,8 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
     note_if_far(read.motion.origin, read.motion.keyframes.front().positions, read);
     return keep_chosen(options, read.motion);
   }
-  // Faults of the first sample are found when it is read again later.
+  // An error in the first sample is ignored here, because the sample is read again later, and the error is reported
+  // then.
   first.resize(layout->coordinates());
   if (read_sample(*layout, *file, name, 0, first)) note_if_far(layout->origin, first, read);
   Result<MotionStream> stream =
@@ -431,7 +438,7 @@ Result<Opened> open_whole(const std::string& path, const InputOptions& options) 
   return opened;
 }
 
-// Reads one of the two forms that are several files: a cache with its mesh, or a sequence.
+// Reads an input of several files: a cache with its mesh, or a sequence.
 Result<ReadMotion> read_several(const InputOptions& options) {
   const std::vector<std::string>& inputs = options.files;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
@@ -527,7 +534,7 @@ Status Input::State::read_motion() {
   return Success{};
 }
 
-// Puts the pieces of the motion in its place, once.
+// Cuts the motion into straight segments, and replaces it by them. Does so only once.
 Status Input::State::cut_motion() {
   if (cut) return Success{};
   if (cut_error) return *cut_error;
@@ -661,7 +668,7 @@ Result<Input> open_input(const InputOptions& asked) {
   if (!options.base.empty()) return keep(name_of_file(options.base), read_targets(options));
   if (options.files.size() > 1 || !may_be_whole(options.files.front(), options)) {
     std::vector<std::string> files = options.files;
-    (void)sort_listed(files);  // sorts like find_frames()
+    (void)sort_listed(files);  // in the same order as find_frames()
     return keep(name_of_files(files), read_several(options));
   }
 

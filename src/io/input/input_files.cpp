@@ -33,8 +33,8 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-// Finds the parts before and after the number in a name with a place for one, %d or %0Nd, in the form of output names.
-// Returns nothing if it has no such place.
+// Splits a name at its placeholder for a number, %d or %0Nd as in output names, into the parts before and after it.
+// Returns nothing if the name has no placeholder.
 std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
   const std::size_t percent = input.find('%', begin_of_name(input));
   if (percent == std::string::npos) return std::nullopt;
@@ -44,7 +44,7 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
   return std::pair{input.substr(0, percent), std::string(rest.substr(1))};
 }
 
-// Finds the files whose names have only a number at this place.
+// Finds the files whose names are `before`, digits, and `after`.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
   std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, false);
   const auto is_other = [&](std::string_view file) {
@@ -132,7 +132,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   read.bytes_read += bytes.size();
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
-  // The normals of all keyframes are kept as long as every keyframe so far had some.
+  // The normals of all keyframes are wanted only if every keyframe so far had normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
   WantedOfMesh of_mesh{wanted, options.velocities, read.motion.origin};
@@ -146,7 +146,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       if (!shifted) return shifted;
       bool has_more_digits = shifted.value().has_more_digits;
       for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits; ++i) {
-        // Faults of other files are found when they are read in their turn.
+        // Errors in the other files are ignored here; they are reported when those files are read as keyframes.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
         const Result<MeshFrame> other =
@@ -218,7 +218,8 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;  // counted from that many rounds earlier
+    // Counts from kBeside rounds earlier, so that the index is not negative.
+    const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);
     which.push_back(frames.value()[at % round]);
@@ -243,7 +244,7 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // Uses only the keyframes of the whole sequence that the same step selects.
+  // The velocities of the whole sequence are computed from the keyframes that the same step would select in it.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

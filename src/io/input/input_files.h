@@ -30,7 +30,7 @@ struct ReadMotion {
   std::optional<FileSeries> series = {};      ///< see Input
 };
 
-/// A function that returns the relevant files of a folder, in any order.
+/// A function that returns the files of a folder that belong to the input, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
 /// Returns whether path a comes before b. Runs of digits count as numbers of any size; plain order breaks ties.
@@ -51,11 +51,11 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// Returns the last part of a path, and "<stdin>" for "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
 
-/// Opens and reads the mesh of the next keyframe of read, and puts its shading into read if the options keep it. The
-/// place of every error is `place`, or begins with it.
+/// Reads the mesh of the next keyframe of `read` from its file. Adds the shading of the mesh to `read` if the options
+/// keep it. The place of every error is `place`, or begins with it.
 [[nodiscard]] Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path,
                                                const std::string& place, ReadMotion& read);
-/// Reads the mesh of the next keyframe in the same way, from bytes that are in memory.
+/// Does the same as read_mesh_file(), from bytes that are in memory.
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
@@ -63,18 +63,20 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// kUsage with the option as the place, if there are fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
-/// Returns the time at which a loop returns to the first of these keyframes, which is also the last one. `times` are
-/// the times of all keyframes of the sequence.
+/// Returns the time at which a loop comes back to its first keyframe. `frames` are the chosen keyframes, of which the
+/// last one is the first one again. `times` are the times of all keyframes of the sequence.
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
-/// Gives the first and the last chosen keyframe their end_velocities, if vertices move on curves and the velocities
-/// depend on keyframes beyond these ends. If every N-th keyframe is chosen, the keyframes beyond are N apart, too.
-/// `times` are the times of all keyframes of the sequence, and read(k) returns the positions of keyframe k.
+/// Sets the end_velocities of the first and the last chosen keyframe, if vertices move on curves and the velocities
+/// there depend on keyframes that were not chosen. If every N-th keyframe is chosen, the keyframes beyond the ends are
+/// also N apart. `times` are the times of all keyframes of the sequence, and read(k) returns the positions of keyframe
+/// k.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,
                                         Motion& chosen);
 
-/// Returns an error unless other has the vertex count and the faces of first, which messages call first_name.
+/// Returns an error unless `other` has the same vertex count and the same faces as `first`. Messages call the first
+/// mesh first_name.
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                                          const std::string& place);
 

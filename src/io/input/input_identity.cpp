@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the file of a cache that is named with its channel, "cache.mcx#shape".
+// Removes the channel from the name of a cache: "cache.mcx" for "cache.mcx#shape".
 std::string without_channel(const std::string& input) {
   const std::size_t hash = input.rfind('#');
   std::error_code ignored;

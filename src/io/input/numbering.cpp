@@ -23,7 +23,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A number of any size: 0.DIGITS times ten to the power of `point`. It is 0 without digits.
+// A number of any size: 0.DIGITS times ten to the power of `point`. Without digits it is 0.
 struct Number {
   bool is_negative = false;
   std::string digits;  // without zeros at both ends
@@ -45,7 +45,7 @@ struct Number {
 
 // The place of a number in a name.
 struct Place {
-  std::size_t begin = 0, end = 0;    // range of the number with its sign
+  std::size_t begin = 0, end = 0;    // the number, with its sign
   std::size_t digits = 0;            // place of its first digit
   std::size_t point = 0, power = 0;  // positions of the decimal point and of the letter e; `end` if missing
 };
@@ -102,7 +102,7 @@ Cut cut_name(std::string_view name, Syntax syntax) {
     place.end = at;
     if (place.point == 0) place.point = place.end;
     if (place.power == 0) place.power = place.end;
-    // This is a minus at the start of a name, or after a blank.
+    // This minus is at the start of the name, or after a blank or a separator.
     if (place.begin > 0 && name[place.begin - 1] == '-' &&
         (place.begin == 1 || name[place.begin - 2] == ' ' || is_separator(name[place.begin - 2])))
       --place.begin;
@@ -196,7 +196,7 @@ class Names {
     for (std::size_t i = 0; i < files_.size(); ++i) cuts_[i] = cut_name(files_[i], syntax);
   }
 
-  // Tells whether some number has an exponent, and each number has one in all names or in none.
+  // Returns true if some number has an exponent, and if at each place either all names have an exponent or none has.
   [[nodiscard]] bool all_have_powers() const {
     bool some = false;
     for (const Cut& cut : cuts_) {
@@ -210,8 +210,8 @@ class Names {
     return some;
   }
 
-  // Tells whether the points between digits can be decimal points. `before` are digits in front of the point, `behind`
-  // the digits after it.
+  // Returns true if the points between digits can be decimal points, and not separators as in versions (v2.0001) and
+  // lists (1.9, 1.10).
   [[nodiscard]] bool have_fractions() const {
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::string, std::string>>> found;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -246,7 +246,7 @@ class Names {
     return true;
   }
 
-  // Makes a minus a sign if other names have none at its place.
+  // Makes a minus before a number its sign if the set also has the same name without the minus.
   void take_signs() {
     std::set<std::vector<std::string>> texts;
     for (const Cut& cut : cuts_) texts.insert(cut.texts);
@@ -267,7 +267,7 @@ class Names {
   std::vector<std::vector<Number>> numbers_ = std::vector<std::vector<Number>>(files_.size());
 };
 
-// Returns "walk_0.obj ... walk_9.obj (10 files)".
+// Returns a group in words: "walk_0.obj ... walk_9.obj (10 files)".
 std::string group_words(const std::vector<std::string>& files, const Group& group) {
   const std::string first = file_name_of(files[group.files.front()]);
   if (group.files.size() == 1) return first;
@@ -275,8 +275,9 @@ std::string group_words(const std::vector<std::string>& files, const Group& grou
          " files)";
 }
 
-// Divides groups in which several numbers differ by all these numbers except the last: take1_1, take1_2, take2_1,
-// take2_2. Names that would be alone in their group, such as names with dates, form one group.
+// Divides each group in which several numbers differ: files whose numbers differ only in the last place form a part
+// (take1_1 and take1_2; take2_1 and take2_2). If every part would be a single file, as for dates, the group stays
+// whole.
 std::vector<Group> divided(const Names& names, const std::vector<Group>& groups) {
   std::vector<Group> result;
   for (const Group& group : groups) {
@@ -306,8 +307,8 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Tells whether a shell may have listed the files in this order: by bytes, or as most languages sort, with letters and
-// digits first.
+// Returns true if a shell may have listed the files in this order: sorted by bytes, or as most languages sort, where
+// only letters and digits count at first.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {
     std::string letters;

@@ -1,8 +1,8 @@
 /// Reads the numbers in the names of files, which give the order and the times of files if nothing else does. Private
 /// to io.
 ///
-/// A number has digits and may have a fraction: t_0.05. A minus sign belongs to the number at the start of a name,
-/// after a blank, or if the set also has names without one at the same place; so frame-001 to frame-100 are positive. A
+/// A number has digits and may have a fraction: t_0.05. A minus before the digits is a sign at the start of a name,
+/// after a blank, or if the set also has the same name without the minus; so frame-001 to frame-100 are positive. A
 /// number has an exponent only if all names have one at that place: t_1e-05. A point between two numbers is not a
 /// decimal point if a version is before it (v2.0001, 001.0001), or if the digits after it cannot be a fraction that a
 /// program printed (1.9, 1.10).
@@ -23,14 +23,14 @@ namespace chronormal::inline internal {
 /// files have the same number; the message lists them.
 [[nodiscard]] Status sort_as_sequence(const std::string& input, std::vector<std::string>& files);
 
-/// Sorts three or more files by their numbers if they were listed alphabetically, as a shell lists them, and their
-/// numbers have another order. Returns true if it did. Files that were listed in any other order stay as they are.
+/// Sorts three or more files by their numbers if they are in alphabetical order, as a shell lists them. Files in any
+/// other order stay as they are. Returns true if the order changed.
 [[nodiscard]] bool sort_listed(std::vector<std::string>& files);
 
 /// The times that the names of files contain.
 struct FileTimes {
-  /// Seconds, or frames from the first file on: 0, 1, 2, ... if the steps from one number to the next are even, or if
-  /// numbers do not tell.
+  /// Times in seconds, or frames counted from the first file: 0, 1, 2, ... if the numbers increase in even steps, or if
+  /// the names do not give times.
   std::vector<double> times;
   std::optional<FileSeries> series;  ///< set if numbers in the names determine the times
 };

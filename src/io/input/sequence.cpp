@@ -68,11 +68,11 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
   std::vector<float> velocities = {};
-  std::uint64_t bytes = 0;  // size of its file, unless it was already counted
+  std::uint64_t bytes = 0;  // size of its file in bytes; 0 if it was already counted
 };
 
-// Reads a frame; of_first has the faces and the origin of the first frame. `faces` are the faces of the first frame if
-// their text can be compared; `shaded` gets the normals of the frame if they are requested.
+// Reads a frame other than the first. of_first has the faces and the origin of the first frame. `faces` is nullptr if
+// the text of faces cannot be compared. `shaded` gets the normals of the frame if they are requested.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
@@ -94,7 +94,7 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
   return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
 }
 
-// Returns the faces of a file whose text can be compared with other files, or nothing for formats other than OBJ.
+// Returns the text of the faces of an OBJ file, to be compared with other files; nothing for other formats.
 std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
   const Format* const format = find_format(file_name_of(path), bytes);
   if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
@@ -127,7 +127,7 @@ Result<std::vector<std::string>> find_frames(const InputOptions& options, std::v
 
 namespace {
 
-// Returns the numbers of the files that are keyframes.
+// Returns the indices of the files that the options choose as keyframes.
 Result<std::vector<std::size_t>> choose_files(const std::vector<std::string>& files, const InputOptions& options) {
   const std::size_t total = files.size();
   if (total < 2)
@@ -162,8 +162,8 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Selects the files that are examined if the first one has no more digits than float32: the last one, which most likely
-// has moved, and others evenly in between.
+// Selects the files that are examined for more digits than float32, if the first file has none: the last one, because
+// it has most likely moved, and others evenly in between.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;
@@ -212,8 +212,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions), std::move(first.value().velocities));
 
-  // Reads the remaining frames, as many at a time as there are threads. Frames are read one by one from a resolver,
-  // which may not be thread-safe, and also if the normals of a frame are read only if the previous frame had some.
+  // Reads the remaining frames, one for each thread at a time. Reads one frame at a time from a resolver, which may not
+  // be thread-safe, and if normals are kept, because those of a frame are only read if the previous frame had normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the format of a target by the name of its file, or nullptr if it is none.
+// Returns the format of a target by the name of its file, or nullptr if no target can have this format.
 const Format* target_format(const std::string& file_name) {
   const Format* const format = find_format(file_name);
   return format != nullptr && (format->holds == Holds::kTarget || format->holds == Holds::kMesh) ? format : nullptr;
@@ -66,15 +66,15 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
 // Returns the name of a file in messages.
 std::string place_of(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
-// Returns "blink" for "a/blink.target.gz".
+// Returns the name of a file without its extensions: "blink" for "a/blink.target.gz".
 std::string keyframe_name(const std::string& path) {
   const fs::path name = path_of(file_name_of(path)), stem = name.stem();
   const bool is_packed_target = is_make_human_target(path) && lower_extension(path) == ".gz";
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks the limit for the positions of another keyframe, in addition to the existing ones: a target of one line takes
-// as much memory as any other.
+// Checks that the limit of expansion allows the positions of another keyframe. A target with a single line takes as
+// much memory as any other target, so a small file can ask for much.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
@@ -122,7 +122,7 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   if (files.empty())
     return invalid_input(place_of(base), "there is no target, only the base itself; name the files of the targets");
 
-  // Reads normals only from the base: viewers that compute targets from positions use no others.
+  // Reads normals only from the base, because viewers that compute normals of targets from positions use no others.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

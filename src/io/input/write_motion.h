@@ -1,4 +1,4 @@
-/// write_motion() of io/output.h within limits. Private to io, workflow and the program.
+/// Adds a limit of expansion to write_motion() of io/output.h. Private to io, workflow and the program.
 #ifndef CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
 #define CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
 
@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the motion in the same way within the expansion of the input, since a file for each keyframe repeats all
-/// faces. Errors: also those of expansion.check().
+/// Writes a motion like write_motion() of io/output.h, but refuses output that exceeds the expansion of the input:
+/// files for each keyframe repeat all faces. Errors: also those of expansion.check().
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
                                   bool weld = true);
 

@@ -36,7 +36,7 @@ bool is_number(std::string_view text) {
   return text.empty();
 }
 
-// Returns whether a number is beyond the range of double. A number that is too small is not: it counts as 0.
+// Returns true if a number is too large for double. A number that is too small for double does not count: it becomes 0.
 bool overflows(std::string_view number) {
   constexpr std::size_t kMostDigits = 308;  // the largest double has one digit more
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
@@ -54,12 +54,12 @@ bool overflows(std::string_view number) {
   std::int64_t exponent = 0;
   if (!digits.empty() && from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
-  // An exponent beyond the number of digits of the text alone decides the magnitude.
+  // If the exponent is much larger than the text has digits, the exponent alone decides whether the number is large.
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
-// The facts that a scan of the text finds before a tree is built.
+// The results of a scan of the text before a tree is built.
 struct Scan {
   std::size_t too_deep = std::string_view::npos;  // first byte that is nested deeper than allowed
   struct Number {
@@ -97,12 +97,12 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// Builds the tree while the parser goes through the text, without the items that are taken. (The library's own parser
-// with a callback goes through all siblings at the end of every object.)
+// Builds the tree while the parser goes through the text, without the items that JsonItems takes. (The library's own
+// parser with a callback is slow: at the end of every object it goes through all siblings.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  // Makes a builder. `infinities` has the numbers beyond double, which are null in the text, keyed by the number of
-  // nulls before them.
+  // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` are these
+  // numbers; each has the number of nulls before it, by which the builder recognises its place.
   TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
       : items_(items), infinities_(infinities) {}
 
@@ -150,7 +150,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // Puts a value at the current place of the walk: into an array, a member or the root.
+  // Puts a value at the current place: into the innermost array, as the current member of the innermost object, or as
+  // the root. Returns its address.
   nlohmann::json* put(nlohmann::json&& value) {
     if (stack_.empty()) {
       root_ = std::move(value);
@@ -178,7 +179,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   const std::vector<Scan::Number>& infinities_;
   std::size_t null_count_ = 0, next_infinity_ = 0;
   nlohmann::json root_;
-  std::vector<nlohmann::json*> stack_;  // the open arrays and objects, which do not move meanwhile
+  std::vector<nlohmann::json*> stack_;  // the open arrays and objects; their addresses do not change
   nlohmann::json* member_ = nullptr;    // the current member of the innermost object
   bool inside_items_ = false;
   std::size_t item_count_ = 0, error_at_ = 0;
@@ -200,13 +201,15 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
   }
   if (text.starts_with(kByteOrderMark))  // the library would skip it too
     return invalid_input(binary::place(name, offset), "the JSON is not valid: it has a second byte order mark");
-  // JSON never contains a zero byte. The parser would complain about each; a sparse file may have a terabyte of them.
+  // JSON never contains a zero byte. A sparse file may have a terabyte of them, and the parser would handle each, so
+  // only the first is kept.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)
     return invalid_input(binary::place(name, offset + scan.too_deep),
                          "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels");
-  // The library refuses numbers beyond double everywhere. The shortest is 1e309, which is longer than null.
+  // The library refuses numbers that are too large for double everywhere, so null replaces them. The shortest such
+  // number is 1e309, so there is always room for "null".
   std::string replaced;
   if (!scan.too_large.empty()) {
     replaced = text;

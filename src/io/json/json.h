@@ -1,8 +1,8 @@
 /// Reads JSON from outside, with a place for every complaint. Private to io.
 ///
 /// A JsonView is a value of a document and its JSON pointer (RFC 6901). Its getters check type and range. The first
-/// complaint of a document is kept in a JsonComplaint, and afterwards every getter returns its fallback. So a parser
-/// reads an entity without branches, and checks once in the end whether there was a complaint.
+/// complaint about a document is kept in a JsonComplaint; from then on every getter returns its fallback. So a parser
+/// reads an object without checks in between, and tests once at the end whether there was a complaint.
 #ifndef CHRONORMAL_IO_JSON_JSON_H_
 #define CHRONORMAL_IO_JSON_JSON_H_
 
@@ -30,9 +30,10 @@ struct JsonItems {
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
 };
 
-/// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers beyond
-/// double become infinity, about which a JsonView complains when they are read. Errors: kInvalidInput with the place
-/// "NAME, byte N" for text that is not JSON or is nested deeper than kDeepestJson (checked before a tree is built).
+/// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers that are
+/// too large for double become infinity, and a JsonView complains about them when they are read. Errors: kInvalidInput
+/// with the place "NAME, byte N" for text that is not JSON or is nested deeper than kDeepestJson (checked before a tree
+/// is built).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name, std::size_t offset,
                                                 const JsonItems& items);
 
@@ -44,7 +45,7 @@ class JsonComplaint {
   void add(const std::string& pointer, std::string message) {
     if (!first_) first_ = invalid_input(place(pointer), std::move(message));
   }
-  /// Complains with an error that was found before.
+  /// Adds an error that was found elsewhere, unless there is a complaint already.
   void add(Error error) {
     if (!first_) first_ = std::move(error);
   }
@@ -66,7 +67,8 @@ class JsonView {
   /// Returns whether the object has this member. Values that are not objects have none.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Returns a member that is a non-empty object or array, as a view; nothing if it is missing, or after a complaint.
+  /// Return a member as a view if it is a non-empty object (or array). Return nothing if it is missing, or after a
+  /// complaint.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
@@ -81,7 +83,7 @@ class JsonView {
   [[nodiscard]] std::optional<std::size_t> find_count(const char* key, std::size_t most) const;
   [[nodiscard]] std::size_t count(const char* key, std::size_t most, std::size_t fallback) const;
   [[nodiscard]] std::size_t required_count(const char* key, std::size_t most) const;
-  /// Return an index below `count`, and complain otherwise: "there are only N WHAT".
+  /// Return an index below `count`. Complain about a larger one: "there are only N WHAT".
   [[nodiscard]] std::optional<std::size_t> find_index(const char* key, std::size_t count, const char* what) const;
   [[nodiscard]] std::optional<std::size_t> required_index(const char* key, std::size_t count, const char* what) const;
   /// Returns the value of this view as an index.

@@ -30,8 +30,8 @@ namespace chronormal::inline internal {
 /// The byte order mark that some editors write at the start of a file: U+FEFF in UTF-8. JSON does not allow it.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Returns the text of a string in UTF-8, given as "\u00e9" without its quotation marks. quoted must be a valid JSON
-/// string.
+/// Returns the text that a JSON string stands for, in UTF-8: the input is "\u00e9" without its quotation marks. It must
+/// be valid.
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 
 /// Returns the names in a pointer, or nothing if it is not a valid pointer.
@@ -60,23 +60,25 @@ class JsonText {
   JsonText& operator=(const JsonText&) = delete;
   ~JsonText();
 
-  /// Returns the text of a value, or nothing if there is none. Must be called before any change
+  /// Returns the text of a value, or nothing if there is no such value. Must be called before any change
   [[nodiscard]] std::optional<std::string_view> find(std::string_view pointer);
-  /// Returns the members of an object or the items of an array, in their order; none for other values or if the pointer
-  /// leads nowhere. Nothing may have been changed
+  /// Returns the members of an object or the items of an array, in their order. Returns none for other values, or if
+  /// the pointer leads to no value. Must be called before any change
   [[nodiscard]] std::vector<JsonMember> members(std::string_view pointer);
 
-  /// Replaces a value, or adds it as a member with missing objects in between. `value` must be JSON. Errors, after
-  /// which nothing has changed: kInvalidInput, with the pointer as the place, if it is not a valid pointer, or leads
-  /// through a value that is neither object nor array, or to an item that an array does not have.
+  /// Replaces the value at a pointer, or adds it as a member, together with missing objects on the way. `value` must be
+  /// JSON. Errors, after which the text is unchanged: kInvalidInput, with the pointer as the place, if the pointer is
+  /// not valid, leads through a value that is neither object nor array, or leads to an item that an array does not
+  /// have.
   [[nodiscard]] Status set(std::string_view pointer, std::string value);
   /// Appends a value to an array, which is added if it is missing. Errors: those of set(); kInvalidInput if the
   /// existing value is not an array.
   [[nodiscard]] Status append(std::string_view pointer, std::string value);
 
-  /// Returns the sorted pointers of replaced and added values; for values that were added together, only the outermost.
+  /// Returns the pointers of all replaced and added values, sorted. If several levels were added at once, returns only
+  /// the pointer of the outermost.
   [[nodiscard]] std::vector<std::string> pointers() const;
-  /// Returns the text with its changes, in pieces that live as long as this and the source.
+  /// Returns the changed text in pieces, which are valid as long as this object and the source live.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
  private:
@@ -92,7 +94,7 @@ class JsonText {
 
   std::string_view text_;
   std::unique_ptr<Node> root_;
-  std::deque<std::string> kept_;  // texts of changes, at fixed addresses
+  std::deque<std::string> kept_;  // texts of changes; their addresses do not change
 };
 
 /// Joins the pieces of a text.

@@ -3,8 +3,8 @@
 ///
 ///     edit.append("/meshes/0/primitives/0/targets", JsonObject().add("POSITION", 7).add("NORMAL", 9).text());
 ///
-/// Whole documents are nlohmann::ordered_json instead. A document tree, however, cannot keep a number as it was
-/// written, such as 4.0, and would store a data URI of a gigabyte that is needed only once.
+/// Whole documents are built as nlohmann::ordered_json instead. Such a tree does not suit splicing: it does not keep a
+/// number as it was written, such as 4.0, and it would hold a data URI of a gigabyte that is written only once.
 #ifndef CHRONORMAL_IO_JSON_JSON_WRITER_H_
 #define CHRONORMAL_IO_JSON_JSON_WRITER_H_
 
@@ -17,8 +17,8 @@ namespace chronormal::inline internal {
 /// Returns a string as JSON. text must be UTF-8.
 [[nodiscard]] std::string quote_json(std::string_view text);
 
-/// Returns a number as JSON, with the fewest digits that read back as the same float or double. The number must be
-/// finite
+/// Returns a number as JSON, with the fewest digits from which the same float or double is read back. The number must
+/// be finite
 [[nodiscard]] std::string json_number(float value);
 [[nodiscard]] std::string json_number(double value);
 

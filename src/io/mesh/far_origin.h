@@ -1,6 +1,6 @@
-/// Handles positions far from the origin, as in surveys: a float32 keeps 24 bits, most of which are equal for all
-/// vertices there. A common origin is subtracted in double before positions are rounded, and writers add it again
-/// (Motion::origin). Private to io.
+/// Handles positions far from the origin, as in surveys. A float32 has 24 bits, and far from the origin most of them
+/// are equal for all vertices. So a common origin is subtracted in double before positions are rounded, and writers add
+/// it again (Motion::origin). Private to io.
 #ifndef CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 #define CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 
@@ -40,7 +40,8 @@ template <class Real>
   return middle;
 }
 
-/// Tells whether float32 rounds away digits of a number whose last digit has this unit.
+/// Returns true if rounding a number to float32 loses some of its decimal digits. last_digit is the value of a 1 in the
+/// place of its last digit.
 [[nodiscard]] inline bool loses_digits(double value, double last_digit) noexcept {
   return std::fabs(value - double{static_cast<float>(value)}) > last_digit / 2 * (1 + 1e-6);
 }
@@ -49,7 +50,7 @@ template <class Real>
 /// relative to their extent. Returns an empty text otherwise.
 [[nodiscard]] std::string note_of_lost_digits(std::span<const float> positions);
 
-/// Returns "(452312, 5411872, 0)".
+/// Returns the coordinates as text: "(452312, 5411872, 0)".
 [[nodiscard]] std::string origin_text(const Origin& origin);
 
 }  // namespace chronormal::inline internal

@@ -50,7 +50,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
       stream.avail_in = static_cast<uInt>(part.size());
       handed_over += part.size();
     }
-    // There is room for one byte more than allowed, so that an excess is detected.
+    // The buffer may grow to one byte more than allowed, so that an excess is detected.
     if (done == text.size()) text.resize(std::min(most + 1, std::max(kFirstRoom, 2 * done)));
     const auto room = static_cast<uInt>(std::min(text.size() - done, kMostAtOnce));
     stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
@@ -64,7 +64,7 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code == Z_BUF_ERROR)
-      return error("the gzip data are cut off; copy the file again");  // there was room, so it wants more input
+      return error("the gzip data are cut off; copy the file again");  // zlib had room, so it waits for more input
     if (code != Z_STREAM_END) {
       std::string message = "the gzip data are damaged; copy the file again";
       if (stream.msg != nullptr) message.append(" (").append(stream.msg).append(")");

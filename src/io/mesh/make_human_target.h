@@ -44,10 +44,11 @@ struct MakeHumanTarget {
 /// numbers; numbers that are not finite or too large for float32; an index without a vertex; a vertex that already has
 /// a delta (programs disagree whether to add both or to use the last); a delta whose float32 sum with the coordinate
 /// exceeds the range of float32; a file of 0 bytes. With the place "NAME, byte N" (of the file): gzip data that are
-/// damaged or end early, are followed by something else, or unpack to more than most_target_bytes(). A target without
-/// any delta is the base itself. A text that was cut off inside its last number, or between two lines, is still a
-/// target.
-/// Cost: one pass; memory in proportion to the text and a bit per vertex.
+/// damaged or end early, are followed by something else, or unpack to more than most_target_bytes().
+///
+/// A file without any delta is valid: it is the base itself. A text that was cut off inside its last number, or between
+/// two lines, cannot be told from a complete file and is read without an error. Cost: one pass; memory in proportion to
+/// the text and a bit per vertex.
 [[nodiscard]] Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
                                                              VectorView<const float> base);
 

@@ -16,8 +16,8 @@ struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
 
-  /// True if the given origin was subtracted from positions, and the file has more digits than float32 would have kept
-  /// without that.
+  /// True if the given origin was subtracted from positions, and this kept digits that float32 would have lost
+  /// otherwise.
   bool has_more_digits = false;
   /// A sentence for each kind of part that was skipped.
   std::vector<std::string> notes = {};
@@ -25,7 +25,7 @@ struct MeshFrame {
   /// (V, 3): the velocity of each vertex, in length units per second, if it is requested and the file has it.
   std::vector<float> velocities = {};
 
-  // The next members say how the file shades its mesh, if that is asked for.
+  // The next members say how the file shades its mesh. They are empty unless the caller requests them.
   /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none. Empty if
   /// the file has no groups.
   std::vector<std::uint32_t> group_of_face = {};

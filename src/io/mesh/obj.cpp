@@ -43,20 +43,20 @@ bool has_comment(std::string_view line) {
 // The shading of the faces that were read so far.
 struct Shading {
   std::vector<float> normals;                   // (vn, 3)
-  std::vector<std::uint32_t> normal_of_corner;  // its index plus 1; 0 for none
+  std::vector<std::uint32_t> normal_of_corner;  // index of the normal plus 1; 0 for none
   bool has_normals = false;                     // true if some corner has a normal
   std::map<std::string, std::uint32_t, std::less<>> groups;
   std::vector<std::uint32_t> group_of_face;
   std::uint32_t group = 0;                               // group of the faces that follow
-  bool has_groups = false;                               // true if there was a statement `s`
-  std::size_t unknown_normals = 0, nameless_groups = 0;  // corners, and s without a word
+  bool has_groups = false;                               // true if there was a statement "s"
+  std::size_t unknown_normals = 0, nameless_groups = 0;  // counts of corners, and of statements "s" without a word
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
 };
 
 class ObjReader {
  public:
-  /// Skips statements of shading if shading is nullptr.
+  /// Creates a reader, which skips statements of shading if `shading` is nullptr.
   ObjReader(std::string_view bytes, const std::string& name, const Origin& origin, Shading* shading)
       : name_(name),
         lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'),
@@ -98,7 +98,7 @@ class ObjReader {
   std::string joined_;              // a statement of several lines
   std::vector<float> positions_;
   PolygonBuilder faces_;
-  // The largest positive index so far. Whether it names a vertex is known only at the end.
+  // The largest positive index so far. Only at the end of the file is it known whether that vertex exists.
   struct Largest {
     std::int64_t index = 0;
     std::size_t line = 0;
@@ -134,7 +134,7 @@ Result<MeshFrame> ObjReader::read() {
   note(dropped_faces_, " face has fewer than three corners and is left out",
        " faces have fewer than three corners and are left out");
   if (shading_ == nullptr) return mesh;
-  // Normals may come after the faces that refer to them.
+  // Normals may follow the faces that refer to them, so indices are checked at the end.
   for (std::uint32_t& index : shading_->normal_of_corner) {
     if (index > shading_->normal_count()) {
       index = 0;
@@ -222,8 +222,8 @@ NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, 
   return fault;
 }
 
-// Removes a corner that is a positive index of digits alone. Returns 0 if the next word is not such a corner; the line
-// then does not change.
+// Takes a corner off the line if it is only the digits of a positive index. Otherwise returns 0 and leaves the line
+// unchanged.
 std::int64_t take_plain_corner(std::string_view& line) {
   constexpr std::ptrdiff_t kMostDigits = 9;
   const char* at = line.data();
@@ -294,7 +294,7 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;
-  // An index that does not fit in 32 bits is refused at the end, by largest_.
+  // largest_ detects an index that does not fit into 32 bits at the end of the file.
   if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
     return error("the mesh has more than 4,294,967,295 corners");
   return Success{};
@@ -313,7 +313,7 @@ Status ObjReader::read_normal(std::string_view numbers) {
   return Success{};
 }
 
-// Reads a smoothing group. Groups are distinguished by their words, except that 01 is 1.
+// Reads a smoothing group. Groups are told apart by their names; numbers are compared by value, so 01 is the group 1.
 Status ObjReader::read_group(std::string_view line) {
   const std::string_view word = take_word(line);
   shading_->has_groups = true;
@@ -330,8 +330,8 @@ Status ObjReader::read_group(std::string_view line) {
   return Success{};
 }
 
-// Sets the normal of the next corner; an empty word means none. A normal that the file does not have, or not yet, is
-// found at the end.
+// Sets the normal of the next corner; an empty word means no normal. An index without a normal is detected at the end
+// of the file, because the normal may follow.
 void ObjReader::resolve_normal(std::string_view word) {
   std::int64_t index = 0;
   if (!word.empty()) {

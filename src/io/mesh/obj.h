@@ -37,16 +37,18 @@ namespace chronormal::inline internal {
 /// Errors: kInvalidInput with the place "NAME, line N": coordinates that are missing, not numbers, joined to something
 /// else, not finite or too large for float32 (too small becomes 0); the index 0 and indices without a vertex; a file
 /// without vertices or without faces. Messages count vertices, faces and corners from 0, and quote indices as in the
-/// file. A file that was cut off inside its last number, or between two faces, is still an OBJ file: it is read as the
-/// mesh that it describes. Faces of fewer than 3 corners are left out, with a note that counts them. The origin is
+/// file.
+///
+/// A file that was cut off inside its last number, or between two faces, cannot be told from a complete file and is
+/// read without an error. Faces of fewer than 3 corners are left out, with a note that counts them. The origin is
 /// subtracted from positions. Cost: one pass; memory in proportion to the numbers in the file, independent of the
 /// values of indices.
 [[nodiscard]] Result<MeshFrame> read_obj(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
-/// Reads the mesh of an OBJ file and its shading. Faces before the first s are in no smoothing group.
+/// Reads the mesh of an OBJ file and its shading. Faces before the first "s" are in no smoothing group.
 ///
-/// A corner with the normal index 0, or an index without a vn, has no normal, and faces after an s without a word are
-/// in no group; a note counts each of these.
+/// A corner with the normal index 0, or with an index that no "vn" has, gets no normal. Faces after an "s" without a
+/// word are in no group. A note counts each of these cases.
 ///
 /// Errors: those of read_obj(), and normals (vn) that are not three finite numbers, reported in the same way.
 [[nodiscard]] Result<MeshFrame> read_obj_shading(std::string_view bytes, const std::string& name,
@@ -58,7 +60,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     const Origin& origin = {});
 
-/// Writes the faces with normals: vn, and corners of the form v//vn. normal_of_corner must have an index of a normal
+/// Also writes normals: statements vn, and corners of the form v//vn. normal_of_corner must have the index of a normal
 /// for each corner of the topology.
 [[nodiscard]] std::string write_obj(const Topology& topology, VectorView<const float> positions,
                                     VectorView<const float> normals, std::span<const std::uint32_t> normal_of_corner,

@@ -1,4 +1,4 @@
-// Compares the text of faces, and reads only the positions before it.
+// Compares the text of the faces with the first file, and parses only the positions before the faces.
 #include "io/mesh/obj_faces.h"
 
 #include <algorithm>

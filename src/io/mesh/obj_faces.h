@@ -20,15 +20,15 @@ class ObjFaces {
   ObjFaces(std::string_view bytes, const std::vector<float>& positions);
 
   /// Returns the positions of another file if it has the same number of vertices before its first face, and the same
-  /// text from there on: read_obj() would return these positions, and the faces of the first file. Returns nothing for
-  /// any other file, and for unusual files: with wrong or additional numbers, with statements over several lines, with
-  /// a byte order mark, or without LF.
+  /// text from there on. Then read_obj() would return the same positions, and the faces of the first file. Returns
+  /// nothing for any other file, and for unusual files: with wrong or additional numbers, with statements over several
+  /// lines, with a byte order mark, or without LF.
   [[nodiscard]] std::optional<std::vector<float>> positions_of(std::string_view bytes) const;
 
  private:
   std::string_view text_;       // empty if the text of faces cannot be compared
-  std::size_t before_ = 0;      // the number of coordinates before it
-  std::vector<float> further_;  // the coordinates of vertices within it
+  std::size_t before_ = 0;      // number of coordinates before text_
+  std::vector<float> further_;  // coordinates of vertices inside text_
 };
 
 }  // namespace chronormal::inline internal

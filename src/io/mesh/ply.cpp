@@ -25,8 +25,9 @@ using ply::Property;
 using ply::Role;
 using ply::Scalar;
 
-// A source returns the values of the body in order, for one of the encodings. Its functions return false if a value is
-// missing or malformed; message() and place() then describe the fault and its place.
+// A source returns the values of the body (all after the header) in order; there is one for each encoding. Its
+// functions return false if a value is missing or malformed; message() and place() then describe the error and its
+// place.
 
 class AsciiSource {
  public:
@@ -151,7 +152,7 @@ class BinarySource {
     if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite", type);
     if (std::fabs(value) > std::numeric_limits<float>::max())
       return fail("the coordinate is too large for float32", type);
-    last_digit = 0;  // a bit
+    last_digit = 0;  // so any rounding to float32 counts as a loss of digits
     return true;
   }
 
@@ -168,7 +169,7 @@ class BinarySource {
     return bit_cast<T>(raw);
   }
 
-  // Reads a value into `whole`, or for floating-point types into `real`.
+  // Reads a value of an integer type into `whole`, or of a floating-point type into `real`.
   [[nodiscard]] bool load(Scalar type, std::int64_t& whole, double& real) {
     if (ply::byte_size(type) > bytes_left()) return fail_at_end();
     switch (type) {
@@ -204,7 +205,7 @@ class BinarySource {
                " bytes are left for this row; copy or export it again";
     return false;
   }
-  // Fails at the value that was just read.
+  // Reports an error at the value that was read last.
   bool fail(std::string message, Scalar type) {
     message_ = std::move(message);
     position_ -= ply::byte_size(type);
@@ -257,7 +258,7 @@ class BodyReader {
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
     if (element.properties.empty()) return Success{};  // takes no bytes, whatever the count
-    // The count is limited by the size of the file.
+    // The counts are limited by the size of the file, so this memory is, too.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
     for (std::uint64_t row = 0; row < element.count; ++row) {
@@ -369,7 +370,7 @@ class BodyReader {
   const std::string& name_;
   const Header& header_;
   Source source_;
-  std::string message_;  // message of an error that is not the source's
+  std::string message_;  // message of an error that source_ did not report
   bool has_velocities_;
   Origin origin_;
   bool is_far_, has_more_digits_ = false;

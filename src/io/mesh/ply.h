@@ -49,21 +49,21 @@ enum class PlyEncoding { kAscii, kBinaryLittleEndian, kBinaryBigEndian };
 /// Cost: one pass; memory in proportion to the size of the file.
 [[nodiscard]] Result<MeshFrame> read_ply(std::string_view bytes, const std::string& name, const Origin& origin = {});
 
-/// Reads a mesh with the velocities of vertices: vx, vy, vz or velocity_x, velocity_y, velocity_z, the first of these
-/// that the vertices have, of any scalar type. A file must have all three of them or none. Errors: those of read_ply();
-/// kInvalidInput if only some of the three exist, if one is a list, and for velocities that are not numbers, not finite
-/// or too large for float32.
+/// Reads a mesh with the velocities of vertices, which are properties of any scalar type: vx, vy, vz or velocity_x,
+/// velocity_y, velocity_z. If a file has both sets, vx, vy, vz count. Errors: those of read_ply(); kInvalidInput if
+/// only some of the three exist, if one is a list, and for velocities that are not numbers, not finite or too large for
+/// float32.
 [[nodiscard]] Result<MeshFrame> read_moving_ply(std::string_view bytes, const std::string& name,
                                                 const Origin& origin = {});
 
-/// Writes a PLY file with float x, y, z, or double x, y, z if there is an origin to be added, and one list of indices
-/// for each face. In ascii, coordinates have the fewest digits that read back as the same float32. positions must have
-/// as many elements as the topology has vertices.
+/// Writes a PLY file with one list of indices for each face. Positions are float x, y, z, or double if there is an
+/// origin, which is added to them. In ascii, coordinates have the fewest digits that read back as the same float32.
+/// positions must have as many elements as the topology has vertices.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions, PlyEncoding encoding,
                                     const Origin& origin = {});
 
-/// Data of a file besides positions and faces, each if it is not empty: normals, as properties float nx, ny, nz, and a
-/// number that programs can show as colours, as a property float quality.
+/// Data to write besides positions and faces; empty members are left out. Normals become the properties float nx, ny,
+/// nz. `quality` becomes the property float quality, which programs can show as colours.
 struct PlyProperties {
   VectorView<const float> of_vertices;                           ///< one for each vertex, after x, y, z
   VectorView<const float> of_faces;                              ///< one for each face, after its indices

@@ -38,7 +38,8 @@ std::optional<Scalar> find_scalar(std::string_view word) {
   return std::nullopt;
 }
 
-// Returns what separates lines. A file with old Macintosh line ends has a CR after the first word and no LF.
+// Returns the character that ends lines. In a file with old Macintosh line ends, a CR without LF follows the first
+// word.
 char find_separator(std::string_view bytes) {
   return bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
 }
@@ -189,7 +190,7 @@ Status HeaderReader::assign_role(Property& property) {
   return Success{};
 }
 
-// Checks that the elements and properties of a mesh exist.
+// Checks that the file has the elements and properties that a mesh needs.
 Status HeaderReader::check_elements() {
   header_.vertex_element = header_.face_element = kNone;
   bool has_strips = false;
@@ -220,13 +221,14 @@ Status HeaderReader::check_elements() {
 }  // namespace
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) {
-  constexpr std::size_t kLongest = std::size_t{16}
-                                   << 20;  // mostly of comments: a file that is not PLY may have no end of its header
+  // A longer header is refused, because a file that is not PLY may have no end of its header.
+  constexpr std::size_t kLongest = std::size_t{16} << 20;
   return HeaderReader(bytes.substr(0, kLongest), name).read();
 }
 
 Result<bool> assign_velocities(Header& header, const std::string& name) {
-  // Particle and simulation codes use the first names; exporters of attributes append the axis to the name "velocity".
+  // Programs for particles and simulations use the names vx, vy, vz; exporters of attributes append the axis to
+  // "velocity".
   constexpr std::array<std::array<std::string_view, 3>, 2> kNames = {
       {{"vx", "vy", "vz"}, {"velocity_x", "velocity_y", "velocity_z"}}};
   std::vector<Property>& properties = header.elements[header.vertex_element].properties;

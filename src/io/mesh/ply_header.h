@@ -1,4 +1,4 @@
-/// Reads the header of a PLY file, which says which elements follow, and how they are written. Private to io.
+/// Reads the header of a PLY file, which declares the elements of the file and their encoding. Private to io.
 #ifndef CHRONORMAL_IO_MESH_PLY_HEADER_H_
 #define CHRONORMAL_IO_MESH_PLY_HEADER_H_
 

@@ -13,7 +13,8 @@
 
 namespace chronormal::inline internal {
 
-/// A builder of faces. It keeps no offsets until the first face that is not a triangle, since most meshes need none.
+/// A builder of faces. It stores no offsets until the first face that is not a triangle, because most meshes have only
+/// triangles.
 class PolygonBuilder {
  public:
   static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();
@@ -27,9 +28,9 @@ class PolygonBuilder {
     return true;
   }
 
-  /// Returns the corners of the face that is being built.
+  /// Returns the number of corners of the face that is being built.
   [[nodiscard]] std::size_t open_corners() const noexcept { return corners_.size() - face_begin_; }
-  /// Returns how many faces were ended, which is the index of the face that is being built.
+  /// Returns the number of finished faces, which is the index of the face that is being built.
   [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
 
   /// Leaves out the face that is being built.

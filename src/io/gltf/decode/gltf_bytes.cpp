@@ -24,7 +24,8 @@ std::uint32_t load_index(const char* at, Component component) noexcept {
   return binary::load<std::uint32_t>(at, kOrder);
 }
 
-// Returns the largest index, which means "begin a new strip" to some hardware, and which glTF forbids.
+// Returns the largest index of a type. glTF forbids it, because some hardware takes it as the command to begin a new
+// strip.
 std::uint32_t restart_index(Component component) noexcept {
   if (component == Component::kUint8) return 0xFF;
   return component == Component::kUint16 ? 0xFFFF : 0xFFFFFFFF;
@@ -126,7 +127,7 @@ const Expansion& Bytes::expansion() {
   for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
     const std::optional<std::string>& uri = model_.buffers[i].uri;
     if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
-    // A buffer that cannot be read counts nothing here. The error is reported when its data is read.
+    // A buffer that cannot be read does not count here. The error is reported when its data are read.
     if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
   }
   expansion_ = found;

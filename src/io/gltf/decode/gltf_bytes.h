@@ -70,8 +70,8 @@ class Bytes {
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
-  /// Returns the limit of memory that the asset may cause. The files of its buffers count once each, as far as they can
-  /// be opened.
+  /// Returns the limit of the memory that the asset may ask for. Each file of a buffer counts once, if it can be
+  /// opened.
   [[nodiscard]] const Expansion& expansion();
 
   /// Releases memory that holds parts of buffers in separate files.
@@ -86,7 +86,7 @@ class Bytes {
  private:
   [[nodiscard]] Status open_buffer_of(const Accessor& accessor);
   [[nodiscard]] Result<std::string> decompress(std::size_t view_index, const Compression& compression);
-  /// Replaces elements of the accessor by put(element, bytes of its value).
+  /// Calls put(element, bytes of its value) for each element that the sparse part of the accessor replaces.
   template <class Put>
   [[nodiscard]] Status for_each_sparse(std::size_t accessor, const Put& put);
   template <class Read>

@@ -42,7 +42,8 @@ draco::DataType data_type(Component component) {
   return draco::DT_INVALID;
 }
 
-// Reads the bytes here and not by the library's conversion, which trusts flags of the file.
+// Copies the values of an attribute to floats. Does not use the library's conversion, because that trusts flags of the
+// file.
 Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
                       std::vector<float>& result) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
@@ -73,8 +74,8 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   return Success{};
 }
 
-// Returns the number of faces that the compressed mesh declares, or nothing if it cannot be determined. The library
-// allocates memory for the faces before it reads any.
+// Returns the number of faces that the compressed mesh declares, or nothing if it cannot be determined. It is checked
+// first, because the library allocates memory for the faces before it reads any.
 std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
@@ -97,10 +98,10 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   return count(is_varint) ? count(is_varint) : std::nullopt;
 }
 
-// Decodes a mesh with as many vertices as its accessors declare.
+// Decodes a mesh, which must have the number of vertices that its accessors declare.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
                                                  const Expansion& expansion, const std::string& place) {
-  constexpr std::uint64_t kBytesPerFace = 64;  // the library's tables, and ours
+  constexpr std::uint64_t kBytesPerFace = 64;  // the tables of the library and our own
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
@@ -118,7 +119,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
       else
         reason = decoded.status().error_msg_string();
     }
-  } catch (const std::exception& exception) {  // the decoder trusted lengths in the file
+  } catch (const std::exception& exception) {  // thrown when the decoder trusts a wrong length in the file
     reason = exception.what();
   }
   if (!mesh)

@@ -30,7 +30,7 @@ std::string bytes_of(std::span<const float> values) {
   return bytes;
 }
 
-// The facts about an array that one pass over its values finds.
+// Facts about an array, found in one pass over its values.
 struct ArraySurvey {
   std::array<float, 3> least{}, most{};  // bounds of each component
   std::size_t used = 0, last_used = 0;   // elements that are not zero
@@ -84,8 +84,8 @@ ArraySurvey survey_array(std::span<const float> values, std::size_t components) 
   return all;
 }
 
-// Returns a bound of each component as JSON. Readers compare it in double with the values of the array, so its digits
-// must read back as the same double.
+// Returns the bounds of all components as JSON. Readers compare these bounds in double with the values of the array, so
+// the digits must read back as exactly the same double.
 std::string bound_json(std::span<const float> bounds) {
   std::string json = "[";
   for (std::size_t c = 0; c < bounds.size(); ++c)
@@ -93,7 +93,7 @@ std::string bound_json(std::span<const float> bounds) {
   return json + "]";
 }
 
-// Adds "bufferView":3,"byteOffset":16.
+// Adds the place of an array to its JSON: "bufferView":3,"byteOffset":16.
 void add_place(std::size_t view, std::uint64_t offset, JsonObject& object) {
   object.add("bufferView", view);
   if (offset > 0) object.add("byteOffset", std::to_string(offset));
@@ -196,7 +196,7 @@ void NewArrays::put_in_order(std::span<const std::size_t> order) {
 
 std::size_t NewArrays::add_table(std::size_t rows, std::size_t width,
                                  const std::function<void(std::size_t row, std::span<float> values)>& fill) {
-  constexpr std::size_t kPart = std::size_t{1} << 20;  // bytes
+  constexpr std::size_t kPart = std::size_t{1} << 20;  // bytes that are added to the spool at once
   Stored stored;
   stored.array.count = rows * width;
   stored.at = spool_.size();

@@ -17,16 +17,18 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Returns the number of bytes of an array of floats, dense or sparse, whichever is shorter. Of `count` items `used`
-/// are not zero, the last of them at `last_used`. An array of zeros takes no bytes.
+/// Returns the number of bytes of an array of floats: stored dense or sparse, whichever is shorter. `count` is the
+/// number of elements, `used` the number of elements that are not zero, and `last_used` the index of the last of these.
+/// An array of zeros takes no bytes.
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
-/// Stores new arrays. Arrays of one kind share a buffer view: vectors, whose target is ARRAY_BUFFER (section 3.6.2.4 of
-/// the specification), scalars, and the indices and values of sparse accessors, neither of which may have a target.
+/// Stores new arrays, those of one kind in one buffer view. The kinds are vectors, whose view has the target
+/// ARRAY_BUFFER (section 3.6.2.4 of the specification), scalars, and the indices and the values of sparse accessors,
+/// whose views must not have a target.
 class NewArrays {
  public:
-  /// Puts the bytes of the arrays into the spool.
+  /// Creates an empty store that keeps the bytes of its arrays in `spool`.
   explicit NewArrays(Spool spool = {}) : spool_(std::move(spool)) {}
 
   /// Stores an array of `components` numbers per element, 1 or 3, unless an equal one exists already. Returns its
@@ -55,11 +57,12 @@ class NewArrays {
   [[nodiscard]] std::size_t view_count() const noexcept;
   /// Passes all bytes to `take`, in the order of the buffer, and forgets them. Errors: those of Spool::give_away().
   [[nodiscard]] Status give_away(const Spool::Take& take);
-  /// Returns all bytes, in the order of the buffer, as views, which live as long as this. The spool must be in memory
+  /// Returns all bytes, in the order of the buffer, as views that live as long as this object. The spool must be in
+  /// memory
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
-  /// The JSON of buffer views and of accessors, in the order of their indices, for bytes that begin at `offset`
-  /// of a buffer, and buffer views that are numbered from first_view.
+  /// The JSON of buffer views and accessors, in the order of their indices. json() returns it for bytes that begin at
+  /// `offset` of a buffer, and for buffer views that are numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;
   };
@@ -77,15 +80,16 @@ class NewArrays {
   // The bytes of an array, each part padded to a multiple of 4.
   struct Encoded {
     Array array;
-    std::string_view dense;       // the values, or `swapped` if the machine has another byte order
+    std::string_view dense;       // the values; a view of `swapped` if the machine has another byte order
     std::string indices, values;  // for the sparse_count elements that are not zero
     std::string swapped;
     std::size_t hash = 0;
 
     Encoded() = default;
-    Encoded(Encoded&&) = delete;  // views would not follow
+    Encoded(Encoded&&) = delete;  // a move would leave the views behind
   };
-  // The place of these bytes in the spool, where the parts are consecutive from `at` on.
+  // The place of an array in the spool: the parts follow each other from byte `at` on, and `dense`, `indices` and
+  // `values` are their sizes in bytes.
   struct Stored {
     Array array;
     std::uint64_t at = 0, dense = 0, indices = 0, values = 0;

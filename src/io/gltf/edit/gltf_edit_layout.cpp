@@ -14,14 +14,14 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::string_view kZeros{"\0\0\0\0\0\0\0", 7};
-// Bytes that are moved into the BIN chunk begin at a multiple of this, which suits numbers of every size.
+// Bytes that are moved into the BIN chunk begin at a multiple of this number, which aligns numbers of every size.
 constexpr std::size_t kViewAlignment = 8;
 
 std::string item_pointer(const char* array, std::size_t index) {
   return std::string("/").append(array).append("/").append(std::to_string(index));
 }
 
-// Returns the media type of an image by its first bytes, or nullptr if glTF files cannot have it.
+// Returns the media type of an image by its first bytes, or nullptr if glTF does not allow this type.
 const char* media_type_of(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG\r\n\x1A\n")) return "image/png";
   if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
@@ -49,7 +49,7 @@ void append_base64(std::string& text, const std::vector<std::string_view>& piece
   text.append((3 - size % 3) % 3, '=');
 }
 
-// Adds the members of an object except some.
+// Adds all members of an object except those named in `without`.
 void add_other_members(const std::vector<JsonMember>& members, std::initializer_list<std::string_view> without,
                        JsonObject& object) {
   for (const JsonMember& member : members) {
@@ -62,7 +62,8 @@ const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_
   return found == members.rend() ? nullptr : &*found;
 }
 
-// Returns a whole number that the reader has accepted, or that is in an extension that was not read; 4.0 is one too.
+// Returns the value of a member if it is a whole number, also if it is written as 4.0. The reader has accepted it, or
+// it is in an extension that was not read.
 std::optional<std::size_t> to_count(const JsonMember* member) {
   constexpr double kMost = 9007199254740992;  // 2^53
   if (member == nullptr) return std::nullopt;
@@ -154,7 +155,7 @@ Status EditLayout::find_images() {
   return Success{};
 }
 
-// Adds the accessors of new arrays, whose bytes begin at offset of a buffer.
+// Adds the accessors of new arrays. The bytes of the arrays begin at `offset` of the buffer.
 Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   NewArrays::Json json = document_.arrays.json(buffer, offset, document_.model.views.size());
   for (std::string& view : json.views) {
@@ -166,7 +167,8 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that become unused by the changes, in buffers inside the result, for which holds(buffer) is true.
+// Finds the arrays that the changes make unused, among the buffers for which holds(buffer) is true. These are the
+// buffers whose bytes are in the result.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};
@@ -195,8 +197,8 @@ Status EditLayout::lay_out_glb() {
   }
   const std::uint64_t array_bytes = document_.arrays.byte_count();
   const bool grows = array_bytes > 0 || !images_.empty();
-  // A .gltf file gets a BIN chunk. A GLB does not change if possible; if its BIN chunk gets more bytes, this chunk must
-  // be its buffer 0.
+  // A .gltf file that becomes a GLB gets a BIN chunk. A GLB keeps its buffers where they are if possible; if its BIN
+  // chunk gets more bytes, this chunk must be buffer 0.
   const bool must_move =
       !buffers.empty() && (!document_.is_glb || (target_.stands_alone && any_file) || (grows && !is_bin(0)));
   const auto is_held = [&](std::size_t i) { return is_bin(i) || (must_move && buffers[i].uri); };
@@ -229,7 +231,7 @@ Status EditLayout::lay_out_glb() {
     if (Status status = set(pointer, of_image.text()); !status) return status;
   }
 
-  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even if no other has any
+  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even if no buffer has any
   JsonObject buffer;
   buffer.add("byteLength", bin_size_);
   if (must_move) {
@@ -241,8 +243,8 @@ Status EditLayout::lay_out_glb() {
   return append("/buffers", buffer.text());
 }
 
-// Moves all buffers that have bytes into the BIN chunk, which then is buffer 0. Buffers without bytes, which compressed
-// buffer views name as a fallback, stay behind it.
+// Moves all buffers that have bytes into the BIN chunk, which becomes buffer 0. Buffers without bytes come after it;
+// compressed buffer views name them as a fallback.
 Status EditLayout::move_buffers() {
   const std::vector<Buffer>& buffers = document_.model.buffers;
   std::vector<Moved> moved;

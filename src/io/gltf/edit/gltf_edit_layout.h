@@ -42,13 +42,13 @@ struct LayoutTarget {
 
 class EditLayout {
  public:
-  /// Makes a layout. `changed` is the JSON of the document with its changes, to which this adds.
+  /// Prepares a layout. `changed` is the JSON of the document with its changes; run() edits it further.
   EditLayout(const EditedDocument& document, LayoutTarget target, JsonText changed)
       : document_(document), target_(std::move(target)), json_(std::move(changed)) {}
   EditLayout(EditLayout&&) noexcept = default;
 
-  /// Decides everything. Errors: a buffer or an image that cannot be read, too much for a GLB, a change that is not
-  /// possible.
+  /// Computes the layout. Errors: a buffer or an image that cannot be read, a result that is too large for a GLB, a
+  /// change that is not possible.
   [[nodiscard]] Status run();
 
   /// Return the results of run().

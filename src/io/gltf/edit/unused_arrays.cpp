@@ -89,12 +89,14 @@ class References {
   std::vector<bool> referred_;
 };
 
-// A part of a view that an accessor reads. A sparse accessor reads up to three: its own, its indices and its values.
+// A part of a view that an accessor reads. A sparse accessor reads up to three parts: its base values, its indices, and
+// the values that replace others.
 struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };
 
-// Returns the bytes of elements at a stride, or nothing on overflow.
+// Returns the number of bytes from the first element to the end of the last one, for elements that are `stride` bytes
+// apart. Returns nothing on overflow.
 std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std::size_t size) {
   if (count == 0) return 0;
   if (stride > 0 && count - 1 > (static_cast<std::size_t>(-1) - size) / stride) return std::nullopt;
@@ -159,7 +161,7 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   return result;
 }
 
-// The new places of bytes after some ranges were left out.
+// Maps the old place of a byte to its new place after some ranges were left out.
 class Moved {
  public:
   explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {
@@ -177,7 +179,7 @@ class Moved {
 
  private:
   const std::vector<Range>& ranges_;
-  std::vector<std::size_t> before_;  // bytes that are left out before each
+  std::vector<std::size_t> before_;  // for each range, the number of bytes that are left out before it
 };
 
 }  // namespace
@@ -268,7 +270,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     std::vector<Range>& ranges = result.ranges[b];
     if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
     if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
-      ranges.front().begin = kRangeAlignment;  // the view is then a single range
+      ranges.front().begin = kRangeAlignment;  // the only range is the whole buffer; its first bytes stay
       if (ranges.front().begin == ranges.front().end) ranges.clear();
     }
     moved.emplace_back(ranges);

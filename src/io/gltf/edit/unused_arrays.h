@@ -31,7 +31,7 @@ struct UnusedArrays {
 
   std::vector<std::vector<Range>> ranges;  ///< ranges of each buffer, ascending and apart; empty if nothing is left out
   std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty if no view moves
-  /// Pointers, and the values that they need once these bytes are left out.
+  /// Changes to the JSON after these bytes are left out: JSON pointers and new values.
   std::vector<std::pair<std::string, std::string>> changes;
 
   [[nodiscard]] bool any() const noexcept { return !ranges.empty(); }
@@ -41,9 +41,9 @@ struct UnusedArrays {
   [[nodiscard]] std::vector<std::string_view> kept(std::size_t buffer, std::string_view bytes) const;
 };
 
-/// Finds the unused arrays. sizes has the bytes of each buffer of the model that may become shorter, and nothing for
-/// the others. before is the JSON of the source, from which the model was parsed; after is the JSON of the edited
-/// document. O(size of the JSON).
+/// Finds the unused arrays of `model`, which was parsed from `before`, the JSON of the source. `after` is the JSON of
+/// the edited document. For each buffer, `sizes` has the number of its bytes if it may become shorter, and nothing
+/// otherwise. O(size of the JSON).
 [[nodiscard]] UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optional<std::size_t>> sizes,
                                               std::string_view before, std::string_view after);
 

@@ -31,13 +31,13 @@ struct GlbChunks {
 };
 
 [[nodiscard]] inline bool is_glb(std::string_view bytes) noexcept { return bytes.starts_with("glTF"); }
-/// Returns whether files with this extension, in lower case, are GLB files: avatars are too.
+/// Returns true for extensions of GLB files, in lower case. VRM avatars are GLB files, too.
 [[nodiscard]] inline bool is_glb_extension(std::string_view extension) noexcept {
   return extension == ".glb" || extension == ".vrm";
 }
 
-/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a length that differs from
-/// the file's, chunks that do not lie inside it, no JSON chunk first. Bytes after the declared length are refused.
+/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a declared length that
+/// differs from the size of the file, a chunk that does not lie inside the file, a first chunk that is not JSON.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
 /// The headers and the padding around the chunks of a file. A file has a JSON chunk and at most one BIN chunk.
@@ -58,8 +58,8 @@ struct GlbPieces {
   std::vector<std::string_view> pieces;
 };
 
-/// Lays chunks out as a file. bin: none for no BIN chunk. rest: further chunks, with their headers. Errors: errors of
-/// frame_glb().
+/// Lays chunks out as a file. `bin` is nothing if there is no BIN chunk; `rest` is the further chunks with their
+/// headers. Errors: those of frame_glb().
 [[nodiscard]] Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
                                             const std::optional<std::vector<std::string_view>>& bin,
                                             std::string_view rest, const std::string& name);

@@ -29,12 +29,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns "chronormal 0.2.0", which files name as their generator.
+/// Returns the text that files name as their generator, such as "chronormal 0.2.0".
 [[nodiscard]] std::string_view generator_name() noexcept;
 
 class GlbBuilder {
  public:
-  /// Takes bytes that follow the bytes that it took before, of a file that has file_size bytes in the end.
+  /// Takes the next bytes of a file, in order. `file_size` is the size of the whole file in bytes.
   using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
   /// Returns a Take that appends the bytes to `file`, which must outlive it.
   [[nodiscard]] static Take gather_in(std::string& file);
@@ -42,14 +42,14 @@ class GlbBuilder {
   /// The largest size of a GLB, which stores its size in 32 bits.
   static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
 
-  /// Makes a file of at most this many bytes, and never more than kMostBytes. Its arrays are stored in the spool until
-  /// the file is assembled, since the JSON with their places comes first.
+  /// Begins a file of at most most_bytes bytes, and never more than kMostBytes. The arrays stay in the spool until the
+  /// end, because the JSON with their places comes first in the file.
   explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
   /// Sets the corners of the triangles, in 16 bits if that is enough for the vertices. Returns their accessor.
   std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
   /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index. An equal array is stored only
-  /// once. The preconditions are the ones of GltfEdit
+  /// once. The preconditions are those of GltfEdit
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
   /// Adds an accessor of SCALAR (rows x width), row by row: fill(row, values) writes one row over zeros. Returns its
@@ -57,8 +57,8 @@ class GlbBuilder {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Renumbers the accessors of arrays: the accessor order[i] becomes the i-th after the triangles, and bytes get the
-  /// same order. Nothing may be added afterwards. `order` must contain each accessor of an array once
+  /// Renumbers the accessors of arrays: accessor order[i] becomes the i-th after the triangles, and the bytes of the
+  /// arrays get the same order. Nothing may be added afterwards. `order` must contain each accessor of an array once
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.
@@ -66,13 +66,13 @@ class GlbBuilder {
 
   /// Returns success if all arrays could be stored. Errors: those of the spool.
   [[nodiscard]] const Status& status() const noexcept { return arrays_.status(); }
-  /// Returns the bytes of the arrays so far.
+  /// Returns the number of bytes of all arrays so far.
   [[nodiscard]] std::uint64_t byte_count() const noexcept { return indices_.size() + arrays_.byte_count(); }
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
-  /// Assembles the file, passes its bytes to `take` and forgets them. Returns their number. Errors: kInvalidInput if
-  /// there would be too many, before `take` gets any; those of the spool and of `take`.
+  /// Assembles the file, passes its bytes to `take` and forgets them. Returns the size of the file in bytes. Errors:
+  /// kInvalidInput if the file would be too large, before `take` is called; those of the spool and of `take`.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
   /// Puts the file together in memory.
   [[nodiscard]] Result<std::string> finish();

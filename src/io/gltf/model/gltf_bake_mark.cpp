@@ -17,7 +17,8 @@ using Json = nlohmann::json;
 // the weights of all other targets.
 constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
 
-// Returns the items of an array that may be missing or empty. Returns none after a complaint.
+// Returns the items of an array. Returns no items if the array is missing or empty, and also after a complaint about
+// it.
 std::vector<JsonView> items_of(const JsonView& view, const Json& value, const char* key) {
   const auto found = value.find(key);
   if (found == value.end() || (found->is_array() && found->empty())) return {};
@@ -50,7 +51,7 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
   }
 }
 
-// Reads the terms of two factors; `own` are the targets that are not correction targets.
+// Reads terms that are products of two factors. `own` are the targets that are not correction targets.
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
@@ -95,7 +96,7 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
   }
 }
 
-// Returns the targets that no extra target names as itself.
+// Returns the targets of the author: all targets that are not correction targets.
 std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras, std::size_t target_count) {
   std::vector<bool> is_extra(target_count);
   for (const GltfExtraTarget& extra : extras) is_extra[extra.target] = true;
@@ -105,7 +106,8 @@ std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras,
   return own;
 }
 
-// Reads a flag that may be 0 or 1: editors that keep extras as custom properties know no booleans (Blender 3.4).
+// Reads a flag that may also be 0 or 1, because editors that keep extras as custom properties store no booleans
+// (Blender 3.4).
 bool read_flag(const JsonView& view, const Json& value, const char* key) {
   const auto found = value.find(key);
   if (found != value.end() && (*found == 0 || *found == 1)) return *found == 1;

@@ -1,5 +1,4 @@
-/// The mark that a bake leaves in extras.chronormal (docs/formats.md): written and read here. Private to io and
-/// workflow.
+/// Reads and writes the mark that a bake leaves in extras.chronormal (docs/formats.md). Private to io and workflow.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_BAKE_MARK_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_BAKE_MARK_H_
 
@@ -10,8 +9,9 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Sets mesh.mark if there is a mark, or mesh.mark_fault if the mark makes no sense. Anyone may write extras, so they
-/// never make a file unreadable. pointer leads to the mesh, name is the file's; mesh must have its target_count
+/// Sets mesh.mark if there is a mark, or mesh.mark_fault if the mark makes no sense. Anyone may write extras, so a
+/// wrong mark never makes a file unreadable. `pointer` is the JSON pointer of the mesh, and `name` the name of the
+/// file; mesh.target_count must be set
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
 

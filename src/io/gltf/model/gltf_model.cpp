@@ -115,10 +115,11 @@ void Parser::parse_asset(const JsonView& root) {
 void Parser::check_required(const JsonView& root) {
   const std::optional<JsonView> required = root.array("extensionsRequired");
   if (!required) return;
-  // Extensions of a part that is read may change its meaning: of a primitive, its mesh, and everything with bytes.
+  // Unknown extensions may change the meaning of the parts that are read: of a primitive, of its mesh, and of all parts
+  // that have bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
-    // Points and lines are not read.
+    // Primitives of points and lines are not read.
     const auto mode = value.find("mode");
     if (mode != value.end() && mode->is_number_unsigned() && mode->get<std::size_t>() < 4) return false;
     const auto found = value.find("extensions");
@@ -239,7 +240,8 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
     item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
                                " bytes do not fill the buffer view, which has " + std::to_string(view.length) +
                                " bytes");
-  // The encoding spends at least a bit per 8 bytes; a little file must not ask for a lot of memory.
+  // The encoding spends at least one bit per 8 bytes of result, so a longer result is refused: a small file must not
+  // ask for much memory.
   if (view.length / 256 > result.length)
     item.complain("byteLength", "the compressed data are too short for the " + std::to_string(view.length) +
                                     " bytes that they should hold");
@@ -357,7 +359,7 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
 void Parser::check_nodes(const JsonView& root) {
   if (complaint_.first() || !root.has("nodes")) return;
   const std::size_t count = model_.nodes.size();
-  // Items that are left in the array were no objects.
+  // The items that are objects were moved out of the array, so an item that is left is not an object.
   if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
     return root.complain("nodes", "nodes must be an array of at least one object");
   for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
@@ -415,7 +417,8 @@ void Parser::connect_nodes() {
       return complaint_.add(pointer, "node " + std::to_string(child) + " is a child of two nodes");
     model_.nodes[child].parent = parent;
   }
-  // Parents form a forest: a walk that meets its own path again is in a circle. Every node is walked over once.
+  // A walk from a node up through its parents must end at a root. A walk that meets its own path again has found a
+  // circle. No node is walked over twice.
   std::vector<std::uint32_t> seen_from(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const auto mark = static_cast<std::uint32_t>(i + 1);
@@ -429,8 +432,8 @@ void Parser::connect_nodes() {
   }
 }
 
-// Takes marks from nodes, since other programs drop the extras of meshes and keep the extras of nodes, and some hang
-// the mesh on a new node below.
+// Takes marks also from nodes, because other programs keep the extras of nodes and drop the extras of meshes. Some of
+// these programs also move the mesh to a new child of the node.
 void Parser::read_marks_of_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const GltfNode& node = model_.nodes[i];

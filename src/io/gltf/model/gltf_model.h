@@ -1,4 +1,4 @@
-/// The JSON of a glTF file as structs, with references checked, from which its bytes are read. Private to io.
+/// The JSON of a glTF file as structs whose references were checked, and by which its bytes are read. Private to io.
 ///
 /// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; this half has the places of their
 /// arrays. Parts that are read are checked: a buffer view against its buffer, and an accessor that a primitive or a
@@ -20,7 +20,7 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The values are the format's.
+/// The type of a component, with the numbers that glTF uses.
 enum class Component { kInt8 = 5120, kUint8 = 5121, kInt16 = 5122, kUint16 = 5123, kUint32 = 5125, kFloat = 5126 };
 
 [[nodiscard]] constexpr std::size_t component_size(Component component) noexcept {
@@ -72,12 +72,12 @@ struct Accessor {
   [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
 };
 
-/// The indices of accessors.
+/// The accessors of a primitive's attributes, by index.
 struct Attributes {
   std::optional<std::size_t> position, normal, tangent;
 };
 
-/// A primitive that KHR_draco_mesh_compression compresses, with ids of attributes in the compressed mesh.
+/// A primitive that KHR_draco_mesh_compression compresses. `attributes` has ids in the compressed mesh.
 struct Draco {
   std::size_t view = 0;
   Attributes attributes;
@@ -119,8 +119,8 @@ struct ElementSource {
 
 struct TrackSource {
   std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
-  /// If every weight has its own channel: these channels, in the order of targets; `input` and `output` then belong to
-  /// the first one. Weights without a channel keep their constant value.
+  /// The channels of single weights, in the order of targets, if the track consists of such channels. Then `input` and
+  /// `output` above belong to the first channel. Weights without a channel keep their value in `rest`.
   std::vector<ElementSource> elements = {};
   std::vector<double> rest = {};
 };
@@ -141,7 +141,7 @@ struct NodeChannels {
   std::optional<Error> fault;  ///< why they cannot be read
 };
 
-/// The place of a node in its parent, as a matrix, or in the parts that animations can move.
+/// The transform of a node relative to its parent: as a matrix, or as separate parts that animations can move.
 using Placement = std::variant<AffineTransform, NodeTransform>;
 
 struct Model {
@@ -160,7 +160,7 @@ struct Model {
   std::vector<Error> notes;  ///< faults of parts that no other part needs
 };
 
-/// Returns the place of a node in its parent, as the file has it. O(log nodes).
+/// Returns the transform of a node relative to its parent, without animation. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
 /// Returns a placement as a transform.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;

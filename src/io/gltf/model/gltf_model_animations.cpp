@@ -112,7 +112,7 @@ void Parser::parse_animation(const JsonView& item) {
   if (complaint_.first()) return;
   const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
   if (complaint_.first()) return;
-  // Equal accessors give the same weights only with the same interpolation and number of targets.
+  // Tracks with equal accessors have the same weights only if interpolation and number of targets are also equal.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
     GltfTrack& track = animation.tracks[t];
@@ -177,9 +177,10 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       track.interpolation = of_weight.interpolation;
       source = read;
     }
-    // This is an upper bound. How many keys are at the same times is known when they are read.
+    // This count is an upper bound, because channels may have keys at the same times. That is known only when the keys
+    // are read.
     if (inputs.insert(read.input).second) track.key_count = saturating_sum(track.key_count, of_weight.key_count);
-    // A line is a cubic, too. A step is neither.
+    // A line can be written as a cubic, so these two can share a track. A step cannot be written as a line or a cubic.
     const bool is_step = of_weight.interpolation == GltfInterpolation::kStep;
     if (is_step != (track.interpolation == GltfInterpolation::kStep))
       return target.complain(

@@ -16,7 +16,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Weights of an expression beyond this are treated as errors and ignored.
+// The largest weight of an expression. Larger weights are taken for errors and ignored.
 constexpr double kLargestBind = 100;
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
@@ -46,8 +46,8 @@ void Parser::parse_mesh(const JsonView& item) {
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
   mesh.weights.resize(mesh.target_count, 0.0);
-  // Target names are a convention, not part of the format, so names that do not fit are not a fault. Older versions of
-  // UniVRM write them into each primitive.
+  // Target names are a convention and not part of the format, so a list of the wrong form or length is not an error.
+  // Older versions of UniVRM write the names into each primitive.
   for (const char* const place : {"/extras/targetNames", "/primitives/0/extras/targetNames"}) {
     const nlohmann::json::json_pointer pointer(item.pointer() + place);
     if (!mesh.target_names.empty() || !document_->contains(pointer)) continue;
@@ -154,7 +154,7 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
     if (target.size() == 0) note(target, "the target is empty, and is read as one that moves nothing");
-    if (target.size() == 0 || !source.base.position) {  // none of it is read
+    if (target.size() == 0 || !source.base.position) {  // such a target is not read
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -363,7 +363,8 @@ void Parser::check_unstrided(const JsonView& object, const char* key, const Buff
 
 namespace {
 
-// Calls visit(name, binds) for each expression of a VRM avatar, in the form of its version.
+// Calls visit(name, binds) for each expression of a VRM avatar, where `binds` is the list of the targets that it moves.
+// Versions 0 and 1 of VRM store expressions in different places.
 template <class Visit>
 void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   using Pointer = nlohmann::json::json_pointer;
@@ -385,7 +386,7 @@ void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   }
 }
 
-// Returns a member of an object that is a whole number below a limit.
+// Returns the value of a member if it is a whole number below a limit.
 std::optional<std::size_t> whole_below(const nlohmann::json& object, const char* key, std::size_t limit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return std::nullopt;

@@ -23,7 +23,7 @@ class Parser {
 
   /// Parses a node, possibly before all other parts.
   void parse_node(std::size_t index, const nlohmann::json& value);
-  /// Parses the rest, and checks nodes against it.
+  /// Parses all other parts, and checks nodes against them.
   Result<Model> parse(const nlohmann::json& document);
 
  private:
@@ -45,7 +45,8 @@ class Parser {
     kTurnedNode  ///< rotations over time
   };
 
-  /// Parses a part of the file that only its users must understand, and takes its complaint.
+  /// Parses a part that may be at fault as long as nothing uses it. Returns the first complaint about it, which then
+  /// does not count as an error of the file.
   template <class Parse>
   std::optional<Error> fault_of(const Parse& parse) {
     if (complaint_.first()) return std::nullopt;
@@ -91,7 +92,7 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
-  /// Gives meshes without a mark of a bake the mark of a node with the mesh, or of the node above that.
+  /// Gives each mesh that has no mark of a bake the mark of a node that carries it, or of the parent of such a node.
   void read_marks_of_nodes();
   /// Returns the member "weights" of a mesh or node, or nothing if there is none.
   static std::vector<double> parse_weights(const JsonView& item);
@@ -113,7 +114,7 @@ class Parser {
   void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
   void check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use);
   void check_sparse(const JsonView& object, const char* key, std::size_t index);
-  /// Returns the buffer view of an accessor, and complains if that cannot be read.
+  /// Returns the buffer view of an accessor, and complains if the view cannot be read.
   const BufferView& view_of(std::size_t index);
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
@@ -128,7 +129,7 @@ class Parser {
   };
   /// Returns the weights to which a pointer of KHR_animation_pointer refers.
   Driven pointed_to(const JsonView& target);
-  /// A channel of a single weight, with the weight's index.
+  /// A channel of a single weight, with the index of its target.
   struct LoneWeight {
     std::size_t channel = 0, target = 0;
   };
@@ -152,9 +153,9 @@ class Parser {
   bool is_strict_;
   bool quantized_ = false;
   Model model_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // parent and child
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // pairs of parent and child
   std::vector<std::pair<std::uint32_t, Error>> misplaced_;         // nodes whose placement cannot be read
-  nlohmann::json marked_;                                          // extras.chronormal of nodes, each at its pointer
+  nlohmann::json marked_;  // extras.chronormal of nodes, each at the JSON pointer of its node
 };
 
 }  // namespace chronormal::inline internal::gltf

@@ -58,7 +58,7 @@ int hexadecimal(char c) {
 std::optional<std::string> decode_percent(std::string_view uri) {
   std::string path;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    // Exporters that do not encode leave percent signs unchanged.
+    // Some exporters do not encode names, so a percent sign that begins no code stands for itself.
     const bool is_code =
         uri[i] == '%' && uri.size() - i >= 3 && hexadecimal(uri[i + 1]) >= 0 && hexadecimal(uri[i + 2]) >= 0;
     if (!is_code) {
@@ -73,7 +73,7 @@ std::optional<std::string> decode_percent(std::string_view uri) {
   return path;
 }
 
-// Returns whether the URI begins with "http:", "file:", "C:" and the like.
+// Returns true if the URI begins with a scheme or a drive, such as "http:", "file:" or "C:".
 bool has_scheme(std::string_view uri) {
   const std::size_t colon = uri.find(':');
   return colon != std::string_view::npos && colon < uri.find('/') && colon > 0;
@@ -95,8 +95,8 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   return path_of(*relative);
 }
 
-// Returns the file of a path. If it does not exist, returns the file that was probably meant: the URI without decoding,
-// or a name in the same folder that is equal in another Unicode form.
+// Returns the path if a file exists there. Otherwise returns the file that was probably meant: the URI without
+// decoding, or a name in the same folder that is equal in another Unicode form.
 fs::path existing(const fs::path& path, const fs::path& literal) {
   std::error_code code;
   if (fs::exists(path, code)) return path;

@@ -27,9 +27,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
-/// Returns the name of the file for a relative URI, if files are found by their names and not in a file system: the
-/// folder and the URI joined to a path, without "." and "..". Errors: those of resolve_file_uri(), and a URI that leads
-/// out of the folder.
+/// Returns the name of the file for a relative URI if a resolver finds files by their names, without a file system. The
+/// name is the folder and the URI, joined to a path without "." and "..". Errors: those of resolve_file_uri(), and a
+/// URI that leads out of the folder.
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 

@@ -13,7 +13,8 @@ struct Parts {
   std::uint16_t whole, letter, mark;
 };
 
-// Lists letters and their parts, ascending, from the Unicode Character Database (Decomposition_Mapping).
+// Lists composed letters with the two characters into which each decomposes, ascending, from the Unicode Character
+// Database (Decomposition_Mapping).
 constexpr auto kParts = std::to_array<Parts>(
     {{0xC0, 0x41, 0x300},      {0xC1, 0x41, 0x301},      {0xC2, 0x41, 0x302},      {0xC3, 0x41, 0x303},
      {0xC4, 0x41, 0x308},      {0xC5, 0x41, 0x30A},      {0xC7, 0x43, 0x327},      {0xC8, 0x45, 0x300},
