@@ -46,7 +46,7 @@ std::vector<Size> parse_sizes(const std::string& list) {
   return sizes;
 }
 
-// Fails early if the file cannot be written, before ten minutes of work are lost.
+// Fails early if the file cannot be written; otherwise ten minutes of measurements would be lost.
 void check_writable(const std::string& json) {
   if (json.empty() || json == "-") return;
   if (!std::ofstream(json, std::ios::binary | std::ios::app))

@@ -1,9 +1,9 @@
 // chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
-// sequence, together with lower bounds: reading the bytes of its files (cat), copying them in memory (memcpy), reading
-// the files as a motion, and for a command that writes a large file, copying that file to the disk. It also measures
-// the reading of one frame of OBJ, beside a loop that finds its numbers with std::from_chars, and beside other
-// libraries where they are installed; all of them must find the same positions before they are timed. With --json FILE
-// it also writes what it prints, for docs/benchmarks.md.
+// sequence. For comparison it measures lower bounds: reading the bytes of the files (cat), copying them in memory
+// (memcpy), reading the files as a motion, and copying the output to the disk for a command that writes a large file.
+// It also measures how long one frame of OBJ takes to read: by our reader, by a loop that finds its numbers with
+// std::from_chars, and by other libraries if they are installed. All of them must find the same positions before they
+// are timed. With --json FILE it also writes the results to a file, for docs/benchmarks.md.
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -121,7 +121,7 @@ Times time_command(const std::string& program, const std::vector<std::string>& a
   });
 }
 
-// Copies a file until it is on the disk, as the program does with its outputs, and removes the copy.
+// Copies a file until it is on the disk, as the program does with its outputs. Removes the copy afterwards.
 int copy_to_disk(const std::string& file) {
   const std::string copy = file + ".copy";
   const int from = ::open(file.c_str(), O_RDONLY), to = ::open(copy.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
@@ -148,7 +148,7 @@ Json measure_input(const std::string& program, const std::string& title, const s
   InputOptions input;
   input.files = files;
   const auto open = [&input] { return open_input(input) ? 0 : 1; };
-  time_child("reading", open);  // brings the files into the memory of the system
+  time_child("reading", open);  // loads the files into the file cache of the system
   const Times cat = time_child("cat", [&] {
     std::vector<char> buffer(1 << 17);
     for (const std::string& file : files) {
@@ -235,7 +235,7 @@ Json measure_obj(const std::string& file) {
                        Assimp::Importer importer;
                        const aiScene* const scene = importer.ReadFileFromMemory(text.data(), text.size(), 0, "obj");
                        if (scene == nullptr) throw std::runtime_error(importer.GetErrorString());
-                       std::vector<float> positions;  // one for each corner, in the library's layout
+                       std::vector<float> positions;  // one position for each corner, in the library's layout
                        for (unsigned m = 0; m < scene->mNumMeshes; ++m)
                          positions.resize(positions.size() + 3 * std::size_t{scene->mMeshes[m]->mNumVertices});
                        return positions;

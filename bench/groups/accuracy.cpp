@@ -44,7 +44,7 @@ struct Subject {
   }
 };
 
-// A path that writes float3.
+// Makes a Path that writes its normals as three floats each.
 Path float_path(const Subject& subject, std::string name, double bound, double bytes,
                 std::function<void(std::size_t, double, VectorView<float>)> evaluate) {
   auto memory = std::make_shared<std::vector<float>>(3 * subject.count);

@@ -22,7 +22,7 @@ constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // share of vertices per target, as in a face with 102 targets
 constexpr double kDisplacement = 0.1;  // multiple of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
-// The linear sum is inexact by design, so this limit in radians reveals gross mistakes only.
+// The limit in radians for the linear sum. It is inexact by design, so the limit reveals gross mistakes only.
 constexpr double kLinearError = 3.2;
 
 // Makes targets that move a region around a random vertex and fall off smoothly, in the order of the mesh.
@@ -59,7 +59,7 @@ BlendSet make_sparse(const Mesh& mesh) {
   return set;
 }
 
-// Makes targets that each move every vertex by a wave of its own.
+// Makes targets that move every vertex, each target by a different wave.
 BlendSet make_dense(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();
@@ -87,7 +87,7 @@ std::vector<double> make_weights(std::size_t active, std::size_t targets) {
   return weights;
 }
 
-// Computes n(w) from blended positions in double.
+// Computes the normals at the given weights exactly: from positions that are blended in double.
 std::vector<Vector> exact_normals(const BlendSet& set, std::span<const double> weights, const Oracle& oracle) {
   std::vector<double> p(set.base.begin(), set.base.end());
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -127,7 +127,7 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// Adds up sparse deltas between the unit normals of the base and of each target, as engines do.
+// Adds up the unit normals of the base and the sparse deltas of each target, as engines do.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {
@@ -251,7 +251,7 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("chosen", kExactError, "", [weights](Subject& on) { (void)on.normals.unit_normals(weights, on.result); });
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
-    // Positions blended in float32 are rounded in the last bit, which matters relative to the length of an edge.
+    // Blending in float32 rounds positions in the last bit, which is large relative to the length of an edge.
     add("chosen in float32", kFloatError, "",
         [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {

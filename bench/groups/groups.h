@@ -18,8 +18,6 @@ void run_meshes(Suite& suite);
 /// Measures every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Measures normals of degree 6 of vertices on cubics, beside degree 2, double, and moving the positions first.
-
 /// Measures bounds of the largest errors of schemes, beside dense sampling.
 void run_certificates(Suite& suite, const Size& size);
 

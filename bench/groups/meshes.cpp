@@ -21,7 +21,8 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// The limit in radians for needles and for vertices whose faces nearly cancel. It reveals gross mistakes only.
+// The limit in radians for needles (very thin triangles) and for vertices whose face normals nearly cancel. It reveals
+// gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
 // The torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
@@ -32,13 +33,14 @@ Mesh thin() {
   return {torus.topology(), from, to};
 }
 
-// The torus with the diagonal of every third quad turned, so that vertices have from 4 to 8 faces and more.
+// Returns the torus with the diagonal of every third quad turned, so that the number of faces around a vertex varies
+// from 4 to 8 and more.
 Mesh varied() {
   const Mesh torus(Elements::kFaces, kFaces, false);
   std::vector<std::uint32_t> corners(torus.topology().corners().begin(), torus.topology().corners().end());
   std::mt19937_64 random(1);
   for (std::size_t i = 0; i + 6 <= corners.size(); i += 6) {
-    // Triangles a b c and a c d become a b d and b c d.
+    // The two triangles a b c and a c d of a quad become a b d and b c d.
     if (random() % 3 != 0) continue;
     corners[i + 2] = corners[i + 5];
     corners[i + 3] = corners[i + 1];

@@ -17,8 +17,9 @@
 namespace chronormal::bench {
 namespace {
 
-// Schemes that follow the exact curve must agree with it up to rounding, and schemes that interpolate exact normals up
-// to the rounding of float32. The other schemes are checked for gross mistakes only. All limits are in radians.
+// Limits in radians. Schemes that follow the exact curve must agree with it up to rounding, and schemes that
+// interpolate exact normals must agree with their formula up to the rounding of float32. All others are checked for
+// gross mistakes only.
 constexpr double kExactError = 1e-6, kFormulaError = 2e-6, kApproximationError = 0.8, kPlayedError = 5e-5;
 constexpr std::size_t kSteps = 1024;
 
@@ -60,7 +61,7 @@ std::vector<Vector> along_great_circle(const Oracle& oracle, double t) {
 }
 
 struct Expectation {
-  std::function<std::vector<Vector>(const Oracle&)> expected;  // if empty, the exact normals are expected
+  std::function<std::vector<Vector>(const Oracle&)> expected;  // if empty, the exact normals
   double limit = kApproximationError;
   std::string note;
 };

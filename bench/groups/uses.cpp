@@ -1,6 +1,6 @@
 // Answers queries about a whole segment from control normals in memory: when faces collapse, and from which side they
-// are seen. Also times the evaluation of the same control normals at one t, and what other programs do to get such an
-// answer.
+// are seen. For comparison, also times the evaluation of the same control normals at one t, and the methods by which
+// other programs answer such a query.
 
 #include <fmt/core.h>
 
@@ -25,7 +25,7 @@ struct Question {
   Segment segment;
   std::vector<ControlNormals> normals;
   std::vector<ShutterSide> sides;
-  std::vector<Facing> facings;  // for a block of faces at a time
+  std::vector<Facing> facings;  // result for one block of faces
 
   explicit Question(const Segment& of)
       : segment(of), normals(of.topology->face_count()), sides(of.topology->face_count()), facings(1024) {
@@ -69,7 +69,7 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Compares the sides with many samples of some faces: a culled face must show no front in any sample.
+// Compares the results with many samples of some faces. A face that is culled must not show its front in any sample.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

@@ -23,7 +23,7 @@ struct Certified {
   std::vector<float> shown;  // normals of the scheme at kTime
 };
 
-// Returns the largest angle of each face over the samples, which a certificate bounds.
+// Returns the largest angle of each face over the samples. A certificate must be at least as large.
 std::vector<double> sampled(const Scheme& scheme, const Segment& segment, std::size_t count) {
   std::vector<double> worst(count);
   std::vector<float> shown(3 * count);

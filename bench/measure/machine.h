@@ -11,11 +11,11 @@ namespace chronormal::bench {
 /// Returns names and values in the order in which they are shown: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// Returns the distance at which evaluations prefetch curves (PrefetchRule), as found in this run.
+/// Returns the distance at which evaluations prefetch curves (PrefetchRule), as this run has measured it.
 [[nodiscard]] std::string chosen_prefetch();
 
-/// Makes every large allocation of this process come in huge pages, including allocations of libraries, by restarting
-/// the program with a tunable of the C library. Does nothing after the restart.
+/// Restarts the program with a tunable of the C library, so that every large allocation of this process uses huge
+/// pages, including allocations of libraries. Does nothing after the restart.
 void restart_with_huge_pages(char** argv);
 
 }  // namespace chronormal::bench

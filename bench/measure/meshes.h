@@ -1,9 +1,8 @@
 /// The meshes that are measured: a closed grid on a torus, in the order of the grid or shuffled.
 ///
-/// Every vertex has six faces. The first keyframe is a torus with ripples; in the second one it is turned by 60
-/// degrees, stretched, and twisted around its own tube by up to a radian, so that no face merely moves along, and none
-/// collapses. A mesh has n vertices and 2 n faces; n is chosen so that the measured elements are about as many as
-/// requested.
+/// Every vertex has six faces. The first keyframe is a torus with ripples. In the second keyframe the torus is turned
+/// by 60 degrees, stretched, and twisted around its own tube by up to a radian, so that every face changes its shape,
+/// and none collapses. A mesh has n vertices and 2 n faces; n is chosen to get about the requested number of elements.
 #ifndef BENCH_MEASURE_MESHES_H_
 #define BENCH_MEASURE_MESHES_H_
 
@@ -23,7 +22,7 @@ class Mesh {
   /// Makes a mesh with about element_count of the elements. If shuffled, vertices and faces are in a random order that
   /// is the same in every run.
   Mesh(Elements elements, std::size_t element_count, bool shuffled);
-  /// Takes any triangles, with packed positions at both ends.
+  /// Makes a mesh of any triangles, with packed positions at both ends of the segment.
   Mesh(Topology topology, std::span<const float> from, std::span<const float> to);
 
   /// Returns a segment of packed positions, which refers to this mesh: the mesh must outlive it.

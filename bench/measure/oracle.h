@@ -1,8 +1,9 @@
-/// The oracle that every benchmark is compared with before it is timed: eq. 1 on interpolated vertices, in double.
+/// The oracle that every benchmark is compared with before it is timed: it interpolates the vertices and computes the
+/// normals by eq. 1 of docs/theory.md, all in double.
 ///
-/// The oracle never calls the library: neither its vectors, nor its control normals. An edge of float32 positions has
-/// an error of at most the last bit in double, so the direction of a normal has an error of 1e-15 rad, times the length
-/// of the edges divided by the height of the triangle.
+/// The oracle calls no code of the library, neither for vectors nor for control normals. Differences of float32
+/// positions are exact in double up to the last bit, so the direction of a normal has an error of 1e-15 rad, times the
+/// length of the edges divided by the height of the triangle.
 #ifndef BENCH_MEASURE_ORACLE_H_
 #define BENCH_MEASURE_ORACLE_H_
 
@@ -49,8 +50,8 @@ class Oracle {
   /// Returns the angles between n(t) and normal_of(element). Leaves out elements without a direction: an element
   /// collapses if n(t) is below 1e-7 of the sum of its areas.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
-  /// Returns the angles between given exact normals and normal_of(element). Leaves out elements without a direction if
-  /// `exact` are sums by area.
+  /// Returns the angles between the given exact normals and normal_of(element). If the exact normals are sums by area,
+  /// leaves out elements without a direction.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:

@@ -22,7 +22,7 @@ struct Report {
 };
 
 [[nodiscard]] std::string tables_of(const Report& report);
-/// Writes four significant digits, since further digits are noise.
+/// Returns the report as JSON. Numbers have four significant digits, because further digits would be noise.
 [[nodiscard]] std::string json_of(const Report& report);
 
 }  // namespace chronormal::bench

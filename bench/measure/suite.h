@@ -1,5 +1,5 @@
-/// Runs groups of cases. Compares each case with the oracle, then times all cases in random order, beside the speed of
-/// memory, and makes a row of each.
+/// Runs groups of cases. Compares the result of each case with the oracle, then times all cases in random order,
+/// together with the speed of memory. Makes a row of each case.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -118,7 +118,7 @@ class CaseList {
   std::vector<Case> cases_;
 };
 
-/// The time t of every verification. It is not a short binary fraction, so weights are rounded as in general.
+/// The time t of every verification. It is not a short binary fraction, so that products with it must be rounded.
 inline constexpr float kTime = 0.3f;
 
 }  // namespace chronormal::bench

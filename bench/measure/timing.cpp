@@ -10,10 +10,10 @@
 namespace chronormal::bench {
 namespace {
 
-// A function that takes up to kShort seconds is called kWarmCalls times before it is timed, up to kSlow seconds once,
-// and a longer one never. Several calls are needed because data that barely exceeds a cache takes several passes to
-// reach a steady state in the cache. Beyond kVerySlow the first rough timing counts as a result, and only one more call
-// follows.
+// A function that takes at most kShort seconds is called kWarmCalls times before it is timed. Several calls are needed
+// because data that barely exceed a cache reach a steady state only after several passes. A function that takes at most
+// kSlow seconds is called once before, and a slower one never. Beyond kVerySlow seconds, the first rough timing counts
+// as a result, and only one more call follows.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 

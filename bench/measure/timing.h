@@ -26,7 +26,7 @@ struct Timed {
   std::vector<double> nanoseconds = {};  ///< per call, one value for each repetition
 };
 
-/// Estimates the seconds per call by a few calls.
+/// Estimates the seconds that a call takes, from a few calls.
 [[nodiscard]] double roughly_timed(const std::function<void()>& run);
 
 /// Sets `nanoseconds` of each function.

@@ -12,7 +12,7 @@ namespace chronormal::bench::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kAhead = 2048;  // bytes between the data in use and the prefetch
+constexpr std::size_t kAhead = 2048;  // bytes between the data in use and the data that are prefetched
 
 // Sums 64-bit words. `bytes` must be a multiple of 512, here and in the functions below.
 template <bool kPrefetch>
@@ -33,7 +33,7 @@ std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   return hn::GetLane(hn::SumOfLanes(tag, hn::Add(hn::Add(sum0, sum1), hn::Add(sum2, sum3))));
 }
 
-// Sets to = from, or if kTriad, to = from + 3 third.
+// Sets to = from, or to = from + 3 third if kTriad is true. With kStream, stores bypass the caches.
 template <bool kTriad, bool kStream, bool kPrefetch>
 void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::size_t bytes) {
   const hn::ScalableTag<float> tag;

@@ -82,7 +82,7 @@ HWY_EXPORT(Lines9);
 constexpr int kWays = 7;
 constexpr std::size_t kBlock = 16;                    // elements
 constexpr std::size_t kPiece = 512;                   // blocks that a thread takes at a time
-constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // so that prefetches beyond the end stay in our memory
+constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // so that prefetches beyond the end stay in this array
 
 }  // namespace
 

@@ -15,8 +15,9 @@ class BareLoop {
   /// The number of bytes that are read for each element.
   enum class Reads { kNothing = 0, kCompact = 20, kExact = 36 };
 
-  /// Runs over `count` elements, rounded up to 16, and writes 12 bytes for each. Tries stores that go through the
-  /// caches or bypass them, with several distances of prefetch, and keeps the fastest combination.
+  /// Prepares to run over `count` elements, rounded up to a multiple of 16, and to write 12 bytes for each. Tries
+  /// stores that go through the caches or bypass them, with several distances of prefetch, and keeps the fastest
+  /// combination.
   BareLoop(Reads reads, std::size_t count, Threads threads);
 
   void run() const;

@@ -13,7 +13,7 @@ namespace chronormal::bench {
 namespace {
 
 constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // radians, as promised in normals/normal_curves.h
-// Bytes of results that a case of many t may have at most.
+// The most bytes of results in a case that evaluates many t.
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
@@ -70,8 +70,9 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
   return one;
 }
 
-// Positions in float32 are rounded relative to the size of the mesh, while edges get shorter as elements become more,
-// so the limit grows. An element without a normal in float32 gets (0, 0, 0), which the oracle leaves out.
+// Float32 rounds positions relative to the size of the whole mesh. In a mesh of more elements the edges are shorter, so
+// the error of a normal is larger, and the limit grows. An element without a normal in float32 gets (0, 0, 0), which
+// the oracle leaves out.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)
@@ -140,7 +141,7 @@ Case encoded_case(const SharedPointer& shared, double tolerance, double encoding
   return one;
 }
 
-// Evaluates many t in one call, each into its own array.
+// Evaluates many t in one call, and writes the normals at each t to a separate array.
 Case many_times_case(const SharedPointer& shared, double tolerance, std::size_t evaluations, Threads threads) {
   struct Many {
     std::vector<AlignedArray<float>> arrays;

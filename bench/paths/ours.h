@@ -7,14 +7,14 @@
 
 namespace chronormal::bench {
 
-/// Adds the cases of preparing, evaluating, many t, and playing, on one thread and on all. Without groups, the elements
-/// are faces. The segment and the groups must outlive the cases.
+/// Adds the cases of preparing curves, evaluating them at one t, at many t, and playing them in small steps, on one
+/// thread and on all. Without groups, the elements are faces. The segment and the groups must outlive the cases.
 /// recompute_bytes: the bytes that recomputing all normals has to read at least, 0 if unknown
 /// float_limit: the largest allowed error of normals from positions in float32, in radians
 void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes,
               double float_limit);
 
-/// Checks a packed array (n, 3).
+/// Makes a check of a packed array of normals (n, 3).
 [[nodiscard]] Check packed_check(double t, const float* normals);
 
 }  // namespace chronormal::bench

@@ -80,8 +80,8 @@ std::vector<peers::Library> libraries() {
 
 }  // namespace
 
-// Returns the limit in radians. Positions in float32 are rounded relative to the size of the whole mesh, while edges
-// get shorter as elements become more.
+// Returns the limit in radians. Float32 rounds positions relative to the size of the whole mesh. In a mesh of more
+// elements the edges are shorter, so the limit grows.
 double float_limit(std::size_t elements) { return 2e-6 * std::sqrt(static_cast<double>(elements)) + 1e-5; }
 
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit) {

@@ -1,5 +1,5 @@
-/// Baselines: a loop in plain C++, a loop with Eigen, and the libraries that were found when this was built
-/// (bench/peers).
+/// Baselines: a loop in plain C++, a loop with Eigen, and the libraries in bench/peers that were installed when the
+/// benchmark was built.
 #ifndef BENCH_PATHS_RIVALS_H_
 #define BENCH_PATHS_RIVALS_H_
 
@@ -15,7 +15,8 @@ namespace chronormal::bench {
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
 /// Returns the largest allowed error, on the torus, of normals from float32 positions, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
-/// Adds libraries, which already have the interpolated positions in their own structure and only compute normals.
+/// Adds cases of libraries. Each library has the interpolated positions in its own structure already, and only computes
+/// normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 
 /// Returns the versions of the libraries that are built.
