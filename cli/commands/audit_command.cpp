@@ -41,7 +41,8 @@ struct AuditArguments {
   bool json = false;
 };
 
-// The message for a tolerance and an input in which nothing moves: a build that has lost its animations must not pass.
+// The message if a tolerance is given and nothing in the input moves. Such an input must not pass, because an export
+// may have lost its animations.
 constexpr const char* kNothingMoves =
     "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 
@@ -57,7 +58,7 @@ std::string shell_word(const std::string& word) {
   return printable(quoted + "'");
 }
 
-// Returns the words of a command line that name the input, select its keyframes, and choose the path of vertices.
+// Returns the part of a command line that names the input, selects its keyframes, and chooses the path of vertices.
 std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
@@ -232,7 +233,8 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   return how;
 }
 
-// Explains why small normals do not pass. `place` ends the sentence.
+// Explains that an input does not pass because of errors at samples whose faces almost vanish. `place` ends the
+// sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}, where faces almost vanish{}",
                    error.faint_worst, *audited.limits.degrees, place);
@@ -244,13 +246,13 @@ std::string why_torn(const Audited& audited, const MotionError& error) {
                    counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
-// Explains why normals that cancel do not pass.
+// Explains that an input does not pass because normals cancel.
 std::string why_cancelled(const MotionError& error) {
   return formatted("{} no true normal, since the normals of the faces around cancel, so they cannot be judged",
                    counted(error.cancelled, "sample has", "samples have"));
 }
 
-// Explains why errors exceed the tolerance, or else which other limit is exceeded.
+// Explains which limit an input exceeds: the tolerance of errors, or else another limit.
 std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
                        const std::string& unlit_label, const std::string& faint_label,
                        const std::string& cancelled_label) {
@@ -285,7 +287,8 @@ std::string why_beyond(const Audited& audited) {
                     cancelled_label(audited));
 }
 
-// Prints why an input does not pass, if so. `place` is its name if there are several inputs. Returns true if it passes.
+// Prints the reason why an input does not pass, or nothing if it passes. `place` is the name of the input if there are
+// several. Returns true if the input passes.
 bool say_what_is_beyond(const Audited& audited, const std::string& place) {
   if (audited.passed()) return true;
   const std::vector<ViewerAudit>& viewers = audited.audit.viewers;
@@ -322,7 +325,8 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
-// Returns the exit code of the worse of two files: failing to judge a file is worse than exceeding the tolerance.
+// Returns the exit code for two files: the worse of both. A file that cannot be judged is worse than one that exceeds
+// the tolerance.
 int worse_exit(int a, int b) {
   constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
                                               static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};

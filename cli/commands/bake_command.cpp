@@ -25,7 +25,8 @@
 namespace chronormal::cli {
 namespace {
 
-// An audit judges every target. For files above this size the user would wait too long for one line of the report.
+// The largest result in bytes that is audited after a bake. An audit judges every target, so for a larger file the user
+// would wait too long for one line of the report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
 struct BakeArguments {
@@ -138,10 +139,11 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input, by audit_before, and the written file, both against the true normals of the original glTF file.
-// Tracks of the result have more keys, so its audit has more samples and may find errors that the input has as well:
-// the input is therefore audited at equally many samples before the result is called worse. Returns nothing if an audit
-// can judge neither file. Errors: kFailed if the written file cannot be read.
+// Audits the input (by audit_before) and the written file, both against the true normals of the original glTF file.
+//
+// Tracks of the result have more keys than tracks of the input. So an audit of the result has more samples, and may
+// find errors that the input has as well. The result is called worse only after the input was audited at equally many
+// samples. Returns nothing if an audit can judge neither file. Errors: kFailed if the written file cannot be read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
@@ -189,8 +191,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   return result;
 }
 
-// Returns true if all normals of the result can be lit, as far as an audit checked them. Otherwise prints a message if
-// a tolerance was requested.
+// Returns true if every normal of the result that was audited can be lit. Otherwise returns false, and prints a message
+// if a tolerance was requested.
 bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
@@ -224,7 +226,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
     if (!printed) return printed.error();
     return code;
   }
-  // In another folder, references to resources need other paths.
+  // If the output is in another folder, its references to other files need new paths.
   Result<std::vector<std::string>> pointers = edit.pointers(output);
   if (!pointers) return pointers.error();
   baked.value().pointers = std::move(pointers).value();
@@ -253,7 +255,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   return is_lit(options, told) ? code : kExitBeyond;
 }
 
-// Opens the input with the normals of all keyframes, which an audit judges.
+// Opens the input again with the normals of all keyframes, for an audit.
 Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
@@ -279,7 +281,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
     return misuse("--tolerance", "the tolerance must be at least 0.001 degrees with --encode keys");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
-    // The tolerance is about the curves, and their straight pieces use a part of it.
+    // The tolerance is for the error against the curves. Cutting the curves into straight pieces uses up a part of it.
     const double asked = how.tolerance.value_or(kHarmlessTolerance),
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
@@ -320,7 +322,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt, input.notes()};
-  // An audit judges the triangles of a file. If the input has larger polygons, results would differ.
+  // An audit judges the triangles of the file. If the input has larger polygons, their normals differ from the normals
+  // of these triangles.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
     auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked, KnownAuthors&) -> Result<Audit> {
@@ -348,7 +351,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Finds the output. Without -o, the last of several files is the output if its name allows it: IN OUT.
+// Finds the output file. If -o is not given and several files are, the last one is the output, as in IN OUT, if its
+// extension allows that.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {
@@ -364,8 +368,8 @@ Status take_output(BakeArguments& options) {
   return Success{};
 }
 
-// Checks that no output replaces another output or an input. Only OUT may be INPUT, since the result keeps the whole
-// content of INPUT.
+// Checks that no output replaces another output or an input. Only OUT may be the same file as INPUT, because the result
+// keeps the whole content of INPUT.
 Status check_files(const BakeArguments& options) {
   std::vector<NamedFile> poses;
   if (options.poses && *options.poses != "random") poses.push_back({"--poses", *options.poses});
@@ -382,7 +386,8 @@ Result<int> run(BakeArguments options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
-  // This error is reported before anything is read; for other names it depends on the input.
+  // This error is found by the extension alone, so it is reported before anything is read. Other errors about the name
+  // depend on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output, "bake can only write glTF; choose a name that ends in .glb, .gltf or .vrm");
@@ -402,7 +407,7 @@ Result<int> run(BakeArguments options) {
                                              : run_sequence(options, how.value(), input.value(), progress);
 }
 
-// Returns the table that all commands share, but OUT is optional here.
+// Returns the options that all commands share, but with an optional OUT.
 std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
   table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT of several)"};
   return table;

@@ -4,7 +4,7 @@
 
 #ifdef CHRONORMAL_REPORT_PAGE
 
-// Includes the file by the assembler, since a compiler would have to parse an array with a number for each byte.
+// The assembler includes the file. A compiler would have to parse an array with a number for each byte.
 asm(".pushsection .rodata\n"
     ".global chronormal_page_begin, chronormal_page_end\n"
     ".hidden chronormal_page_begin, chronormal_page_end\n"

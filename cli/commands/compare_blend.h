@@ -19,8 +19,8 @@ struct BlendArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input and compares. If elements were requested, those of a glTF file follow its geometry instead of its
-/// stored normals. Errors: kUsage for options that exclude each other; those of reading and of compare_blends().
+/// Reads the input and compares. If elements are requested, their normals follow the geometry of a glTF file instead of
+/// the stored normals. Errors: kUsage for options that exclude each other; those of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

@@ -68,7 +68,7 @@ std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
-// Returns an option that was given although it has no effect with --blend.
+// Returns the first given option that has no effect with --blend, or an empty text.
 std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -197,7 +197,7 @@ Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareAr
   return prints.value() ? std::optional(std::move(named)) : std::nullopt;
 }
 
-// Returns an option that was given although it has no effect if several ranks divide one motion.
+// Returns the first given option that is not supported if several ranks divide one motion, or an empty text.
 std::string option_of_one_process(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.face) return "--face";
@@ -206,7 +206,8 @@ std::string option_of_one_process(const CompareArguments& options) {
   return options.each ? "--each" : "";
 }
 
-// Compares the inputs with one motion in memory at a time. The result is empty on a rank that has nothing to print.
+// Compares the inputs one after the other, with only one motion in memory. The result is empty on a rank that has
+// nothing to print.
 Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
                                                     CommandRun& run, CompareRun& segments) {
   std::vector<InputOptions> inputs;
@@ -281,7 +282,7 @@ Result<int> run_blend(const CompareArguments& options) {
   return kExitDone;
 }
 
-// Returns an option that was given although it has no effect with --truth.
+// Returns the first given option that has no effect with --truth, or an empty text.
 std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -312,7 +313,7 @@ Result<int> run_truth(const CompareArguments& options) {
   return kExitDone;
 }
 
-// Returns an option that was given although it has no effect with --face.
+// Returns the first given option that has no effect with --face, or an empty text.
 std::string option_of_all_faces(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.certify) return "--certify";

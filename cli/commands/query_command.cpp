@@ -69,8 +69,8 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
-// Warns that for a mesh with a skin, answers are about the mesh without the skin: joints move vertices on curves, which
-// straight segments cannot represent. Errors: kUsage if positions in the world were requested.
+// Prints a warning if a mesh has a skin: joints move vertices on curves, which straight segments cannot represent, so
+// the answer is about the mesh without its skin. Errors: kUsage if positions in the world were requested.
 Status check_skins(const Input& input, const InputOptions& options) {
   if (input.document() == nullptr) return Success{};
   for (const GltfNode& node : input.document()->nodes()) {

@@ -165,7 +165,7 @@ Result<Request> understand(const SampleArguments& options) {
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // An interrupted run may have written OUT just before its end; write_samples() detects this.
+    // OUT may exist: an interrupted run may have written it just before its end, which write_samples() detects.
     return request;
   }
   const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);

@@ -66,8 +66,8 @@ struct JudgeArguments {
 
   /// Returns the options. `of_viewers` is the help text for the viewers.
   [[nodiscard]] std::vector<Option> table(const std::string& of_viewers);
-  /// Writes the requested values, and keeps the others. Errors: kUsage for unknown names. Warns about the old name of
-  /// an option, in the name of the command.
+  /// Writes the requested values to the parameters, and leaves a parameter as it is if its value was not requested.
+  /// Errors: kUsage for unknown names. Warns about the old name of an option, in the name of the command.
   [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
                             std::vector<Viewer>& to_viewers) const;
 };

@@ -119,7 +119,8 @@ std::string spelled(const Option& option) {
 // Returns the first line of a help.
 std::string brief(const Option& option) { return option.help.substr(0, option.help.find('\n')); }
 
-// Returns the first line of a help, and if all of it is asked for the sentences after that line.
+// Returns the meaning of an option for help: the first line of its text, or if `all` is true also the sentences after
+// it.
 std::string meaning(const Option& option, bool all) {
   std::string text = brief(option) + (option.rules.required ? " (required)" : "");
   if (const std::size_t end = option.help.find('\n'); all && end != std::string::npos)
@@ -140,7 +141,7 @@ std::string usage_of(const Command& command) {
   return formatted("chronormal {}{} [OPTIONS]", command.name, arguments);
 }
 
-// Escapes a text for roff, in which no line may begin with a control character.
+// Escapes a text for roff. There a period or an apostrophe at the start of a line would begin a command.
 std::string for_manual(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -272,7 +273,8 @@ std::string help_of_command(const Command& command, bool all, std::size_t column
   std::string text =
       flowing(command.summary, 0, columns) + "\n\n" + broken({"Usage: " + usage_of(command), 7}, 0, columns) + "\n\n";
   const auto add_row = [&](const Option& option) { text += row(spelled(option), meaning(option, all), columns); };
-  // The heading is printed only if an option follows. The first table chooses the input.
+  // Prints a heading before its first option, so none is printed without options. The options of the first table choose
+  // the input.
   const auto add_rows = [&](std::string heading, bool of_input, bool rare) {
     visit_options(command, true, [&](const Option& option) {
       const std::vector<Option>& input = command.tables.front();

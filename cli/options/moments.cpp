@@ -45,7 +45,7 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   return value;
 }
 
-// Appends the times of A:STEP:B. The last one is B itself if the steps lead there.
+// Appends the times of a range A:STEP:B. If the steps lead to B up to rounding, the last time is exactly B.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
   const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
   if (ends.size() != 3) return wrong("a range must be FIRST:STEP:LAST");
@@ -85,8 +85,8 @@ Result<std::vector<double>> parse_times(const std::string& list) {
   return times;
 }
 
-// Removes a name in double quotes from the beginning of the text and returns it; returns nothing if the quotes do not
-// end.
+// Removes a name in double quotes from the beginning of the text and returns it. Returns nothing if the closing quote
+// is missing.
 std::optional<std::string> take_quoted(std::string_view& text) {
   std::string name;
   for (std::size_t i = 1; i < text.size(); ++i) {

@@ -46,7 +46,7 @@ struct AskedMoments {
   std::vector<Pose> poses;
   std::optional<Stepping> stepping;
 
-  /// Returns the number of moments, or 1 if only the input can tell.
+  /// Returns the number of moments, or 1 if it depends on the input.
   [[nodiscard]] std::size_t count() const noexcept;
 };
 
@@ -54,7 +54,7 @@ struct AskedMoments {
 [[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
 
 /// Returns the moments for this input; none for a mesh at rest. Errors: those of Input::motion(); kUsage if the moments
-/// do not fit the motion, and for names that no target or several targets have.
+/// do not fit the motion, for a name that no target has, and for a name that several targets have.
 [[nodiscard]] Result<Moments> moments_of(Input& input, const AskedMoments& asked);
 
 }  // namespace chronormal::cli

@@ -71,7 +71,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // The table's own check has a better message than that a number is needed.
+  // The check of the option's own table comes first, because its message says more than "a number is needed".
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";
@@ -109,7 +109,7 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
   return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
 }
 
-// Checks the name of the command, since the parser's message for a wrong one is not helpful.
+// Checks the name of the command. The parser would check it too, but its message is not helpful.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
   std::vector<std::string> names;
@@ -145,8 +145,8 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
   return names;
 }
 
-// Returns advice on an unknown option: the command's own reason, or else the commands that have the option, or else the
-// most similar option of the command.
+// Returns advice on an unknown option: the reason that the command gives for refusing it; otherwise the commands that
+// have the option; otherwise the most similar option of the command.
 std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
   for (const RefusedOption& refused : command.refused)
     if (refused.name == name) return " here; " + refused.reason;
@@ -159,8 +159,8 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// Finds the first unknown option, which the parser would not report if a required one is missing. A word after an
-// option that takes a value is the value, whatever it looks like.
+// Finds the first unknown option. The parser would report a missing required option instead. A word after an option
+// that takes a value is its value, whatever the word looks like.
 std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);
@@ -180,8 +180,8 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
   return std::nullopt;
 }
 
-// Parses the command line and runs the command. `running` gets its name. Messages of the parser are printed before this
-// returns.
+// Parses the command line and runs the command. `running` gets the name of the command. All messages of the parser are
+// printed before the function returns.
 Result<int> understand_and_run(const std::vector<Command>& commands, std::span<char*> arguments, std::string& running) {
   CLI::App program("", "chronormal");
   const std::string version = formatted("chronormal {}{}\n", kVersion, has_mpi() ? " with MPI" : "");

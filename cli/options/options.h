@@ -1,4 +1,4 @@
-/// The options of a command as a table, and the program that parses them from a command line.
+/// The options of a command as a table, and the function that parses a command line by these tables.
 ///
 /// The parser is a large template library, which only options.cpp includes.
 #ifndef CLI_OPTIONS_OPTIONS_H_
@@ -58,7 +58,7 @@ struct Command {
 /// Returns a check that the value is an integer in a range, written only in digits.
 [[nodiscard]] Check check_whole(std::size_t least, std::size_t most = static_cast<std::size_t>(-1));
 
-/// Returns a check that the value is not empty, with the message for an empty value.
+/// Returns a check that the value is not empty; `message` is reported for an empty value.
 [[nodiscard]] Check check_given(std::string message);
 
 /// Parses the command line and runs the command that it names, or prints help (--help, --help-all), the version, --manual-page or

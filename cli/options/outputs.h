@@ -17,11 +17,12 @@ struct NamedFile {
   std::string path;
 };
 
-/// Lists the files of an input that can be found without opening it; other problems are reported when it is opened.
+/// Lists the files of an input that can be found without opening it. Files that cannot be found are ignored here, and
+/// reported when the input is opened.
 [[nodiscard]] std::vector<NamedFile> input_files(const InputOptions& input);
 
-/// Checks that each output differs from earlier outputs and from all inputs; "-" is the standard output, which may be a
-/// file, too. Errors: kUsage, with the option of the output as the place.
+/// Checks that each output differs from all earlier outputs and from all inputs. The name "-" is the standard output,
+/// which may also be a file. Errors: kUsage, with the option of the output as the place.
 [[nodiscard]] Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
 
 }  // namespace chronormal::cli

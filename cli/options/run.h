@@ -1,5 +1,6 @@
-/// Divides the work of a command and resumes it: --shard, --resume, and the ranks that mpirun starts. Commands need not
-/// know which of the three is used: a CommandRun makes a SegmentRun (workflow/segments/segment_run.h) from them.
+/// Divides the work of a command among processes, or resumes it: --shard, --resume, and the ranks that mpirun starts.
+/// Commands need not know which of these is used: a CommandRun sets up a SegmentRun (workflow/segments/segment_run.h)
+/// accordingly.
 ///
 ///     const auto run = options.run.begin("compare", tables(options), options.input, options.common);
 ///     CompareRun segments;
@@ -37,19 +38,19 @@ namespace chronormal::cli {
 /// journal if nothing was done. A signal that ends the program during the run has the same effect.
 class CommandRun {
  public:
-  /// journal must be empty without --resume.
+  /// Creates a run. Without --resume, `journal` must be empty.
   CommandRun(std::string command, const CommonOptions& common, std::optional<Shard> shard,
              std::optional<Journal> journal);
   CommandRun(const CommandRun&) = delete;
   CommandRun& operator=(const CommandRun&) = delete;
   ~CommandRun();
 
-  /// Makes a SegmentRun for the share of this process, with the limits of the input, which shows progress in `things`.
-  /// Errors: kUsage for --resume and an input that is not a sequence of keyframes.
+  /// Sets up `run` for the share of this process, with the limits of the input. Progress is shown in `things`, the name
+  /// of what is counted. Errors: kUsage for --resume and an input that is not a sequence of keyframes.
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
-  /// Makes a SegmentRun with a result for each segment: read(text, name) reads the text that write(result) put into the
-  /// journal. Errors: also those of read.
+  /// Sets up a `run` that records a result for each segment in the journal: write(result) returns its text, and
+  /// read(text, name) reads this text in a later run. Errors: also those of read.
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                RecordedRun<Found>& run, std::string (*write)(const Found&), const Read& read) {
@@ -65,8 +66,8 @@ class CommandRun {
     return Success{};
   }
 
-  /// Joins the results of several ranks: on the first rank, which prints, sets `whole` to merge(parts). Returns false
-  /// on the other ranks, which are finished. Errors: those of merge.
+  /// Joins the results of several ranks. On the first rank, sets `whole` to merge(parts) and returns true, so that this
+  /// rank prints. Returns false on the other ranks, whose work is done. Errors: those of merge.
   template <class Whole, class Merge>
   [[nodiscard]] static Result<bool> join(const std::string& part, const Merge& merge, Whole& whole) {
     if (!has_ranks()) return true;
@@ -83,8 +84,8 @@ class CommandRun {
   /// Tells whether one process does all of the work without interruption, so that times are meaningful.
   [[nodiscard]] bool is_timed() const noexcept { return !journal_ && !has_ranks(); }
 
-  /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between the
-  /// two steps, and OUT is kept. Errors: those of print_to() and the journal.
+  /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between
+  /// these two steps; then OUT is not written again. Errors: those of print_to() and the journal.
   [[nodiscard]] Status finish(std::string_view text);
   /// Removes the journal if OUT is already complete.
   [[nodiscard]] Status finish();
@@ -109,8 +110,8 @@ struct RunArguments {
   [[nodiscard]] std::vector<Option> options(const std::string& of_what);
 
   /// Refuses options that ranks or shares do not support. Errors: kUsage if there are several ranks together with
-  /// --shard, --resume or `other`, which is an option that does not allow dividing the task; if several independent
-  /// copies of the program would do the same work; and for a --shard that is not a share I/N.
+  /// --shard, --resume or `other` (an option with which the task cannot be divided); if several independent copies of
+  /// the program would do the same work; and for a value of --shard that is not a share I/N.
   [[nodiscard]] Status check(const std::string& other = "") const;
 
   /// Returns the share that --shard or the ranks give this process. check() must have passed.
@@ -131,7 +132,7 @@ struct RunArguments {
   [[nodiscard]] Result<std::optional<Shard>> read_shard() const;
 };
 
-/// Refuses ranks and shares for a command or an input that one process handles alone. Errors: kUsage with the reason
+/// Refuses ranks and shares for a command or an input that a single process must handle. Errors: kUsage with the reason
 /// `what`, for example "it divides the segments of a sequence, and a glTF file is none".
 [[nodiscard]] Status refuse_shares(const RunArguments& run, const char* what);
 

@@ -1,10 +1,10 @@
-// Ranks by MPI. Texts are sent as bytes: first their number, then the bytes in blocks that MPI can count; an error is
-// one message. A waiting rank sleeps between polls, since the ranks of one machine share its cores, and checks for
-// errors whenever it waits: the first rank checks for errors of the others, and the others check for the first rank's
-// message that all must end.
+// Ranks by MPI. A text is sent as its number of bytes, followed by the bytes in blocks that MPI can count; an error is
+// sent as one text. A rank that waits sleeps between polls, because the ranks of one machine share its cores, and
+// checks for errors meanwhile: the first rank checks for errors of the others, and the others check for the first
+// rank's message that all must end.
 //
-// The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL; Open MPI
-// intends to wait a second in between, but when a rank ends, its signal ends the waiting for all others. On a busy
+// The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL; Open MPI is
+// meant to wait a second in between, but when a rank ends, its signal ends that waiting for all others. On a busy
 // machine, ranks were killed before they had removed their files.
 #include <mpi.h>
 
@@ -50,7 +50,7 @@ bool was_started_as_rank() {
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Receives a message of this kind if there is one. Returns true if there was.
+// Receives a message of this kind, if one has arrived. Returns true if it received one.
 bool take_signal(int from, int kind) {
   int is_there = 0;
   MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
@@ -58,10 +58,10 @@ bool take_signal(int from, int kind) {
   return is_there != 0;
 }
 
-// Tells the other ranks to end. Returns when they have removed their files, or when their time is over.
+// Tells the other ranks to end. Returns when all of them have removed their files, or after kGrace.
 void end_others() {
   for (int rank = 1; rank < state().count; ++rank) {
-    MPI_Request request{};  // not awaited, since some ranks may never look for messages
+    MPI_Request request{};  // never waited for, since a rank may never look for messages
     MPI_Isend(nullptr, 0, MPI_BYTE, rank, kEnd, MPI_COMM_WORLD, &request);
     MPI_Request_free(&request);
   }
@@ -83,7 +83,8 @@ void end_others() {
   std::_Exit(code);
 }
 
-// Ends this rank, by waiting for mpirun, if the first rank has told all ranks to end.
+// Ends this rank if the first rank has told all ranks to end. Removes its files, reports that, and waits until mpirun
+// ends the process.
 void look_for_end() {
   if (!take_signal(kFirst, kEnd)) return;
   remove_temporaries();
@@ -102,7 +103,7 @@ void wait(MPI_Request& request) {
   }
 }
 
-// Calls move(data, bytes), which begins an operation that wait() ends, for each block.
+// Passes the bytes to move(data, bytes) in blocks. Each call begins an operation, and wait() waits for its end.
 template <class Byte, class Move>
 void move_blocks(std::span<Byte> bytes, const Move& move) {
   while (!bytes.empty()) {
@@ -148,7 +149,7 @@ Error error_of(const std::string& text) {
           text.substr(message)};
 }
 
-// Adds the number of the rank to an error, unless all ranks have the error.
+// Adds the number of the rank to an error, except to usage errors, which all ranks have.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
     error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);

@@ -27,7 +27,8 @@ namespace chronormal::cli {
 /// Tells whether the program was built with MPI.
 [[nodiscard]] bool has_mpi() noexcept;
 
-/// Counts the independent copies of this program that mpirun has started: more than 1 only in a build without MPI.
+/// Returns the number of independent copies of this program that mpirun has started. It is above 1 only in a build
+/// without MPI.
 [[nodiscard]] std::size_t count_of_copies() noexcept;
 
 /// Connects with the other ranks, if there are any. `report` prints an error and returns its exit code. Must be called
@@ -38,23 +39,24 @@ void start_ranks(std::function<int(const Error&)> report);
 [[nodiscard]] Shard own_shard() noexcept;
 [[nodiscard]] inline bool has_ranks() noexcept { return !own_shard().is_all(); }
 
-/// Returns the texts of all ranks, in order, on the first rank, once all have called this; on the other ranks, returns
-/// nothing at once.
+/// Returns the texts of all ranks, in order, on the first rank, which waits until all ranks have called this function.
+/// The other ranks do not wait, and get an empty result.
 [[nodiscard]] std::vector<std::string> gather_texts(const std::string& own);
 
-/// Returns the text of the first rank on every rank, once the first has called this.
+/// Returns the text of the first rank on every rank. Waits until the first rank has called this function.
 [[nodiscard]] std::string broadcast_text(const std::string& of_first);
 
-/// Replaces each number by the largest number of all ranks at the same index, once all have called this.
+/// Replaces each number by the largest number that any rank has at the same index. Waits until all ranks have called
+/// this function.
 void maximize_numbers(std::span<double> numbers);
 
-/// Returns the three functions above for the library, or nullptr if there is only one process.
+/// Returns the three functions above in the form that the library takes, or nullptr if there is only one process.
 [[nodiscard]] inline const Peers* ranks_as_peers() {
   static const Peers peers{gather_texts, broadcast_text, maximize_numbers};
   return has_ranks() ? &peers : nullptr;
 }
 
-/// Returns a progress callback that also checks whether a rank has failed.
+/// Returns a callback that reports progress to `progress`, and also checks whether another rank has failed.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 

@@ -27,7 +27,8 @@ std::string mesh_name(const BakedMesh& mesh) {
 // and its resampled animations. An audit, in contrast, judges everything that is rendered.
 double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
 
-// Returns the worst error of a mesh before and after, or else the error of its deltas.
+// Returns the cells for the worst error of a mesh before and after the bake, or a cell for the error of its deltas if
+// there was no audit.
 std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& report) {
   if (!report.audit) return {mesh.elements == 0 ? "" : four_decimals(fit_error(mesh))};
   const MotionError before = error_of_mesh(report.audit->before, mesh.mesh),
@@ -50,8 +51,8 @@ void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
 
 std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
 
-// Returns "on average 3.2000 -> 0.0001, at worst 12.3000 -> 0.0010 degrees", and the number of normals that cannot be
-// lit.
+// Returns the errors before and after in words, "on average 3.2000 -> 0.0001, at worst 12.3000 -> 0.0010 degrees", and
+// the number of normals that cannot be lit.
 std::string change_words(const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text = formatted("on average {}, at worst {} degrees", change(before.mean(), after.mean()),
@@ -98,7 +99,7 @@ bool is_of_animations(const BakedMesh& mesh) {
                      [](const BakedCandidate& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// Errors of one viewer over all samples.
+// The errors that one viewer shows, over all samples.
 struct Shown {
   double mean = 0, worst = 0, torn_edges = 0;
 };
@@ -114,8 +115,9 @@ struct ViewerRow {
   bool is_named = true, is_better = false;
 };
 
-// Returns the errors that bake itself measured: sums over all poses of all meshes whose deltas are fitted to the
-// animations, or of all others. The averages cover fewer samples than those of an audit.
+// Returns the errors that bake itself measured, as sums over all poses of some meshes: if of_animations, the meshes
+// whose deltas are fitted to the animations, otherwise all other meshes. The averages cover fewer samples than those of
+// an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {
@@ -162,7 +164,7 @@ std::string torn(double edges) {
   return grouped(static_cast<std::size_t>(std::lround(edges)));
 }
 
-// Returns words for the poses that a table of viewers covers.
+// Describes the poses that a table of viewers covers.
 std::string poses_words(bool of_animations) {
   return of_animations ? "in the animations of the file (--animations-only does not correct single sliders)"
                        : "in the animations of the file, and with each slider alone";
@@ -205,7 +207,7 @@ const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
 
 std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
 
-// Begins with how much better the file is, in which viewers, and how much larger.
+// Returns the first lines of the report: how much better the file is, in which viewers, and how much larger.
 std::string verdict(const GltfBake& bake, const BakeReport& report) {
   std::vector<ViewerRow> better, left_out, others;
   for (const bool of_animations : {false, true})
@@ -304,8 +306,7 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\nerrors {}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// Lists the respects in which a result is worse or better with their figures: "on average (0.6400 degrees, before
-// 3.3200)".
+// Lists with figures in which respects a result is worse or better: "on average (0.6400 degrees, before 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;
@@ -338,7 +339,8 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
-// Returns a text about the distance of normals that are right for straight pieces from those of the original curves.
+// Returns words that limit a claim about true normals: these are the normals of the straight pieces, which differ from
+// those of the original curves by up to the tolerance of the cut.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
   return formatted(" of the straight pieces, which are within {:g} degrees of the curves", bake.cut->path.tolerance);

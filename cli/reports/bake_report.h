@@ -9,7 +9,7 @@
 namespace chronormal::cli {
 
 /// Returns a text that lists in which respects the result is worse than the input, and in which it is better, with
-/// figures. With of_animations, some deltas are fitted to the animations, and have no meaning for a target alone.
+/// figures. If of_animations is true, some deltas are fitted to the animations and are meaningless for a target alone.
 [[nodiscard]] std::string worse_text(const BeforeAndAfter& audit, bool of_animations);
 /// Tells whether some deltas of a result are fitted to the animations.
 [[nodiscard]] bool any_of_animations(const GltfBake& bake);

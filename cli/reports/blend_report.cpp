@@ -91,7 +91,7 @@ std::string table_of(const BlendSubject& subject) {
   return table.text();
 }
 
-// Lists what was left out, one line each.
+// Returns a line for each part that was left out.
 std::string notes(const BlendSubject& subject) {
   std::string text;
   for (const BlendErrors& errors : subject.errors) {

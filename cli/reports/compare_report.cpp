@@ -43,8 +43,7 @@ const char* access_name(const SchemeComparison& row) { return row.sequential ? "
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
-// Returns facts that the table does not show, one line each: parts that were treated differently, and parts that were
-// left out.
+// Returns facts that the table does not show, one line each: elements that were treated differently or left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
   const std::string of = std::string(pairs == 1 ? one_element(comparison.kind) : element_kind_name(comparison.kind)) +
@@ -118,7 +117,7 @@ std::string latex_text(const std::string& text) {
     } else if (std::string_view("{}$&#%_").find(c) != std::string_view::npos) {
       result += {'\\', c};
     } else if (std::string_view("\\^~<>|\"").find(c) != std::string_view::npos) {
-      // Braces end the number, whatever follows.
+      // The braces end the number, so a digit after it does not become a part of it.
       result += formatted("{{\\ttfamily\\char{}}}", code);
     } else {
       result += c;

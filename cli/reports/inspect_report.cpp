@@ -20,7 +20,8 @@ using Align = Table::Align;
 
 constexpr std::size_t kLongestCell = 32;
 
-// A smaller turn is not reported: faces that move rigidly also turn by the rounding of their positions.
+// The smallest turn of a face that is reported. Faces that do not turn at all seem to turn a little, because their
+// positions are rounded.
 constexpr double kRoundedTurn = 1e-4;  // radians
 
 std::string size_in_bytes(std::size_t bytes) {
@@ -61,7 +62,7 @@ std::string headline(const Inspected& input) {
 
 std::string fact(const char* what, const std::string& value) { return formatted("  {:<10}  {}\n", what, value); }
 
-// Returns "5, numbered 0 to 0.2 in steps of 0.05, which are seconds".
+// Describes the numbers in the names of files: "5, numbered 0 to 0.2 in steps of 0.05, which are seconds".
 std::string series_words(const FileSeries& series) {
   std::string words = formatted("{}, numbered {:.10g} to {:.10g} in steps of {:.6g}", grouped(series.count),
                                 series.first, series.last, series.least_step);
@@ -137,7 +138,7 @@ const char* mode_name(int mode) {
   return mode >= 0 && mode <= 6 ? kNames[mode] : "unknown";
 }
 
-// Returns "12 of 20", for targets that move more than positions.
+// Returns the share of the moving targets that also change an attribute, "12 of 20", or "-" if no target moves.
 std::string share_of(std::size_t count, std::size_t all) { return all == 0 ? "-" : formatted("{} of {}", count, all); }
 
 std::string primitive_table(const InspectedGltf& gltf) {
@@ -176,7 +177,7 @@ std::string named_or_numbered(const std::string& name, const char* kind, std::si
   return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
-// Formats a weight with two decimals, since exporters compute weights and miss 0 and 1 slightly.
+// Formats a weight with two decimals, because exporters compute weights, and 0 and 1 become slightly different numbers.
 std::string weight_cell(double weight) {
   std::string text = formatted("{:.2f}", weight);
   return text == "-0.00" ? "0.00" : text;

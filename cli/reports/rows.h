@@ -8,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// The number of characters that a table shows of a name that comes from a file.
+/// The most characters that a table shows of a name from a file.
 inline constexpr std::size_t kLongestName = 32;
 
-/// The number of rows of a table for people; --json has all of them.
+/// The most rows of a table for people; --json has all rows.
 inline constexpr std::size_t kMostRows = 16;
 
 [[nodiscard]] constexpr double in_degrees(double radians) noexcept { return radians * kDegreesPerRadian; }

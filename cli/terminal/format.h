@@ -1,8 +1,8 @@
-/// Text with numbers in it: the only place of the program that formats them.
+/// Formats text with numbers. No other part of the program does this.
 ///
-/// A result may be infinite or NaN if a file has weights of 3e38 or no sample was judged. No reader of a table, of CSV
-/// or of a message has a use for "nan" or "-nan": such a number is written as "-". (JSON has no word for it either, and
-/// workflow/json/json.h writes null.) fmt::format would print it, so no other code in cli/ calls fmt::format.
+/// A number may be infinite or NaN, for example if a file has weights of 3e38 or no sample was judged. Readers of
+/// tables, CSV and messages have no use for "nan" or "-nan", so such a number is written as "-". (In JSON it becomes
+/// null; see workflow/json/json.h.) fmt::format would print "nan", so no other code in cli/ calls fmt::format.
 #ifndef CLI_TERMINAL_FORMAT_H_
 #define CLI_TERMINAL_FORMAT_H_
 
@@ -41,8 +41,8 @@ template <class... Args>
   return fmt::format(text, as_argument(args)...);
 }
 
-/// Rounds a share of 0 or more up to hundredths, so that a share above a limit of some hundredths is not printed as the
-/// limit itself. An excess of a millionth or less is rounding error and does not count.
+/// Rounds a share of 0 or more up to hundredths, so that a share slightly above a limit is not printed as the limit
+/// itself. An excess of a millionth or less counts as a rounding error and is not rounded up.
 [[nodiscard]] inline double up_to_hundredths(double share) noexcept {
   return std::max(std::ceil(100 * share - 1e-4), 0.0) / 100;
 }
@@ -66,7 +66,7 @@ struct fmt::formatter<chronormal::cli::Number> {
   }
 
  private:
-  std::string_view form_;  // of the text: ".2f"
+  std::string_view form_;  // the form in the text, such as ".2f"
 };
 
 #endif  // CLI_TERMINAL_FORMAT_H_

@@ -17,8 +17,7 @@ namespace chronormal::cli {
 /// place "<stdout>".
 [[nodiscard]] Status print(std::string_view text);
 
-/// Prints to stdout if the path is "-"; otherwise writes the file, without emphasis. Errors: as write_output() returns
-/// them.
+/// Prints to stdout if the path is "-"; otherwise writes the file, without emphasis. Errors: those of write_output().
 [[nodiscard]] Status print_to(const std::string& path, std::string_view text, bool force);
 
 /// Prints a text of several lines on stderr, with emphasis if stderr shows colours.
@@ -34,8 +33,8 @@ void say_ending(std::string_view message) noexcept;
 /// Tells whether this thread is writing to stderr. Safe to call from the handler of a signal.
 [[nodiscard]] bool is_saying() noexcept;
 
-/// Makes this process one of several that share a task: only the first of them, rank 0, prints messages, and none shows
-/// colours. But every rank says why it ends, with its number.
+/// Makes this process one of several that share a task. Of these only the first, rank 0, prints messages, and none
+/// shows colours. However, every rank reports why it ends, with its number.
 void speak_as_rank(int rank);
 [[nodiscard]] bool speaks_as_rank() noexcept;
 

@@ -21,21 +21,22 @@ volatile std::sig_atomic_t stderr_is_terminal = 0;
 std::atomic<const char*> last_words{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
 
-// Clears the line first, since it may show a progress bar.
+// Clears the line before the message, because it may show a progress bar.
 void end_line_and_say(const char* message) {
   if (stderr_is_terminal != 0) say_raw("\r\033[K");
   say_ending(message);
   if (const char* const text = last_words; text != nullptr) say_raw(text);
 }
 
-// A rank stays silent: mpirun reports which rank a signal has ended, and sends SIGTERM to all others.
+// Removes temporary files. A rank prints no message, because mpirun reports which rank a signal has ended, and then
+// sends SIGTERM to all others.
 void end_by_request(const char* message) {
   remove_temporaries();
   if (!speaks_as_rank()) end_line_and_say(message);
 }
 
-// Handles a pipe that nobody reads any more. Messages may get lost: writing fails then, and the program goes on. If
-// results get lost, the program ends like every other one in front of `head`.
+// Handles a pipe whose reader has ended. A message may get lost: writing it fails, and the program goes on. If results
+// get lost, the program ends, as usual for a program in front of `head`.
 bool end_by_lost_reader() {
   if (is_saying()) return false;
   remove_temporaries();
@@ -48,8 +49,8 @@ void end_by_lost_input() {
   end_now(kExitFailed);
 }
 
-// Ends the program without destructors if memory runs out: not every library behind JSON or threads survives unwinding
-// then.
+// Ends the program if memory runs out, without calling destructors: unwinding is not safe in all libraries for JSON and
+// threads.
 void end_for_want_of_memory() {
   remove_temporaries();
   end_line_and_say("out of memory; close other programs, or choose a smaller part of the input");
@@ -62,7 +63,8 @@ void end_by_error() {
   end_now(kExitFailed);
 }
 
-// The C library aborts if it gets no memory for a thread. A failed assertion ends by the signal.
+// The C library calls abort() if it gets no memory for a thread, so the program ends in an orderly way. In other builds
+// an abort is a failed assertion, whose signal is left alone.
 #ifdef NDEBUG
 constexpr auto end_by_abort = end_by_error;
 #else
@@ -72,7 +74,8 @@ constexpr void (*end_by_abort)() = nullptr;
 }  // namespace
 
 void prepare_process() noexcept {
-  // A library loaded earlier may have set another rounding mode or flush subnormal numbers to zero.
+  // Resets the floating point unit: a library that was loaded earlier may have set another rounding mode, or that
+  // subnormal numbers become zero.
   (void)std::fesetenv(FE_DFL_ENV);
   prepare_standard_streams();
   stderr_is_terminal = is_terminal(kStandardError) ? 1 : 0;

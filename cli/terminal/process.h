@@ -1,24 +1,24 @@
 /// Starts and ends the program: handles its standard streams, and the signals that it gets.
 ///
-///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   temporary files are removed, a line is printed, the signal ends the
+///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   removes temporary files and prints a line, then the signal ends the
 ///                                                 program (128 + n to a shell); ignored signals stay ignored
 ///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
-///     no memory for an object                     the same; nothing is unwound, since not all libraries are safe then
+///     no memory for an object                     the same as SIGBUS; no destructors run, since some libraries are unsafe
 ///     SIGABRT                                     the same: the C library aborts if it gets no memory for a thread
-///     an exception where none may be              removes temporary files, and exit code 1
+///     an exception that nothing can catch         removes temporary files, and exit code 1
 ///
-/// SIGPIPE ends the program like every other one if results get lost, as in front of `head`. If nobody reads stderr,
-/// messages get lost, and nothing else changes. If SIGPIPE is already ignored, it stays ignored: writing results is an
-/// error then.
+/// If results get lost because nobody reads them, as in front of `head`, SIGPIPE ends the program, as usual. If nobody
+/// reads stderr, messages get lost, and the program goes on. If SIGPIPE was ignored when the program started, it stays
+/// ignored: writing results is an error then.
 #ifndef CLI_TERMINAL_PROCESS_H_
 #define CLI_TERMINAL_PROCESS_H_
 
 namespace chronormal::cli {
 
-/// Opens closed standard streams, so that no file takes their place and gets their text: reading and writing there
-/// stays an error. Installs the handlers. Makes the floating point unit of this thread, and of threads that it starts,
-/// round to nearest. Must be called first of all.
+/// Opens closed standard streams, so that no other file gets their numbers and receives their text; reading and writing
+/// there stays an error. Installs the handlers. Makes the floating point unit of this thread, and of threads that it
+/// starts, round to nearest. Must be called before everything else.
 void prepare_process() noexcept;
 
 /// Sets the text to print after the line about a signal or lack of memory, with its line feed; nullptr for no text. The

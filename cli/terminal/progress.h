@@ -14,25 +14,26 @@
 
 namespace chronormal::cli {
 
-/// Returns "12.5 segments/s, 3 min 20 s left" if share_done of `count` things took this many seconds and share_left is
-/// left; without a name of things, returns the time alone.
+/// Returns the rate and the time left, "12.5 segments/s, 3 min 20 s left". The shares are fractions of `count` things:
+/// share_done took this many seconds, and share_left is left. If `things`, the name of the things, is empty, returns
+/// only the time.
 [[nodiscard]] std::string pace_text(double share_done, double seconds, double share_left, std::size_t count,
                                     const std::string& things);
 
 class Progress {
  public:
-  /// Shows nothing if quiet, or if stderr is not a terminal.
+  /// Creates a bar that shows nothing if quiet, or if stderr is not a terminal.
   explicit Progress(bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Returns whether it was made quiet: then only warnings are printed.
+  /// Returns true if only warnings are printed.
   [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
 
-  /// Returns a function by which the library reports progress. The Progress must outlive it. The rate counts `count`
-  /// things of this name, whatever the library counts; with a count of 0 it counts the steps of the library. Without a
-  /// name there is no rate.
+  /// Returns a function by which the library reports progress. The Progress must outlive it. The bar shows a rate in
+  /// `things`, of which there are `count` in the whole task; if `count` is 0, the steps that the library reports are
+  /// the things. Without a name of things, the bar shows no rate.
   [[nodiscard]] std::function<void(std::size_t done, std::size_t total)> callback(std::string label,
                                                                                   std::string things = {},
                                                                                   std::size_t count = 0);

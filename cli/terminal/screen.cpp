@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kUsualColumns = 80, kLeastColumns = 40;
 
-// Select Graphic Rendition (ECMA-48, section 8.3.117).
+// Control sequences that select bold and colours (Select Graphic Rendition, ECMA-48, section 8.3.117).
 constexpr std::string_view kBold = "\033[1m", kBoldRed = "\033[1;31m", kBoldYellow = "\033[1;33m", kUsual = "\033[0m";
 
 std::string_view environment(const char* name) {

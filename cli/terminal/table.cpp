@@ -91,7 +91,7 @@ std::string Table::text(std::size_t columns) const {
   std::size_t width_of_all = kGap * (columns_.size() - 1);
   for (const std::size_t width : widths) width_of_all += width;
 
-  // Every part repeats the columns that identify a row.
+  // When a table is split, every part repeats the columns that identify a row.
   std::vector<std::size_t> about;
   std::size_t next = 0, width_about = 0;
   for (bool is_name = false; next < columns_.size() && !is_name; ++next) {

@@ -1,7 +1,7 @@
 /// Tables for people: aligned columns with a title and a unit.
 ///
 /// The columns up to the first one that is aligned to the left identify a row. If a table is wider than the output, the
-/// later columns that do not fit follow below, in another table with the same rows:
+/// columns that do not fit follow below, in another table with the same rows:
 ///
 ///     scheme             sum  vs linear     mean
 ///                    degrees      ratio  degrees
@@ -11,7 +11,8 @@
 ///             degrees  degrees
 ///     linear   4.3540  19.6527
 ///
-/// In such a table a long name is above the rest of its row, and a text in the last column takes several lines.
+/// In such a table a long name stands above the rest of its row, and a long text in the last column takes several
+/// lines.
 #ifndef CLI_TERMINAL_TABLE_H_
 #define CLI_TERMINAL_TABLE_H_
 
@@ -28,14 +29,14 @@ class Table {
  public:
   enum class Align { kLeft, kRight };
 
-  /// Adds a column; all columns come before the first row. The unit is below the title. A column without a title
-  /// belongs to the one before it, and stays beside it.
+  /// Adds a column; all columns must be added before the first row. The unit is below the title. A column without a
+  /// title belongs to the previous column, and stays beside it.
   void add_column(std::string title, std::string unit, Align align);
   /// Adds a row, one cell per column.
   void add_row(std::vector<std::string> cells);
 
-  /// Returns the whole table in lines of at most this many columns, if two columns of the table fit beside each other.
-  /// Every line has an end and no trailing blanks.
+  /// Returns the whole table. Its lines have at most this many columns of the terminal, unless not even two columns of
+  /// the table fit beside each other. Every line has an end and no trailing blanks.
   [[nodiscard]] std::string text(std::size_t columns = columns_of_output()) const;
 
  private:
@@ -54,7 +55,7 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Returns the indices of at most this many of the largest values, ascending; of equal values the first count.
+/// Returns the indices of the `most` largest values, ascending. Of equal values, the first ones are chosen.
 [[nodiscard]] std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most);
 
 /// Formats an angle or a ratio with four decimals, or with an exponent if four decimals lose it: 12.3457, 2.1e-06, 0.

@@ -24,7 +24,8 @@ enum class Remedy {
   kBake,
 };
 
-// Returns the error above which a normal is reported: a fault, or the requested tolerance.
+// Returns the error in degrees above which a normal is reported: kAuditFault, or the requested tolerance if it is
+// smaller.
 double limit_of(const Audited& input) { return std::min(kAuditFault, input.limits.degrees.value_or(kAuditFault)); }
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
@@ -43,7 +44,7 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
   return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
-// Lists the subjects with errors, either of meshes that were baked before or of all others.
+// Lists the subjects with errors: if `baked`, only those of meshes that were baked before, otherwise only all others.
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)

@@ -1,4 +1,5 @@
-// A face has dozens of targets with the same fault, so a line covers all of them, and names the worst.
+// Groups findings into lines. A face has dozens of targets with the same fault, so one line covers all of them, and
+// names the worst.
 #include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ using Kind = AuditFinding::Kind;
 struct Group {
   const AuditFinding* worst = nullptr;
   std::size_t targets = 0, animations = 0, expressions = 0;
-  std::size_t count = 0;  // count of all of them together
+  std::size_t count = 0;  // sum of the counts of all these findings
 
   [[nodiscard]] std::size_t size() const noexcept { return targets + animations + expressions; }
 };
@@ -57,7 +58,7 @@ std::string one_subject(const Audited& input, const AuditFinding& found) {
   return found.mesh ? mesh : "sequence";
 }
 
-// Returns "57 targets of Head" or "2 targets and 1 animation of Head".
+// Returns the subjects of a group in words: "57 targets of Head" or "2 targets and 1 animation of Head".
 std::string subject_of(const Audited& input, const Group& group) {
   if (group.size() == 1) return one_subject(input, *group.worst);
   std::string text;

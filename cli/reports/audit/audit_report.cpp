@@ -27,7 +27,8 @@ constexpr double kSeen = 0.005;                     // the smallest number of de
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples
 constexpr double kDisplaced = 1e-5;                 // smallest share of the size that is reported
 
-// Returns the number of viewers in which the audit is "within 1 degree and 0 torn edges", in words.
+// Says whether the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges in 2 of 3
+// viewers".
 std::string limits_words(const Audited& input) {
   std::string limits;
   if (input.limits.degrees)
@@ -41,7 +42,7 @@ std::string limits_words(const Audited& input) {
   return formatted("within {} in {} of {}", limits, within, counted(viewers.size(), "viewer", "viewers"));
 }
 
-// Returns the torn edges at one sample, on average, or "-" if they were not counted.
+// Returns the number of torn edges per sample, on average, or "-" if torn edges were not counted.
 std::string torn(const MotionError& error) {
   if (error.samples == 0) return "-";
   const double edges = error.torn_edges();

@@ -13,7 +13,7 @@ namespace chronormal::cli {
 /// The number of rows in tables and lists; --json has all of them.
 inline constexpr std::size_t kMostAuditRows = 16;
 
-/// Returns two decimals, or a power of ten if two decimals would be zero.
+/// Formats an angle with two decimals, or as a power of ten if two decimals would show zero.
 [[nodiscard]] std::string degrees(double value);
 
 /// Formats degrees in the same way, with emphasis if the value is a fault.
@@ -29,10 +29,11 @@ inline constexpr std::size_t kMostAuditRows = 16;
 [[nodiscard]] std::string animation_words(const Audited& input, std::size_t animation);
 [[nodiscard]] std::string expression_words(const Audited& input, std::size_t mesh, std::size_t expression);
 
-/// Returns "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence", "expression 0 (happy) of Head".
+/// Names a subject: "target 0 (smile) of Head", "animation 1 (talk), node 3 (eye)", "sequence", "expression 0 (happy)
+/// of Head".
 [[nodiscard]] std::string subject_words(const Audited& input, const AuditSubject& subject);
 
-/// Returns "weight 0.55" or "1.25 s".
+/// Formats the moment of a sample: "weight 0.55" or "1.25 s".
 [[nodiscard]] std::string moment_words(const AuditSubject& subject, double at);
 
 /// Names a vertex of a motion at a moment.
