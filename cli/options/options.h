@@ -61,9 +61,9 @@ struct Command {
 /// Returns a check that the value is not empty; `message` is reported for an empty value.
 [[nodiscard]] Check check_given(std::string message);
 
-/// Parses the command line and runs the command that it names, or prints help (--help, --help-all), the version, --manual-page or
-/// --completions SHELL (cli/options/help.h). Errors go to stderr as "chronormal COMMAND: place: message". Returns the
-/// exit code.
+/// Parses the command line and runs the command that it names, or prints help (--help, --help-all), the version,
+/// --manual-page or --completions SHELL (cli/options/help.h). Errors go to stderr as "chronormal COMMAND: place:
+/// message". Returns the exit code.
 [[nodiscard]] int run_program(const std::vector<Command>& commands, std::span<char*> arguments);
 
 }  // namespace chronormal::cli

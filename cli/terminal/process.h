@@ -4,7 +4,7 @@
 ///                                                 program (128 + n to a shell); ignored signals stay ignored
 ///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
-///     no memory for an object                     the same as SIGBUS; no destructors run, since some libraries are unsafe
+///     no memory for an object                     the same as SIGBUS; destructors do not run (not all are safe)
 ///     SIGABRT                                     the same: the C library aborts if it gets no memory for a thread
 ///     an exception that nothing can catch         removes temporary files, and exit code 1
 ///
