@@ -1,4 +1,4 @@
-// The parts that audits of glTF files and audits of sequences share.
+// Code that audits of glTF files and audits of sequences share.
 #include "chronormal/workflow/audit.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// Returns the upper end of a fine bin, in degrees.
+// Returns the upper end, in degrees, of a bin of the fine histogram of errors.
 double end_of_fine_bin(std::size_t bin) noexcept {
   const int doubling = static_cast<int>(bin) / kAuditBinsOfDoubling,
             part = static_cast<int>(bin) % kAuditBinsOfDoubling;
@@ -86,12 +86,14 @@ MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
 }
 
 WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept {
-  // Tolerances in degrees. A sum in float32 has an error of 1e-7, and a normal may be a hundredth as long as its terms.
+  // Tolerances in degrees for rounding errors. A sum in float32 has an error of 1e-7 relative to its terms, and a
+  // normal may be a hundredth as long as its terms.
   constexpr double kWorst = 0.05, kMean = 0.001;
-  // The average may also grow because fewer samples are judged, once deltas that were only rounding are gone.
+  // The average may also grow because fewer samples are judged, so the sum must grow as well. Samples drop out if
+  // deltas are gone that were only rounding errors.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  // Rounding may tear one in a hundred of the edges that were close to torn before.
+  // Rounding may tear edges that were nearly torn before, one for each hundred torn edges.
   const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
@@ -118,7 +120,7 @@ void FineBins::add(const FineBins& other) {
     while (i < before && bins_[i].number() < other.bins_[j].number()) ++i;
     if (i == before || bins_[i].number() != other.bins_[j].number()) ++added;
   }
-  if (added > 0) bins_.reserve(before + added);  // no more than needed
+  if (added > 0) bins_.reserve(before + added);  // reserves no more than needed
   bins_.resize(before + added, Bin(0, 0));
   // Merging starts at the end, so that no bin is overwritten before it is read.
   for (std::size_t to = bins_.size(), from = other.bins_.size(); from > 0;) {
@@ -212,8 +214,8 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // If both ends of an edge are within half of the least tear, the edge is not torn. This test skips most edges.
-  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // less a margin for rounding
+  // If both ends of an edge are within half of the smallest tear, the edge is not torn. This test skips most edges.
+  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // slightly less, as a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
   for (std::size_t i = 0; i < differences.size(); ++i) {

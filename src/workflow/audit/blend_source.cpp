@@ -14,7 +14,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-// From this many morph targets on, adding up deltas takes longer than interpolating two ends.
+// The number of morph targets from which adding up deltas takes longer than interpolating between both ends of a
+// segment.
 constexpr std::ptrdiff_t kManyTargets = 8;
 
 }  // namespace
@@ -83,7 +84,7 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   return true;
 }
 
-// Computes both ends of a segment. If the segment starts where the last one ended, reuses that end.
+// Computes positions at both ends of a segment. Reuses the previous end if the segment starts there.
 void BlendSource::place_ends(std::size_t segment) {
   if (!ends_) ends_ = SegmentEnds{};
   std::vector<double> start = weights(segment, 0), end = weights(segment, 1);
@@ -102,7 +103,7 @@ void BlendSource::place_ends(std::size_t segment) {
   ends_->end = std::move(end);
 }
 
-// Tells whether the placed weights lie on the straight line between the weights at both ends, apart from rounding.
+// Returns true if the current weights lie on the straight line between the weights at both ends, apart from rounding.
 bool BlendSource::is_between_ends(double t) const {
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
   for (std::size_t k = 0; k < now_.size(); ++k) {
@@ -230,11 +231,11 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// Returns the weights of the placed moment and of the next moments in its segment.
+// Returns the weights of the current moment and of the moments that follow in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // There may be a million samples, so the search starts near t_. Samples are evenly spaced, so no sample after t_ is
-  // before this one.
+  // There may be a million samples, so the search does not start at the first. Samples are evenly spaced, so all
+  // samples after t_ have at least this index.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
   for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)

@@ -24,28 +24,29 @@ namespace chronormal::inline internal {
   return {v[0], v[1], v[2]};
 }
 
-/// Returns the place of a vertex of all parts together, numbered as in the file.
+/// Returns the place of a vertex in words of the file: `vertex` counts through all parts, and the place names the part
+/// and the vertex in it.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
 /// Writes the weights of the targets that are involved in a motion, at t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// A function that returns the weight or the time by which a person finds a moment.
+/// A function that returns the weight or the time by which messages name a moment.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {
  public:
   static constexpr bool kNeedsEnds = false;
 
-  /// shading, truth, part and the skin through which the mesh is seen, if there is one, must outlive the object. If the
-  /// joints of the skin move, moment returns the time. Outputs are the outputs of the part. involved lists targets in
-  /// ascending order: weights has one value for each of them, and all other targets always have weight 0. Each segment
-  /// is placed at `samples` moments, one after the other.
+  /// Creates a source. shading, truth, part, and the skin through which the mesh is seen (if there is one) must outlive
+  /// it. Outputs are the outputs of the part. If the joints of the skin move, moment must return the time. `involved`
+  /// lists targets in ascending order: `weights` has a value for each of them, and all other targets always have weight
+  /// 0. Each segment is placed at `samples` moments, one after the other.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
-  /// Writes the positions at any weights. The placed moment stays unchanged.
+  /// Writes the positions at any weights. Does not change the placed moment.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
   /// Returns the weights of the placed moment.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
@@ -53,14 +54,15 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Turns sums into true normals, at the placed moment or at any weights, by adding the author's own offset.
+  /// Turn sums of face normals into true normals by adding the author's own offset: at the placed moment, or at any
+  /// weights.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
   /// Adds up the rendered normals at the placed moment, and finds how the skin transforms them.
   void show();
   /// Returns a normal of the i-th output as a person sees it, of any length: transformed by the skin, if there is one.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
-  /// Tells whether the skin collapses the true normal, so that no target could render it.
+  /// Returns true if the skin collapses the true normal, so that no target could render it.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   void shown(std::size_t first, std::span<Vec3d> normals) const;
@@ -69,8 +71,8 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  // Weights and positions at both ends of a segment. Tracks are mostly linear between the ends. Then vertices move on
-  // straight lines, and the deltas of many targets are added up at the ends only.
+  // Weights and positions at both ends of a segment. Most tracks are linear in between, and then vertices move on
+  // straight lines. So the deltas of many targets need to be added up only at the ends.
   struct SegmentEnds {
     std::size_t segment = 0;
     std::vector<double> start, end;  // weights
@@ -103,15 +105,15 @@ class BlendSource {
   double t_ = 0;
   std::vector<double> now_, start_, end_;
   StoredSums sums_;
-  std::span<const float> shown_now_, shown_start_, shown_end_;  // (outputs, 3)
+  std::span<const float> shown_now_, shown_start_, shown_end_;  // sums at the moment and both ends, (outputs, 3)
 };
 
-/// Finds the vertices whose normal some of the targets move, by a face around them or by a stored delta. For the rule
-/// flat, finds corners instead.
+/// Finds the vertices whose normals some of the targets change, by moving a face around the vertex or by a stored
+/// delta. For the rule flat, finds corners instead of vertices.
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
 
-/// Makes the part of a mesh that compares these outputs with the truth.
+/// Makes the part of a mesh that has these outputs, for an audit.
 [[nodiscard]] JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth,
                                      std::vector<JudgedOutput> outputs, AuditRule rule);
 

@@ -66,7 +66,7 @@ std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfSh
   return read_skin(document, shading, static_cast<std::size_t>(found - nodes.begin()), std::nullopt, unread);
 }
 
-// Tracks, by animation and index.
+// Tracks as pairs: the index of an animation, and the index of a track in it.
 using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
 
 // Lists the tracks that drive a mesh, in the requested animations.
@@ -80,7 +80,7 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures the angles between base normals and the sums that the truth adds up.
+// Measures the angles between the stored base normals and the sums of face normals that define the true normals.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -164,7 +164,7 @@ std::vector<double> of_all_targets(std::span<const double> weights, const Involv
   return all;
 }
 
-// Makes a function that keeps only the weights of involved targets from one that fills in the weights of all targets.
+// Turns a function that writes the weights of all targets into one that writes only the weights of involved targets.
 Weights of_involved(const Involved& involved, std::size_t targets, Weights all_weights) {
   return [&involved, targets, all_weights = std::move(all_weights)](std::size_t segment, double t,
                                                                     std::span<double> weights) {
@@ -174,8 +174,8 @@ Weights of_involved(const Involved& involved, std::size_t targets, Weights all_w
   };
 }
 
-// The segments of a track, or the one segment of a target. All of them are in memory, so that no error can occur. In
-// long tracks, only every step-th segment is measured.
+// The segments of a track, or the one segment of a target. They are all in memory, so reading them cannot fail. In a
+// long track, only every step-th segment is measured.
 struct SegmentsOfTrack {
   std::size_t count, step;
   const std::function<void()>& progress;
@@ -195,7 +195,7 @@ struct SegmentsOfTrack {
   }
 };
 
-// Measures a subject, which will get this index; returns nothing if no output can be judged.
+// Measures a subject; `index` is its future index in the result. Returns nothing if no output can be judged.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
                                      AuditSubject subject, std::size_t index) {
@@ -268,7 +268,7 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
     of_targets[k] = weight_at(t);
     fill_extra_weights(shading, of_targets);
   };
-  // A mesh may have thousands of targets, so this path does no work for each of them unless it must.
+  // A mesh may have thousands of targets, so an array of all weights is only made if correction targets need it.
   weights.specified = [&](std::size_t, double t, std::span<double> alone) { alone[0] = weight_at(t); };
   if (shading.mark) weights.specified = of_involved(involved, shading.set.targets.size(), with_extras);
   for (const Viewer& viewer : mesh.options.viewers) {
@@ -348,7 +348,7 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
 // Audits all tracks of a mesh. Tracks with the same keys are measured once, but each track is a subject.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  // The key is the animation, same_keys_as, and the skin of the node.
+  // The key is the animation, the track's same_keys_as, and the skin of the node.
   using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
   std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {
@@ -378,8 +378,8 @@ Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_target
   return Success{};
 }
 
-// Audits static poses, and returns the measured subject. Each pose becomes a segment that runs from the pose, which
-// alone is judged, to the base, because the judgement of short normals needs both.
+// Audits static poses, and returns the measured subject. Each pose becomes a segment from the pose to the base. Only
+// the pose is judged; the base is needed to tell which normals are too short to be judged.
 std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& poses, MeshSkin* skin,
                                       AuditSubject subject, std::size_t index) {
   const std::size_t targets = mesh.shading.set.targets.size();
@@ -428,8 +428,7 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
-// Lists the distinct weights with which a file opens, except all zeros, and the first node that shows each set of
-// weights.
+// Lists the distinct sets of weights with which a file opens, except all zeros. Each has the first node that shows it.
 std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
                                                                                       std::size_t mesh) {
   std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;
@@ -510,7 +509,7 @@ std::size_t count_segments(const GltfDocument& document, const AuditOptions& opt
   return total;
 }
 
-// Bounds the number of samples of all subjects of a mesh.
+// Returns an upper bound of the number of samples of all subjects of a mesh.
 std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
                        const AuditOptions& options) {
   const GltfMesh& of_mesh = document.meshes()[mesh];

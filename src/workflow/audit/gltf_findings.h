@@ -14,11 +14,11 @@
 
 namespace chronormal::inline internal {
 
-/// Collects facts that are not faults but good to know.
+/// Collects facts that are not faults but useful to the reader of an audit.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
 
-/// Notes the nodes with a skin that carry the mesh: the skins that these subjects were judged through, and the nodes
-/// whose skin or animation could not be read.
+/// Makes notes on the nodes that carry the mesh with a skin: which skins were used to judge these subjects, and which
+/// skins or animations could not be read.
 [[nodiscard]] std::vector<AuditFinding> notes_of_skins(const GltfDocument& document, const GltfShading& shading,
                                                        std::span<const AuditSubject> subjects,
                                                        const std::map<std::size_t, Error>& unread);
@@ -37,7 +37,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-/// Notes keys that tell nothing about the author's normals, and a rule that is not known.
+/// Makes notes on keys that say nothing about the author's normals, and on an unknown rule of the author.
 [[nodiscard]] std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth);
 
 /// Finds the fault of a pose in which a file opens, or of a requested pose.

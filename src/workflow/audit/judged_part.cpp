@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
 
-// Numbers the marks that are not kUnused in their order, and returns their indices.
+// Numbers all marks that are not kUnused, in order, and returns their indices.
 std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
   std::vector<std::uint32_t> used;
   used.reserve(marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), kUnused)));
@@ -45,7 +45,8 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   }
   vertices_ = number_used(vertex);
 
-  // Normals of faces are kept if elements would take long to compute them again, or if the normals take little memory.
+  // Stores the normals of faces if computing them again for each element would take long, or if they take little
+  // memory.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
   const bool has_corners = weighting != Weighting::kArea;
   keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);
@@ -99,7 +100,7 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   if (sums_ != nullptr) return given_normals(positions, result);
   if (weighting_ != Weighting::kArea) return weighted_normals(positions, result);
   numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
-    // The faces whose normals were computed last, since neighbouring elements need them again.
+    // A face whose normal was computed recently. It is kept because neighbouring elements often need the same faces.
     struct Known {
       std::uint32_t face = kUnused;
       Vec3d normal;

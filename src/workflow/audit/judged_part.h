@@ -22,8 +22,8 @@ inline constexpr std::size_t kRange = 4096;
 /// If terms cancel to less than this share of their size, the sum is only rounding error and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
-/// Bounds the change of a polygon's normal if each coordinate of its corners is rounded to float32, which changes a
-/// coordinate by 2^-24 of itself: d n is the sum over the corners of d p[c] x (p[c+1] - p[c-1]).
+/// Bounds the change of a polygon's normal if each coordinate of its corners is rounded to float32, which changes it by
+/// at most 2^-24 of its value. The change of the normal is the sum over the corners c of d p[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
   constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // relative to the largest of three coordinates
@@ -46,12 +46,13 @@ struct PartNormals {
   std::vector<double> sizes;  ///< for each element, the sum of the largest components of its normal's terms
 };
 
-/// The elements of some outputs, and the faces and vertices that they need, renumbered.
+/// The part of a mesh that determines the normals of some outputs: their elements (groups of corners that share a
+/// normal), and the faces and vertices around these, renumbered.
 class JudgedPart {
  public:
-  /// Elements and faces of the outputs are renumbered for this part; their vertices and corners stay those of the mesh.
-  /// Without needs_faces, normals() may leave out the normals of faces. groups need no corners if the weighting is
-  /// area. If sums is given, it supplies the normals of elements and must outlive the object.
+  /// Elements and faces of the outputs are renumbered for this part; vertices and corners keep their numbers in the
+  /// mesh. If needs_faces is false, normals() may leave out the normals of faces. If the weighting is area, `groups`
+  /// need no corners. If sums is given, it supplies the normals of elements and must outlive the object.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
@@ -68,27 +69,28 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> corners_of(std::size_t face) const noexcept {
     return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
   }
-  /// Returns the edges as pairs of vertices of the mesh; every edge between two vertices that have an output is among
-  /// them. output_of() returns the output of a vertex, or an index past all outputs if it has none.
+  /// Returns the edges as pairs of vertices of the mesh. The list contains every edge between two vertices with
+  /// outputs, and may contain others. output_of() returns the output of a vertex; if the vertex has none, an index
+  /// beyond all outputs.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const noexcept {
     return own_edges_.empty() ? edges_ : own_edges_;
   }
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
-  /// Returns the number of vertices of the mesh that has these edges.
+  /// Returns the number of vertices of the whole mesh, by which edges() numbers vertices.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
-  /// Sets the edges of a mesh with this many vertices. The edges must outlive the object. Every vertex must have one
-  /// output at most.
+  /// Sets the edges of the whole mesh, which has this many vertices. The edges must outlive the object. Every vertex
+  /// must have at most one output.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
-  /// Returns the index in vertices() of a vertex of the mesh. The part must have sums that need the vertex.
+  /// Returns the index in vertices() of a vertex of the mesh. Only for parts with sums that need this vertex.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
   /// Computes the normals of faces and elements from the positions of vertices(): cross products, and for elements
   /// their weighted sums (normals/weighting.h) or the given sums. Sums that are only rounding error are not removed.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
-  /// Returns a bound of the change of an element's normal if each of these positions is rounded to float32. The weights
-  /// of its faces count as constant.
+  /// Bounds the change of an element's normal if each of these positions is rounded to float32. Treats the weights of
+  /// its faces as constant.
   [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
@@ -102,12 +104,13 @@ class JudgedPart {
   std::vector<std::uint32_t> vertices_, elements_;
   std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // vertices as numbered in the part
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // elements and faces as numbered in the part
-  // 0, 1, 2 ... within the faces of the element; empty if faces are weighted by area.
+  // The corner of each face that belongs to the element, by its number in the face; empty if faces are weighted by
+  // area.
   std::vector<std::uint32_t> corners_of_element_;
   Weighting weighting_;
   const AuthorSums* sums_;
   std::vector<std::uint32_t> places_;  // for vertices of the mesh, their indices in vertices_
-  bool keeps_faces_;                   // if false, each element recomputes the normals of its faces, without memory
+  bool keeps_faces_;                   // if false, each element computes the normals of its faces again
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
   std::vector<std::array<std::uint32_t, 2>> own_edges_;  // edges of a small part

@@ -25,8 +25,9 @@
 
 namespace chronormal::inline internal {
 
-/// A normal shorter than this share of its largest control normal is left out of all sums, since the stored normals
-/// there mostly follow from those elsewhere. A gate still judges the normal as long as it has a direction.
+/// A normal shorter than this share of its largest control normal does not count in any sum: where a surface nearly
+/// collapses, its shading mostly follows from the normals around. With a limit (--tolerance), such a normal is judged
+/// as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
 /// The value for the error of a sample whose faces have an area but whose normals cancel.
@@ -45,11 +46,11 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
   return bin;
 }
 
-/// Returns the fine bin for an error. With a rounding mode other than to nearest, an angle may also be -0 or slightly
-/// more than 180: check the result before using it as an index.
+/// Returns the bin of the fine histogram for an error. If the processor does not round to nearest, an angle may also be
+/// -0 or slightly more than 180, so check the result before using it as an index.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
-  // Each doubling is an exponent of double, and its bins are the first bits of the fraction. Exponent and bits together
-  // are one number.
+  // Each power of two in degrees has 128 bins. So the exponent of a double and the first 7 bits of its fraction, read
+  // as one number, count the bins.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
@@ -58,15 +59,15 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
   return static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1));
 }
 
-/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction. The bound is the angle
-/// between them minus the angle by which a rounding error of this size may have turned a normal of this length. Returns
-/// kNotJudged if rounding may give the normal any direction.
+/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction: the angle between the
+/// two minus the angle by which rounding may have turned the true normal, which has this length and a rounding error of
+/// this size. Returns kNotJudged if rounding may give the normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
 /// Returns the normal that a rule renders between two stored normals, or (0, 0, 0) if the blend is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
-/// Returns the number of samples in each of these segments, or in each target alone.
+/// Returns the number of samples in each segment, or in each target if targets are judged one by one.
 [[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments,
                                               std::size_t fewest = kAuditFewSamples) noexcept;
 
@@ -77,7 +78,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
-/// Returns the angle of stored normals from the geometry, by the requested weighting or else by the detected one.
+/// Returns the angles between the stored normals and the geometry, by the requested weighting, or by the detected one
+/// if none is requested.
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
 /// Finds the fault of a subject whose stored normals have an error above kAuditFault. Normals that cannot be lit come
@@ -90,7 +92,7 @@ inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
   subject.at_keys.add(found.at_keys);
 }
 
-/// Adds up all subjects, finds the worst one, and puts faults before notes.
+/// Finishes an audit: adds up all subjects, finds the worst one, and puts faults before notes.
 void finish(Audit& result);
 
 // A source is a motion together with the normals that are rendered during it:
@@ -157,10 +159,10 @@ template <class Source, class Segments>
   return largest;
 }
 
-/// Adds the errors of some outputs, in their order, to an empty result, as MotionError::add() and add_unlit() do.
-/// degrees_of returns the error of an output, kNotLit or kNotJudged. faint_of is called for samples that are not judged
-/// but that a gate examines. It returns the error of a sample, kNotJudged if no face around it has an area, or
-/// kCancels.
+/// Adds the errors of some outputs, in order, to an empty result. Has the same effect as MotionError::add() and
+/// add_unlit(), in less time. degrees_of() returns the error of an output, kNotLit or kNotJudged. If it is kNotJudged,
+/// faint_of() decides whether a tolerance applies nevertheless: it returns the error of the sample, kNotJudged if no
+/// face around it has an area, or kCancels.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -203,8 +205,8 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
     if (counts[bin] > 0) result.counts.add(bin, counts[bin]);
 }
 
-/// Counts the torn edges of a part. differences has, for each output, the rendered minus the true unit normal, or NaN
-/// if the output is not judged.
+/// Counts the torn edges of a part. `differences` has, for each output, the rendered unit normal minus the true one, or
+/// NaN if the output is not judged.
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error);
 
 /// The true normal of a placed output.
@@ -251,7 +253,7 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
       const JudgedOutput& output = outputs[range.first + k];
       const Vec3d& normal = placed.normals.elements[output.element];
       const double least = kVanished * largest[output.element];
-      const bool has_normal = max_abs(normal) > least || length(normal) > least;  // the first mostly tells
+      const bool has_normal = max_abs(normal) > least || length(normal) > least;  // the first test decides mostly
       result.set(range.first + k,
                  {some[k], source.hides(output, normal), has_normal, placed.normals.sizes[output.element] > least});
     }
@@ -259,8 +261,8 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
 }
 
 /// Returns the errors of all placed outputs. shown(first, normals) writes the rendered normals of outputs from number
-/// `first` on, and right has the true ones. If the argument each is not empty, it receives the error of every output in
-/// degrees, and NaN for outputs that are not judged.
+/// `first` on, and `right` has the true normals. If `each` is not empty, it gets the error of every output in degrees,
+/// NaN for outputs that are not judged.
 template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
                                    double t, const Shown& shown, const RightOutputs& right,
@@ -279,7 +281,7 @@ template <class Source, class Shown>
       for (std::size_t k = 0; k < count; ++k) {
         const RightOutput is = right[from + k];
         const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
-        // A skin may collapse a true normal.
+        // A hidden output is not judged, because the skin collapses its true normal.
         of_some[k] = is.is_hidden                                                        ? kNotJudged
                      : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
                      : !is.has_normal || !may_be_lit                                     ? kNotJudged
@@ -347,7 +349,7 @@ struct MeasuredSample {
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
 
-/// Appends the errors of the outputs at a sample: the worst error of each vertex.
+/// Appends the errors at a sample to the table. A vertex with several outputs gets the worst of their errors.
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 

@@ -17,10 +17,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Enough blocks are measured at a time to keep all threads busy, and few enough to keep their results small.
+// The number of blocks that are measured at a time, for each thread: enough to keep all threads busy, and few enough to
+// keep the results small.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
-// The errors of a block at one sample of a segment take 20 kB.
+// The most samples of a segment that are measured by blocks. The errors of a block take 20 kB for each sample.
 constexpr std::size_t kMostSamples = 128;
 
 // A block: some outputs, and the faces from which their normals are computed.
@@ -60,12 +61,12 @@ std::vector<Block> make_blocks(const JudgedPart& part) {
 struct Scratch {
   TrianglesInMotion triangles;
   std::vector<TrianglesInMotion::Normal> faces;
-  PlanesOf4 start, end, between;  // true normals at both ends of a segment and inside
-  PlanesOf4 from, to;             // the true normals at the ends as a viewer keeps them
+  PlanesOf4 start, end, between;  // true normals at both ends of a segment and at a moment in between
+  PlanesOf4 from, to;             // the normals at both ends as a viewer stores them
   std::vector<double> degrees;
 };
 
-// Adds up the normals of faces around each element, and their sizes.
+// Adds up the normals of the faces around each element at time t, and the lengths of these normals.
 void add_up_at(const Block& block, double t, Scratch& scratch, PlanesOf4& result) {
   scratch.triangles.normals(t, scratch.faces);
   sums_around(scratch.faces, block.faces, block.face_ends, result);
@@ -75,7 +76,7 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// Does the work of largest_control_normals() in measure.h: raises each length to the largest one in these segments.
+// Raises each length to the largest one in these segments, like largest_control_normals() in measure.h.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
@@ -112,7 +113,7 @@ void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) 
   }
 }
 
-// Makes the normals that a viewer stores at a keyframe, and interpolates, from the true ones.
+// Computes the normals that a viewer stores at a keyframe, and later interpolates, from the true normals.
 void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
@@ -124,7 +125,7 @@ void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   }
 }
 
-// Bounds the change of an element's normal if positions are rounded to float32.
+// Bounds the change of an element's normal if the positions are rounded to float32.
 double rounding_at(const Segment& segment, double t, const Block& block, std::size_t e) {
   double sum = 0;
   for (std::uint32_t i = e == 0 ? 0 : block.face_ends[e - 1]; i < block.face_ends[e]; ++i) {
@@ -136,7 +137,7 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// Returns the normal that a viewer renders for an element, interpolated between the normals kept at the ends.
+// Returns the normal that a viewer renders for an element. It is interpolated between the stored normals at both ends.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
@@ -191,10 +192,10 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
                       AuditSubject& subject) {
   const Motion& motion = segments.stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
-  std::vector<std::vector<double>> largest;  // an element at the border of two blocks is in both
+  std::vector<std::vector<double>> largest;  // of each block; an element between two blocks is in both
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
-  // Segments that are in memory together share the normals at the keyframes between them.
+  // Segments that are in memory at the same time share the normals at the keyframes between them.
   const std::size_t at_once = segments.stream.keeps_all() ? std::max<std::size_t>(segments.of_motion.size(), 1) : 1;
   const Status looked =
       SegmentRun::look_over(segments.stream, segments.keys(), segments.looked_at(), at_once, [&](IndexRange some) {

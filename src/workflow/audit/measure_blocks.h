@@ -1,9 +1,9 @@
-/// The loop of an audit for motions without stored normals whose faces are all triangles. The loop does the work of
-/// measure(), block by block, with the same results.
+/// The loop of an audit for motions without stored normals whose faces are all triangles. It has the same results as
+/// measure(), but takes less time because it works block by block.
 ///
 /// A block has some outputs with their elements and faces. Its positions are gathered once for each segment and stay in
-/// cache over all samples, and its normals and angles are computed in lanes (analysis/quality/kernels/shown_angles.h).
-/// Private to workflow.
+/// cache over all samples, and its normals and angles are computed in SIMD lanes
+/// (analysis/quality/kernels/shown_angles.h). Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_MEASURE_BLOCKS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_BLOCKS_H_
 
@@ -35,9 +35,9 @@ struct SegmentsOfRun {
   [[nodiscard]] auto keys() const {
     return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
   }
-  /// Returns the segments that determine the facts about all segments.
+  /// Returns the segments from which facts about all segments are derived.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Returns the segments to measure. Only a sequence, which is one subject, is divided between shards.
+  /// Returns the segments to measure. Shards divide only a sequence, which is a single subject.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }

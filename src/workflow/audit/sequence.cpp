@@ -99,7 +99,8 @@ class SequenceSource {
     return stored_normal(normals_, keyframe, output);
   }
 
-  // Turns a direction as the author turned the geometry's normal at a keyframe, but by no more than in keyframe 0.
+  // Turns a direction by the offset that the author's normal has from the geometry at a keyframe, but by no larger
+  // angle than in keyframe 0.
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
@@ -107,7 +108,7 @@ class SequenceSource {
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
-    // The offset ends at the point of the arc at the allowed angle.
+    // Limits the offset to the allowed angle, along the arc from the geometry's normal to the stored one.
     const Vec3d side = to - dot(from, to) * from;
     const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);
@@ -118,7 +119,7 @@ class SequenceSource {
   bool stored_;
   const JudgedPart& part_;
   AuditRule rule_;
-  std::vector<Vec3d> first_;  // stored normals of keyframe 0
+  std::vector<Vec3d> first_;  // normals of the geometry in keyframe 0
   std::span<const std::size_t> segments_;
   bool known_ = false;
   std::size_t segment_ = 0;
@@ -199,7 +200,7 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-// Finds the vertices that move. If peers examine the other segments, examines only this run's segments.
+// Finds the vertices that move. If peers (other processes) examine the other segments, examines only those of this run.
 Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
@@ -303,8 +304,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
 
   const Topology& topology = motion.topology;
   if (const Status status = stream.hold(0, 0); !status) return status.error();
-  // A viewer that computes the normals of keyframes weights faces by area, whatever the program did that made the
-  // first.
+  // The viewer computes the normals of keyframes itself and weights faces by area, whatever the exporting program did
+  // in the first file.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);
@@ -357,7 +358,7 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
       run.checksums["the vertices that move"] = checksum_of_flags(moves.value());
     }
     const JudgedPart part(topology, groups.value(), weighting, outputs_of(moves.value()));
-    if (!is_targets) groups = NormalGroups();  // the part has copied all that it needs of the groups
+    if (!is_targets) groups = NormalGroups();  // frees the groups, since the part has its own copy
     if (part.outputs().empty()) {
       ++result.still;
       run.tell(own.rest().count);
@@ -396,7 +397,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   if (result.subjects.empty()) result.errors.clear();
   if (run.shard) {
-    // Without peers, facts about the whole motion come from all keyframes.
+    // With peers, this shard reads only its own keyframes, and the checksums cover these. Without peers, it reads all
+    // keyframes for the facts about the whole motion.
     const Shard read = run.peers != nullptr ? *run.shard : Shard{};
     const Status status = seen.finish(keyframes_of_shard(motion, read), run.checksums);
     if (!status) return status.error();

@@ -1,4 +1,4 @@
-// Keeps deltas as dense rows for groups of outputs, and multiplies them by the weights of several moments at a time.
+// Stores deltas as dense rows for groups of outputs, and multiplies them by the weights of several moments at once.
 #include "workflow/audit/stored_sums.h"
 
 #include <algorithm>
@@ -76,7 +76,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
     if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
 }
 
-// The array by_target has the weights as (targets, sets).
+// by_target has the weights in the order (targets, sets of weights).
 void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);
@@ -91,7 +91,7 @@ void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
     const std::span<const float> weights = by_target.subspan(k * sets, sets);
     return std::any_of(weights.begin(), weights.end(), [](float weight) { return weight != 0; });
   };
-  std::vector<float> weights;  // for a range of targets, (targets, sets)
+  std::vector<float> weights;  // weights of a range of targets, (targets, sets)
   for (std::size_t row = 0; row < group.targets.size();) {
     weights.clear();
     std::size_t end = row;

@@ -1,8 +1,8 @@
-/// Adds up the stored normals of some outputs and their deltas, as the specification requires or as a viewer keeps
+/// Adds up the stored normals of some outputs and their deltas, as the specification requires or as a viewer stores
 /// them. Private to workflow.
 ///
-/// The deltas of many targets exceed the cache, so that the sum at one set of weights takes as long as reading all
-/// deltas. Sums at several sets are therefore computed in one pass.
+/// The deltas of many targets do not fit into the cache, so the sum at one set of weights takes as long as reading all
+/// deltas. So the sums at several sets are computed in one pass.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 
@@ -21,27 +21,27 @@ class StoredSums {
  public:
   static constexpr std::size_t kAtOnce = 4;  ///< this many sets of weights take hardly longer than one set
 
-  /// shading and outputs must outlive the object. involved lists targets in ascending order: a set of weights has one
-  /// value for each of them, and all other targets always have weight 0.
+  /// Creates an empty store; shading and outputs must outlive it. `involved` lists targets in ascending order: a set of
+  /// weights has a value for each of them, and all other targets always have weight 0.
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
              const Viewer& viewer = {});
 
-  /// Computes N + sum w D of every output at each set of weights, in float32 and target after target, as viewers add.
-  /// Discards earlier results. A delta of zero changes no sum, even if its weight is not finite: such a weight never
-  /// makes a sum finite, whatever the delta is. Uses all threads.
+  /// Computes the sum of the normal and of weight times delta over the targets, for every output at each set of
+  /// weights, in float32 and in the order of targets, as viewers do. Discards earlier results. A delta of zero is
+  /// skipped, even if its weight is infinite or NaN. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 
   /// Returns the sums at one of the sets of weights, three for each output; empty if the set is not known.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
-  /// Writes the unit normals, rounded to float, that are rendered for the sums of outputs from number `first` on; zero
-  /// or not finite if a sum is.
+  /// Writes the unit normals, rounded to float, that are rendered for the sums of outputs from number `first` on. A
+  /// normal is zero, infinite or NaN if its sum is.
   void shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 
  private:
-  // A group of neighbouring outputs, with a row of deltas for each target that turns any of them.
+  // A group of neighbouring outputs, with a row of deltas for each target that changes any of their normals.
   struct Group {
     std::vector<std::uint32_t> targets;  // ascending, as numbered in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup)
@@ -57,7 +57,7 @@ class StoredSums {
   std::span<const JudgedOutput> outputs_;
   std::vector<std::size_t> involved_;
   Viewer viewer_;
-  std::vector<Vec3f> kept_normals_;  // one for each output, if the viewer does not keep normals as stored
+  std::vector<Vec3f> kept_normals_;  // one for each output; empty if the viewer uses the normals as stored
   std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // number of sums of a set, rounded up to whole groups

@@ -13,8 +13,8 @@ bool keep_alike(const Viewer& a, const Viewer& b, bool is_skinned) noexcept {
          a.octahedral_base == b.octahedral_base;
 }
 
-// Tells whether a viewer adds up normals in float32 and renders them as BlendSource does by the rule of the
-// specification.
+// Returns true if a viewer adds up normals in float32 and renders them by the specification, so that BlendSource has
+// its results already.
 bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
@@ -79,17 +79,17 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
     weights_[h](sample.segment, sample.t, now);
-    is_judged[h] = is_still && now == now_[h];  // as in the previous sample
+    is_judged[h] = is_still && now == now_[h];  // with the result of the previous sample
     now_[h] = std::move(now);
   }
   placed_ = source.placed();
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play the same weights and keep normals alike render the same, so that one of them is judged for all.
-    // This list holds the errors that are already known.
+    // Viewers that play the same weights and store normals in the same way render the same. So one of them is judged
+    // for all; this list has the errors that are known already.
     std::vector<const MotionError*> of_kept(kept_.size());
-    std::optional<SkinRule> is_right_for;  // the rule that right_ was computed for
+    std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;
     if (now_[h] != source.now()) {
       if (!elsewhere_) elsewhere_.emplace(part_);

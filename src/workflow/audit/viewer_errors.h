@@ -1,7 +1,7 @@
-/// Judges the normals that viewers render, besides the specification, at the same samples. Private to workflow.
+/// Judges the normals that viewers render, at the same samples as the audit by the specification. Private to workflow.
 ///
 /// Viewers that play the same weights have the same positions and true normals, which are computed once. Viewers that
-/// also keep normals and deltas alike render the same.
+/// also store normals and deltas in the same way render the same.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 
@@ -27,9 +27,9 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// weights has, for each viewer, the weights that it plays for the involved targets, as in BlendSource. shading and
-  /// part must outlive the object. is_skinned means that a skin moves the part, which each viewer may do in its own
-  /// way.
+  /// `weights` has a function for each viewer, which writes the weights that it plays for the involved targets, as in
+  /// BlendSource. shading and part must outlive the object. is_skinned is true if a skin moves the part; viewers apply
+  /// skins in different ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
@@ -50,14 +50,14 @@ class ViewerErrors {
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  std::vector<StoredSums> kept_;          // normals and deltas as some viewers keep them
-  std::vector<std::size_t> kept_by_;      // for each viewer, its index in kept_
-  RightOutputs right_;                    // true normal of each output, as some viewers see it, if not as in the sample
-  double size_ = 0;                       // size of the mesh
-  std::optional<PlacedPart> elsewhere_;   // the part at weights other than the specified ones, once needed
-  std::size_t placed_ = 0;                // source.placed() at the last sample; 0 before any
-  std::vector<std::vector<double>> now_;  // for each viewer, the weights of the last sample
-  std::vector<ViewerError> last_, errors_;  // for each viewer: of the last sample and of all
+  std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
+  std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
+  RightOutputs right_;                      // true normal of each output as viewers with another skin rule see it
+  double size_ = 0;                         // size of the mesh
+  std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones; empty until needed
+  std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
+  std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample
+  std::vector<ViewerError> last_, errors_;  // one for each viewer: at the last sample, and over all samples
 };
 
 }  // namespace chronormal::inline internal

@@ -35,10 +35,10 @@ struct SegmentErrors {
 using AuditRun = RecordedRun<SegmentErrors>;
 using AuditShard = ShardOf<Audit, SegmentErrors>;
 
-/// Audits the share of a sequence's segments that belongs to the run. Every shard derives for itself the facts about
-/// the whole motion (which vertices move, how long a normal gets); with peers the shards derive these facts together,
-/// by maximize(). Errors: also kUsage for single errors of a run that is divided, or for targets, and for known
-/// segments of another audit; errors of run.keep.
+/// Audits the share of a sequence's segments that belongs to the run. Facts about the whole motion (which vertices
+/// move, how long a normal gets) are needed by every shard. Each shard derives them from all segments, or, with peers,
+/// from its own segments and maximize(). Errors: also kUsage for single errors of a run that is divided, or for
+/// targets, and for known segments of another audit; errors of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 
@@ -63,7 +63,7 @@ struct AuditSample {
 
 using AuditWatch = std::function<void(const AuditSample&)>;
 
-/// A mesh as its author left it, with the truth of it. It must not be moved.
+/// A mesh as its author made it, with its true normals. It must not be moved, because `truth` refers to `shading`.
 struct AuthorOfMesh {
   AuthorOfMesh(GltfShading read, std::optional<Weighting> asked)
       : shading(std::move(read)), truth(author_truth(shading, asked)), weighting(find_authored_weighting(shading)) {}
@@ -73,15 +73,16 @@ struct AuthorOfMesh {
   AuthoredWeighting weighting;  ///< of the base normals
 };
 
-/// The meshes of an audited file, by their indices.
+/// The meshes of an audited file, keyed by index.
 using KnownAuthors = std::map<std::size_t, std::shared_ptr<AuthorOfMesh>>;
 
-/// Audits a file and keeps what is known of its author or, if options.author is that file, uses it. Both audits must
-/// have the same weighting and weld the same points.
+/// Audits a file. If options.author is the file of an earlier audit in `known`, uses what that audit found out about
+/// the author; otherwise stores in `known` what this audit finds out. Both audits must have the same weighting and weld
+/// the same points.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options, KnownAuthors& known);
 
 /// Run the audits of workflow/audit.h and report each sample, subject after subject. Tracks with the same keys are
-/// reported once, as the first of their subjects. If the watch is empty, nothing is reported.
+/// reported only once, as the first of them. If the watch is empty, nothing is reported.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch, KnownAuthors* known = nullptr);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,

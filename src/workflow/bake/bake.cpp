@@ -6,7 +6,8 @@
 //     choose_candidate      for other encodings: the best candidate in the viewers                    chooser
 //     MeshWriter            the arrays, and everything that counts targets, as edits of the file      write_mesh
 //
-// The tracks of animations may drive several meshes, so that they are extended once all meshes are done.
+// n(w) is the true normal at the weights w. A track of an animation may drive several meshes, so tracks are extended
+// after all meshes are done.
 #include "chronormal/workflow/bake.h"
 
 #include <algorithm>
@@ -43,7 +44,7 @@ struct MeshBake {
   GrownMesh grown;  // if it has correction targets
 };
 
-// Returns the meshes that might move; only their arrays tell whether they do.
+// Returns the meshes that may move. Only their arrays, which are read later, tell whether they do.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
@@ -81,7 +82,7 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
       "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
 }
 
-// Returns which parts get new base normals.
+// Returns for each part whether it gets new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
@@ -89,14 +90,15 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// Finds what the author would see, unless a weighting is asked for. Recomputed base normals have no author.
+// Finds the true normals that the author intended, unless the options give a weighting. Recomputed base normals have no
+// author.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);
 }
 
-// Splits the gaps between keys into pieces, so that curves can follow weights that are not quadratic there. Only short
-// tracks need it, since the gaps of long ones are small.
+// Splits the gaps between keys into pieces, so that the curves of correction weights can follow true weights that are
+// not quadratic in a gap. Only short tracks need this, because the gaps of long tracks are small.
 void cut_gaps(MeshWeights& weights) {
   constexpr std::size_t kNodes = 128, kMostPieces = 8;
   for (WeightTrack& track : weights.tracks)
@@ -113,7 +115,7 @@ void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.resampling_error = plan.left_out;
 }
 
-// Returns the poses that a mesh is made for when a program poses it.
+// Returns the poses for which a mesh is baked if a program poses it, instead of an animation.
 RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
@@ -121,12 +123,12 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
   return {mesh.target_names, std::move(moving), mesh.target_count, std::move(given)};
 }
 
-// The arrays of a mesh, one target at a time.
+// Functions that compute the arrays of a mesh, one target at a time.
 struct MeshDeltas {
-  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing if it stays as it is
+  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing if the target stays as it is
   std::function<TargetDeltas(std::size_t extra)> extra;
   GrownMesh grown;
-  bool is_new = true;  // something changes
+  bool is_new = true;  // false if the mesh stays as it is
 };
 
 MeshDeltas exact_deltas(const DeltaSource& source) {
@@ -136,7 +138,7 @@ MeshDeltas exact_deltas(const DeltaSource& source) {
           true};
 }
 
-// Returns the deltas of the other encodings, and fills in the report on them.
+// Returns the deltas for encodings other than exact, and adds the choice to the report.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                          std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
   ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
@@ -282,15 +284,15 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   return Success{};
 }
 
-// Tells whether a mesh needs no bake: a second one would add correction targets to correction targets. A mesh without
-// them can be baked in another encoding.
+// Returns true if a mesh was baked and needs no further bake. If it has correction targets, a second bake would add
+// correction targets to them. A mesh without correction targets can be baked again in another encoding.
 bool is_baked(const GltfShading& shading, const BakeOptions& options) {
   return shading.mark &&
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
-// Judges a mesh that was baked before, so that an error beyond the tolerance is reported. Single keyframes of a
-// sequence mean nothing, and cost more: they are judged only if a tolerance is asked for.
+// Judges a mesh that was baked before, so that an error beyond the tolerance is reported. In a mesh that was baked from
+// a sequence, each target is one keyframe; judging these takes long, so it is only done if a tolerance is requested.
 Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
   const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
   if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))
@@ -334,7 +336,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   baked.report.weighting = truth.rule().weighting;
   if (truth.is_plain()) {
     shading.value().groups.forget_corners();
-    shading.value().point_of_vertex = {};  // only the truth needed these
+    shading.value().point_of_vertex = {};  // only the truth needed these two
     shading.value().place_of_vertex = {};
   }
   for (const GltfPrimitive& primitive : mesh.primitives) {

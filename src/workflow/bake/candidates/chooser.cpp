@@ -12,22 +12,25 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The largest number of products of two weights to try; each takes a correction target.
+// The most products of two weights that are tried. Each product takes a correction target.
 constexpr std::size_t kMostProducts = 48;
 // The number of attempts with fewer correction targets to meet the byte limit.
 constexpr int kTries = 5;
 // Means that differ by no more than this part of themselves count as equal.
 constexpr double kAlike = 1e-3;
-// If only a skin keeps candidates beyond the tolerance, they are made again for a smaller one, at most this many times.
+// A skin may make errors larger, and so keep all candidates beyond the tolerance. Then candidates are made again for a
+// smaller tolerance, at most this many times.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// If a glance at a candidate shows a mean this many times that of the best, the candidate is not examined further.
+// A glance measures a candidate in only a few of the poses. If it shows a mean error this many times that of the best
+// candidate, the candidate is not examined further.
 constexpr double kHopeless = 2;
-// A file may grow more if it gets few correction targets. A correction target has deltas for most vertices.
+// With at most kFewExtras correction targets, a file may grow more. A correction target takes about kBytesOfExtra bytes
+// for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
 // A candidate is better than the stored deltas if it leaves at most this part of the mean error.
 constexpr double kBetter = 0.95;
-// Twice as many correction targets of a rig are worth it if they leave at most this part of the mean error.
+// Doubling the correction targets of a rig is worth it if at most this part of the mean error remains.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
@@ -39,7 +42,7 @@ bool has_unit(std::span<const Viewer> viewers) {
                      [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
 }
 
-// Returns how many correction targets all viewers and the options have room for.
+// Returns the largest number of correction targets that the options allow and that all viewers support.
 std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   std::size_t most = 10000;
   const auto limit = [&](std::size_t all) { most = std::min(most, all - std::min(all, targets)); };
@@ -49,8 +52,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns whether an error grew by more than it may, or tears did at the first `thresholds` angles. A mean may grow up
-// to the tolerance, and single normals may turn by the tolerance; one more edge may be torn per hundred torn edges.
+// Returns true if an error grew by more than it may, or if torn edges did at one of the first `thresholds` angles. A
+// mean may grow up to the tolerance, and single normals may turn by the tolerance. For each hundred torn edges, one
+// more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
@@ -63,9 +67,9 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
 // A candidate and how it was judged.
 struct Judged {
   BakedCandidate choice;
-  std::size_t better = 0, unharmed = 0;  // of the named viewers and of the others, as in chooser.h
+  std::size_t better = 0, unharmed = 0;  // numbers of named viewers, and of other viewers, as in chooser.h
   bool is_affordable = true, is_bearable = true;
-  double mean = 0, mean_of_spared = 0;  // of the worst of the named viewers, and of the others
+  double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
 // Compares candidates one after the other, and keeps the best.
@@ -100,7 +104,7 @@ class Chooser {
             has_unit(options_.viewers)};
   }
 
-  // Judges a candidate, and returns its bytes.
+  // Judges a candidate, and keeps it if it is the best so far. Returns the bytes of its deltas.
   std::size_t consider(Candidate candidate) {
     const std::size_t targets = source_.shading.set.targets.size();
     Judged judged;
@@ -131,8 +135,8 @@ class Chooser {
     return bytes;
   }
 
-  // Returns whether a glance shows that a candidate is beyond the tolerance. A plan asks for all candidates, so none is
-  // far.
+  // Returns true if a glance shows that a candidate is beyond the tolerance. Returns false for a plan, which must
+  // measure all candidates.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     if (options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -151,15 +155,16 @@ class Chooser {
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
     return extras > kFewExtras ? options_.bytes_of_file : options_.bytes_of_file + options_.bytes_of_file / 2;
   }
-  // Estimates the number of correction targets of all vertices that fit beside own deltas of this size.
+  // Estimates how many correction targets for all vertices fit into the limit, beside deltas of the mesh's own targets
+  // that take bytes_of_own.
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // too large a candidate is tried again with fewer
+    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // if one more is too large, fewer are tried
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
-  // Returns whether the best candidate is accurate enough, and has no more bytes than these, so that others need not be
-  // tried. A plan asks for all candidates.
+  // Returns true if the best candidate is accurate enough and has at most this many bytes, so that others need not be
+  // tried. Returns false for a plan, which must measure all candidates.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && of_best_.better + of_best_.unharmed == viewers_.size() &&
            of_best_.choice.bytes - tangent_bytes_ <= bytes && !options_.plan;
@@ -167,8 +172,8 @@ class Chooser {
   [[nodiscard]] bool plans() const noexcept { return options_.plan; }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
-  // Asks for candidates that are made for a smaller tolerance, because skins keep all of them beyond the given one.
-  // Returns whether that may help.
+  // Reduces the tolerance that candidates are made for, because skins keep all of them beyond the given tolerance.
+  // Returns false if that cannot help.
   bool tighten() {
     if (!best_ || of_best_.choice.within || !weights_.skins.any()) return false;
     const double now = made_within_.value_or(tolerance_);
@@ -201,15 +206,16 @@ class Chooser {
                               : errors_of_all(kinds).errors();
   }
 
-  // Returns the smallest mean of the named viewers: some gain where others lose.
+  // Returns the mean error in the named viewer where it is smallest, because a candidate may help some viewers and harm
+  // others.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
     return least;
   }
 
-  // Returns the changes of all viewers: measured anew if compressors round for the viewer, and as they are known for
-  // the others.
+  // Returns the changes of all viewers. Measures them anew for a viewer whose files compressors round, and takes the
+  // known changes for the others.
   [[nodiscard]] std::vector<ViewerChange> changes(const std::vector<ErrorsOfKinds>& before,
                                                   const std::vector<ErrorsOfKinds>& after,
                                                   std::vector<ViewerChange> known) const {
@@ -240,8 +246,8 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      // A candidate that is asked for by name counts as better if it has a smaller mean, in what the file plays or in
-      // all poses, and tears nothing.
+      // If a candidate is requested by name, it counts as better when its mean error is smaller, in the poses of the
+      // file or in all poses, and it tears no edge.
       const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
@@ -262,7 +268,8 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // The stored deltas give way to any candidate that is better in some viewer, unless they are accurate enough.
+    // The stored deltas lose to any candidate that is better in some viewer, unless they are within the tolerance and
+    // the smallest file is preferred.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
@@ -280,7 +287,8 @@ class Chooser {
     return is_alike ? judged.choice.bytes < than.choice.bytes : judged.mean < than.mean;
   }
 
-  // Returns the worst error of the chosen candidate after compression, over named viewers that compressors round for.
+  // Returns the worst error of the chosen candidate after compression, over the named viewers whose files compressors
+  // round.
   [[nodiscard]] double rounded_worst() const {
     double worst = 0;
     const std::vector<ErrorsOfKinds> rounded = judge_->measure(*best_, Judge::Depth::kGlance, true);
@@ -296,7 +304,7 @@ class Chooser {
   std::vector<Viewer> viewers_;  // the named ones, then the others
   RightNormals rights_;
   double tolerance_;
-  std::optional<double> made_within_;  // the tolerance that candidates are made for, if it is smaller
+  std::optional<double> made_within_;  // tolerance that candidates are made for, if smaller than tolerance_
   bool prefers_bytes_;
   std::size_t tangent_bytes_;
   std::optional<Judge> judge_;
@@ -304,13 +312,13 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;  // index of the best in candidates_
+  std::size_t of_choice_ = 0;  // index of the best candidate in candidates_
   double best_glance_ = 0;
   std::vector<BakedCandidate> candidates_;
 };
 
-// Tries correction targets of low rank: as many as the tolerance needs and the file may grow by, and fewer if they take
-// too many bytes.
+// Tries correction targets of low rank (low_rank.cpp): as many as the tolerance needs within the bytes by which the
+// file may grow. If they take too many bytes, tries fewer.
 void look_at_low_rank(const Making& making, const Candidate& own, std::size_t bytes_of_own, Chooser& chooser) {
   Making of_try = making;
   of_try.most_extras = std::min(of_try.most_extras, chooser.extras_within(bytes_of_own));
@@ -326,7 +334,8 @@ void look_at_low_rank(const Making& making, const Candidate& own, std::size_t by
   }
 }
 
-// Tries correction targets of a mesh that nothing drives: more and more of them, as long as each step is worth it.
+// Tries correction targets of a mesh that nothing drives: more and more of them, as long as each step is worth it
+// (kWorthIt).
 void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
@@ -344,8 +353,8 @@ bool has_few_products(const Making& making, const MeshWeights& weights) {
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Tries deltas of any length. Viewers that add deltas as stored then render the truth, and in many files the others get
-// no worse than before.
+// Tries deltas that change the length of normals. Viewers that add up deltas as stored then render true normals, and in
+// many files the other viewers get no worse than before.
 void look_at_any_lengths(Making making, const MeshWeights& weights, Chooser& chooser) {
   making.lengths = Lengths::kFree;
   if (making.rights.are_by_area()) chooser.consider(own_candidate(making.source, making.rights, making.lengths));
@@ -356,7 +365,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
                  const std::function<void(std::size_t)>& reach) {
   Candidate own = own_candidate(source, making.rights, making.lengths);
   own.animations_only = false;
-  // If correction targets may help, own deltas with a large error at a glance are judged last.
+  // If correction targets may help, deltas of the mesh's own targets that a glance finds beyond the tolerance are
+  // judged last.
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && making.most_extras > 0;
   const bool waits = has_extras && chooser.is_far(own);
   if (!waits) chooser.consider(own);
@@ -370,7 +380,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
   if (has_extras) {
-    // Corrections across N alone are rendered alike in every viewer, but may take more correction targets.
+    // Corrections only across N (perpendicular to the stored normal) are rendered alike in every viewer, but may need
+    // more correction targets.
     Making across = making;
     across.keeps_across |= making.lengths == Lengths::kShort;
     look_at_low_rank(across, own, bytes, chooser);
@@ -396,13 +407,14 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     alone.lines = FittedLines();
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
-    // Keys of a file whose author is known may be right as they are, so deltas that are fitted to animations must not
-    // change them.
+    // If the author's normals are known, keys of the file may be right as they are. Deltas that are fitted to
+    // animations would change them, so such deltas are not tried.
     const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));
     ChosenCandidate chosen = chooser.take();
-    // If targets are played together, the error of their single deltas is known only where it was measured.
+    // If targets are played together, the error of the deltas of each single target is known only where it was
+    // measured.
     if (chosen.candidate.fit_error < source.plan.lines.largest_error())
       for (const ViewerChange& change : chosen.viewers)
         if (change.is_named)
@@ -419,7 +431,7 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
   }
   if (chooser.is_found(0)) return chooser.take();
   for (int tries = 0; tries <= kMostTightened; ++tries) {
-    // Only viewers that add deltas of any length gain by deltas that are fitted to animations.
+    // Deltas that are fitted to animations help only viewers that add up deltas of any length.
     Making making = chooser.making(options.animations_only);
     if (options.animations_only && source.plan.is_driven && making.lengths == Lengths::kFree) {
       look_at_low_rank(making, own_candidate(source, making.rights, making.lengths), 0, chooser);

@@ -16,12 +16,12 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
-// Splines may leave this many times what straight pieces may: their bound is the sum of all errors, as if they came at
-// once.
+// Splines may have an estimated error this many times the limit of straight pieces, because the estimate adds up all
+// errors as if they came at the same moment.
 constexpr double kPartOfSplines = 2;
 
-// Returns, for each gap between keys, the angle in radians by which straight lines of correction weights turn normals.
-// A straight line has its largest error in the middle of the gap: a quarter of its second difference.
+// Returns, for each gap between keys, the angle in radians by which normals turn if correction weights change linearly
+// in the gap. The error of a straight line is largest in the middle of the gap.
 std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                   const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                   const VertexColumns& columns) {
@@ -43,7 +43,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     for (std::size_t c = track.targets; c < missing.size(); ++c)
       missing[c] = (at_start[c] + at_end[c]) / 2 - middles.back()[c];
   }
-  // Holds the weights of columns as rows of poses.
+  // Returns the weights in planes: a row for each column of weights, with one entry for each pose.
   const std::size_t poses = middles.size(), stride = block_count(poses, kPosePadding) * kPosePadding;
   const auto rows_of = [&](const PoseList& of) {
     std::vector<float> rows((track.targets + extra_count) * stride);
@@ -52,7 +52,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     return rows;
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
-  // Calls visit(p, openness) for the rendered normal of a vertex, and the same normal with what is missing.
+  // Calls visit(p, openness) with the angle between two normals of a vertex in pose p, as an openness (a monotonic
+  // function of the angle): the rendered one, and the same one plus what the straight line lacks.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
     thread_local std::vector<float> shown, off;
@@ -71,7 +72,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     };
     for (std::size_t p = 0; p < poses; ++p) visit(p, openness(at(shown, p), at(shown, p) + at(off, p)));
   };
-  // The largest openness of each pose, with the vertex that has it in the lower bits.
+  // The largest openness of each pose in the upper bits, and the index of its vertex in the lower bits.
   std::vector<std::atomic<std::uint64_t>> worst(poses);
   const auto note = [&](std::size_t n, std::size_t p, float open) {
     const std::uint64_t found = std::uint64_t{bit_cast<std::uint32_t>(open)} << 32 | n;
@@ -80,7 +81,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   parallel_each(vertices.size(), kTurnBlock,
                 [&](std::size_t n) { turn(n, [&](std::size_t p, float open) { note(n, p, open); }); });
-  // A normal whose truth has no direction does not count. There are few, so that only the largest is asked first.
+  // A normal does not count if its true normal has no direction. That is rare, so it is first checked only for the
+  // vertex with the largest error.
   std::vector<std::size_t> again;
   PoseList poses_again;
   for (std::size_t p = 0; p < poses; ++p) {
@@ -105,12 +107,12 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
 }
 
 // Splits the gaps of a LINEAR track until straight pieces of correction weights turn no normal by more than the
-// tolerance (radians), within a limit of pieces. Raises `left` to the angle by which they still turn one.
+// tolerance (radians), within a limit of pieces. Raises `left` to the largest angle that remains.
 std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                      const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                      const VertexColumns& columns, double tolerance, double& left) {
   const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
-  // A gap gets at most `most` pieces; `most` falls until all gaps together keep to the limit.
+  // A gap gets at most `most` pieces. `most` is reduced until the pieces of all gaps together keep to the limit.
   for (std::size_t most = kMostPieces;; --most) {
     std::vector<std::uint32_t> pieces;
     std::size_t keys = 1;

@@ -14,12 +14,12 @@
 
 namespace chronormal::inline internal {
 
-/// Decides how the tracks of a file carry the weights of correction targets, so that they turn no normal by more than
-/// the tolerance (radians):
+/// Decides how the tracks of a file carry the weights of correction targets, so that the error of these weights turns
+/// no normal by more than the tolerance (radians):
 ///
-///     LINEAR        straight pieces of each gap, within a limit of their number; track_error is raised to the angle by
-///                   which they turn normals. If all viewers play cubic splines, and a spline takes fewer numbers or
-///                   pieces leave too much, the track becomes a spline, which is exact
+///     LINEAR        each gap is cut into straight pieces, within a limit of their number; track_error is raised to the
+///                   angle by which they turn normals. If all viewers play cubic splines, the track becomes a spline,
+///                   which is exact, if that takes fewer numbers or if the pieces leave too large an error
 ///     CUBICSPLINE   more keys for formulas, if all viewers play splines as specified
 ///
 /// The candidate must have its deltas, and its formulas or curves.

@@ -3,9 +3,11 @@
 //
 //     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
 //
-// The s_k are the leading left singular vectors of the missing normals, in which points count more where n(w) gets
-// short; the E_k are the right ones. If a point still has a large error, its own E_k are fitted again by least squares
-// of the angles, in which the length of n(w) is free at every instant and bad instants count more.
+// N is the stored normal, and D_i are the deltas of the mesh's own targets. The missing normals are the difference
+// between n(w) and N + sum_i w_i D_i. Their leading left singular vectors are the curves s_k, and the right ones are
+// the deltas E_k; points count more while n(w) is short. If a point still has a large error, its own E_k are fitted
+// again by least squares of the angles: the length of n(w) is free at every instant, and instants with large errors
+// count more.
 //
 // Rows are the nodes of the curves (extra_curves.h). If there are too many, the rows are the nodes of some gaps between
 // keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
@@ -34,25 +36,25 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Parts of the tolerance: an error that needs no correction; the error that singular vectors alone should leave in 99.9
-// % of all samples; and the worst error that least squares should then leave.
+// Parts of the tolerance: the error below which no correction is needed; the error that singular vectors alone should
+// leave in 99.9 % of all samples; the largest error that least squares should leave after that.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// A number of correction targets is enough if its error is within this factor of the smallest, though kManyMore times
-// as many were tried.
+// A number of correction targets is enough if its error is at most kNoGain times the smallest error, and kManyMore
+// times as many targets were tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
-// Parts of a gap at which a fit is judged but not made.
+// Positions in a gap between keys at which a fit is judged. Nothing is fitted there.
 constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
 constexpr int kFits = 4;
-// Relative to the tolerance: how far one entry of a delta that is left out may turn a normal.
+// The angle by which an entry of a delta that is left out may turn a normal, as a part of the tolerance.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-// One correction target made of another: its weight is `factor` times that of the other, or the part of this above
-// zero.
+// One correction target made from another, called `of`. Its weight is `factor` times the weight of `of`; with
+// above_zero, negative weights become 0.
 struct Share {
   std::size_t of = 0;
   double factor = 1;
@@ -60,35 +62,36 @@ struct Share {
   VertexVectors vectors;
 };
 
-// The properties of short shares.
+// Properties of shares whose deltas are short enough for viewers that limit the length of deltas.
 struct ShortShares {
-  bool are_units = false;   // N + E is as long as N except for its part along N: viewers that keep directions keep it
-  bool keep_along = false;  // the part along N stays
+  bool are_units = false;   // N + E has the length of N, so that viewers which store directions keep E
+  bool keep_along = false;  // keeps the part of E along N
 };
 
 struct LowRank {
-  std::vector<VertexVectors> own;     // of each target of the mesh
-  std::vector<VertexVectors> extras;  // of any length, for weights from -1 to 1
-  TrackCurves curves;                 // of the correction targets, for each track
-  PoseList rest;                      // their weights in the poses that the file stores
-  double worst = 0;                   // degrees: of all points at the instants that were fitted to
+  std::vector<VertexVectors> own;     // deltas of each target of the mesh
+  std::vector<VertexVectors> extras;  // deltas of correction targets: of any length, for weights from -1 to 1
+  TrackCurves curves;                 // weights of the correction targets over time, for each track
+  PoseList rest;                      // weights of the correction targets in the poses that the file stores
+  double worst = 0;                   // largest error of all points at the fitted instants, in degrees
 };
 
 struct LowRankLimits {
   std::size_t most_extras = 0;
   double tolerance = 0;       // degrees: correction targets are added until the worst sample is within it
   bool keeps_across = false;  // correction targets correct only what is missing across N
-  bool refits_own = false;    // the deltas of own targets are fitted to the animations too, and to nothing else
+  bool refits_own = false;    // own targets are fitted to the animations too, and to nothing else
 };
 
-// The instants that are fitted to.
+// The instants to which a fit is made.
 struct Rows {
   std::vector<std::size_t> instants;  // ascending
   std::vector<PlaceOfRows> places;    // half-way between neighbouring nodes of a piece
-  std::vector<PlaceOfRows> unseen;    // other places, which nothing is fitted to
+  std::vector<PlaceOfRows> unseen;    // other places, to check the fit
 };
 
-// Returns the tracks that fit into this many rows, if each of them contributes its most telling piece.
+// Returns the tracks that fit into this many rows if each contributes at least its most telling piece (telling_tracks()
+// and telling_keys() in poses/played_poses.h).
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -118,7 +121,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
       for (const std::size_t key : keys) take(first + key);
       continue;
     }
-    std::vector<std::size_t> of_pieces;  // the first node of each
+    std::vector<std::size_t> of_pieces;  // the first node of each piece
     for (const std::size_t key : keys)
       for (std::size_t piece = 0; piece < pieces; ++piece) of_pieces.push_back(2 * (pieces * key + piece));
     for (const std::size_t node : of_pieces) {
@@ -149,7 +152,7 @@ std::vector<float> own_weights(const PoseList& poses) {
   return result;
 }
 
-// Returns a change of the deltas of own targets for each point, (3, targets), by least squares over the rows.
+// Returns by least squares over the rows a change of the own targets' deltas, for each point: (3, targets).
 std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   const std::vector<float> weights = own_weights(missing.poses());
   std::vector<double> matrix(targets * targets, 0.0);
@@ -187,7 +190,7 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
-// Counts the products of two weights: by area, n(w) has no more terms that are missing.
+// Counts the products of two weights. With area weights, n(w) is quadratic, so it has at most this many missing terms.
 std::size_t products_of(const PoseList& poses) {
   std::size_t active = 0;
   for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
@@ -195,7 +198,8 @@ std::size_t products_of(const PoseList& poses) {
   return active * (active + 1) / 2;
 }
 
-// Fits with as few correction targets as the tolerance needs, as far as some points and three tries can tell.
+// Fits with as few correction targets as the tolerance needs. Some points tell how many that may be; then the number is
+// raised in at most kFits fits.
 void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
   std::vector<std::size_t> counts;
   for (const std::size_t count : kCounts)
@@ -208,7 +212,7 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
     ++at;
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
-  // Between two counts, the logarithm of the error is taken as a straight line.
+  // Between two counts, the logarithm of the error is interpolated linearly.
   if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
     const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
     extras =
@@ -223,7 +227,7 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   }
 }
 
-// Returns the weights of correction targets at instants that were not fitted to, by least squares over all points:
+// Returns the weights of correction targets at other instants than the fitted ones, by least squares over all points:
 // (poses, extras).
 std::vector<double> weights_at(const LowRankFit& fit, const MissingNormals& missing, const Cholesky& gram) {
   const std::size_t extras = fit.extras(), padded = fit.padded(), stride = missing.stride();
