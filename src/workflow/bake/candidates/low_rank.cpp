@@ -377,7 +377,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Scales weights to at most 1, and sets entries that turn nothing to zero.
+  // Scales weights to at most 1, and sets entries of deltas that turn no normal noticeably to zero.
   std::vector<std::size_t> kept;
   std::vector<double> largest(extras, 0.0);
   for (std::size_t n = 0; n < curves.size(); ++n)
@@ -414,8 +414,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   return found;
 }
 
-// Multiplies vectors by a factor or, if is_unit, makes N + E as long as N; keeps_along then keeps the part of E along
-// N.
+// Multiplies vectors by a factor, or gives N + E the length of N if is_unit is true. In that case, keeps_along keeps
+// the part of E along N.
 void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps_along, VertexVectors& vectors) {
   for (std::size_t n = 0; n < vectors.vertices.size(); ++n) {
     Vec3f& vector = vectors.vectors[n];
@@ -430,7 +430,8 @@ void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps
   }
 }
 
-// Makes targets of these lengths whose sums are the given ones: one for each, or two of unit length.
+// Turns deltas of any length into deltas that `lengths` allows. Each delta becomes one share, or for kUnit two shares:
+// one for positive weights, and one for negative weights.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, Lengths lengths,
                              const ShortShares& how) {
   std::vector<Share> shares;
@@ -474,8 +475,8 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = found.extras.size();
-  // Parts along N matter only to viewers that add up deltas, where they allow turns by more than a right angle; in
-  // others they are wrong.
+  // Parts along N help viewers that add up deltas: they allow turns by more than a right angle. In viewers that keep
+  // only directions, these parts are wrong.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,

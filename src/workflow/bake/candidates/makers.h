@@ -1,5 +1,8 @@
-/// The makers of candidates: each makes a Candidate from a Making, a mesh with the wishes of the bake. Private to
-/// workflow.
+/// The makers of candidates. Each makes a Candidate from a Making, which is a mesh and the wishes of the bake. Private
+/// to workflow.
+///
+/// N is the stored normal of a vertex, D the delta of a target of the mesh, and E the delta of a correction target. Own
+/// deltas are those of the mesh's own targets. "Across N" means perpendicular to N.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_MAKERS_H_
@@ -21,20 +24,20 @@ namespace chronormal::inline internal {
 
 /// The lengths that N + D and the deltas E of correction targets may have.
 enum class Lengths {
-  kUnit,  ///< N + D and N + E are as long as N, no component of D and E is beyond 1, and weights are from 0 to 1: right
-          ///< in any viewer, after any compressor
-  kShort,  ///< N + D is as long as N, and E is short beside N, with larger weights in return: a viewer that keeps only
-           ///< the direction of N + E loses the part of E along N, and almost nothing else
+  kUnit,   ///< N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1:
+           ///< right in any viewer, after any compressor
+  kShort,  ///< N + D has the length of N, and E is much shorter than N, with larger weights in return: a viewer that
+           ///< keeps only the direction of N + E loses the part of E along N, and almost nothing else
   kFree    ///< any length, if all viewers add the deltas as stored
 };
 
-/// Returns the most general lengths that all of these viewers render with little or no loss.
+/// Returns the freest choice of lengths that all of these viewers render with little or no loss.
 [[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
-/// Returns the factor between weights for these lengths and weights for deltas of any length.
+/// Returns the factor by which weights for these lengths are larger than weights for deltas of any length.
 [[nodiscard]] constexpr double weight_factor(Lengths lengths) noexcept { return lengths == Lengths::kShort ? 64 : 1; }
 
-/// A mesh, with the wishes for a candidate. The members that are references must outlive it.
+/// A mesh and the wishes for a candidate. The members that are references must outlive it.
 struct Making {
   const DeltaSource& source;
   const RightNormals& rights;
@@ -58,39 +61,40 @@ inline constexpr double kPartOfTracks = 0.2;
 /// Makes a candidate of the stored deltas.
 [[nodiscard]] Candidate stored_candidate(const DeltaSource& source);
 
-/// Makes deltas that are right at weight 1 of each target alone. If lengths are free, they leave the least error on the
-/// way there, as the plan of the source says: with fitted lines, by least squares over the weights of the file.
+/// Makes deltas that are right at weight 1 of each target alone. If lengths are free, it makes the deltas with the
+/// smallest error on the way from 0 to 1 as well: as the plan of the source says, with fitted lines by least squares
+/// over the weights of the file.
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
 // Correction targets that products of weights drive (products.cpp).
 
-/// Computes the deltas of the mesh's own targets that are right at weight 1, for all vertices of elements that they
-/// move.
+/// Computes the own deltas that are right at weight 1 of each target, for the vertices of all elements that the target
+/// moves.
 [[nodiscard]] std::vector<VertexVectors> end_deltas(const GltfShading& shading, const NormalTerms& terms,
                                                     const RightNormals& rights, Lengths lengths);
 
-/// Counts the pairs of targets that are active together and both move a normal, including a target with itself. Stops
-/// at `most` + 1.
+/// Counts the pairs of targets that are active together and both move a normal; a target with itself is a pair too.
+/// Stops at `most` + 1.
 [[nodiscard]] std::size_t count_products(const Making& making, std::size_t most);
 
-/// Makes the candidate, for the poses of the file or of the rig. Vertices that are right to half the tolerance take
-/// part in no correction target. Beyond the limit, the correction targets that gain most are kept.
+/// Makes the candidate with products, for the poses of the file or of the rig. Vertices whose error is at most half the
+/// tolerance take part in no correction target. If the limit allows fewer correction targets, it keeps those that help
+/// most.
 [[nodiscard]] Candidate products_candidate(const Making& making);
 
 // Correction targets that animations drive (low_rank.cpp).
 
-/// Fits as many correction targets as the tolerance needs, within the limit, to the errors that new deltas of the
-/// mesh's own targets leave. Vertices that are right to a part of the tolerance take no part. If only animations count
-/// and lengths are free, the deltas of own targets are fitted to the animations too. Cost: the true normals at all
-/// nodes of the curves; at most 480 nodes are fitted to, in 700 MB of memory.
+/// Fits correction targets to the errors that new own deltas leave: as many as the tolerance needs, within the limit.
+/// Vertices whose error is a small part of the tolerance take no part. If only animations count and lengths are free,
+/// own deltas are fitted to the animations too. Cost: the true normals at all nodes of the curves; at most 480 nodes
+/// are fitted to, in 700 MB of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
 // Correction targets whose weights are quadratics of the weights, for a mesh that nothing drives (quadratics.cpp).
 
-/// Adds more and more correction targets to the deltas of a candidate that has none. It calls take(candidate) for each
-/// number of them, until that returns false. If nobody drives its correction targets, a file renders the deltas of
-/// `own` alone.
-/// making.weights must have a rig
+/// Adds more and more correction targets to the deltas of a candidate that has none. Calls take(candidate) for each
+/// number of them, until it returns false. As long as nothing drives the correction targets, a viewer renders the
+/// deltas of `own` alone. making.weights must have a rig
 void quadratics_candidates(const Making& making, const Candidate& own,
                            const std::function<bool(Candidate candidate)>& take);
 

@@ -26,11 +26,12 @@ Candidate stored_candidate(const DeltaSource& source) {
 Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
   Candidate result;
   result.name = "own deltas";
-  // If the truth is no quadratic, its terms are fitted, and the normal at weight 1 is known more exactly.
+  // If the true normals are not quadratic in the weight, the terms are only fitted. The true normal at weight 1 is more
+  // exact, so deltas lead there.
   const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
   if (lengths != Lengths::kFree || is_of_truth) {
-    // Normals that the author stored have the length of N, so that deltas that are right stay nearly the same all the
-    // way.
+    // This gives the normal at weight 1 the length of N. Stored normals of an author have that length, so stored deltas
+    // that are right nearly stay as they are.
     result.own =
         end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
     return result;

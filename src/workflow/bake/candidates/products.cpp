@@ -1,18 +1,20 @@
 // A candidate with correction targets that products of weights drive (docs/theory.md, section 16).
 //
-// Each target of the mesh gets the delta to the true normal at its weight 1. Correction targets correct the errors on
-// the way there, and where targets meet. They move no vertex, and their weights follow from the weights of the targets:
+// Each target of the mesh gets the delta to the true normal at its weight 1. Correction targets correct the errors
+// between weight 0 and 1, and the errors of poses with several targets. They move no vertex, and their weights follow
+// from the weights of the targets:
 //
 //     turn      w_i            if a turn to weight 1 is so large that a delta of unit length would not fit; two targets
 //     self      4 w_i (1-w_i)  right at w_i = 1/2 as well
 //     pair      s w_i w_j      right where both are strongest in the file; one target or two
 //
-// If lengths are not free, every correction is a unit normal beside N, with a weight from 0 to 1 if the weights of the
-// file are: viewers that keep only its direction, or 8 bits of it, all render the same.
+// If lengths are not free, every correction leads from N to another unit normal, with a weight from 0 to 1 if the
+// weights of the file are in this range. Viewers that keep only the direction of N plus the delta, or 8 bits of it,
+// then render the same.
 //
-// Corrections are made one after the other, each so that the sum of all before it and itself has the right direction in
-// one pose: their order is therefore part of the candidate. Which of them are worth a target is measured at poses of
-// the file: by how far leaving one out would turn a normal.
+// Corrections are made one after the other. Each gives the sum of itself and all earlier ones the right direction in
+// one pose, so their order is part of the candidate. Not all of them are worth a target: the worth of a target is the
+// angle by which normals would turn without it, measured at poses of the file.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -31,15 +33,15 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// Lengths of a sum of unit normals that are tried, from the longest down by a factor.
+// Lengths that are tried for a sum of unit normals: from the longest down, each shorter by a factor.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
-constexpr int kTriedSums = 31;  // the shortest is a tenth
-// Relative to the tolerance, the error that one correction target of a pair may leave half-way; and how much worse it
-// may be, in squares, than two.
+constexpr int kTriedSums = 31;  // the shortest sum has a length of a tenth
+// kPartOfPairs: the error that a single correction target of a pair may leave half-way, as a part of the tolerance.
+// kAsGood: the factor by which its squared error may exceed that of two targets.
 constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
-// Shorter corrections turn nothing that is judged.
+// The shortest correction, relative to N, that is kept. Shorter ones turn no normal by an angle that matters.
 constexpr double kLeastCorrection = 1e-5;
-// In radians: a smaller error needs no correction.
+// The error in radians below which a normal needs no correction.
 constexpr double kRight = 1e-5;
 // Limits for the lengths of n(w) that are stored, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
@@ -48,8 +50,8 @@ constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 constexpr double kMostScale = 4, kStrongest = 0.95;
 // Weights and products of pairs below this count as zero.
 constexpr double kLeastProduct = 1e-6;
-// Limits for the targets whose pairs are all examined, the pairs that are remembered, and the poses at which they are
-// measured.
+// kMostActive: the most targets whose pairs are all examined. kMostHarmlessPairs: the most pairs that are kept.
+// kMostHarmlessPoses: the most poses at which their worth is measured.
 constexpr std::size_t kMostSampled = 400;
 constexpr unsigned kRigSeed = 4;
 constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmlessPoses = 96, kMeasured = 6000000;
@@ -60,7 +62,7 @@ struct ProductLimits {
   double tolerance = 0;  // degrees
 };
 
-// A candidate whose correction targets are not driven yet.
+// A candidate whose correction targets have no drivers yet.
 struct Products {
   std::vector<VertexVectors> own;    // of each target of the mesh
   std::vector<ExtraWeight> weights;  // of the correction targets; their gains are not set
@@ -90,7 +92,7 @@ class VerticesOfElements {
   std::vector<std::uint32_t> vertices_;
 };
 
-// A vertex with the normal of its element in some pose.
+// A vertex, and the normal of its element in some pose.
 struct Asked {
   std::uint32_t vertex;
   Vec3d of_element;
@@ -124,7 +126,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// Makes corrections.
+// Makes the corrections of products, one after the other.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
@@ -137,7 +139,7 @@ class Corrector {
         form_(form),
         of_target_(form.own.size()) {}
 
-  // Adds a correction with a weight that is right in a pose.
+  // Adds a correction with this weight that gives normals the right direction in a pose.
   void add(const ExtraWeight& weight, const std::vector<double>& pose) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -146,8 +148,8 @@ class Corrector {
     append(weight, gather(asked, [&](const Asked& of) { return correction(of, weight, pose, t); }));
   }
 
-  // Adds the missing part of a target's turn at weight 1: two correction targets with the weight of the target, which
-  // bring the sum to length 1, so that it turns as evenly as it would with free lengths.
+  // Adds two correction targets that complete a target's turn at weight 1, and have the weight of the target. They give
+  // the sum length 1, so normals turn as evenly on the way as with free lengths.
   void add_turn(std::size_t i, const std::vector<double>& pose) {
     const ExtraWeight weight{i, i, 1, 0};
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -168,8 +170,9 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds a correction for two targets that is right in a pose, and as good as possible half-way there: two correction
-  // targets with one weight, or one if that is as good, to a part of the tolerance (radians).
+  // Adds a correction for two targets that is right in a pose, and as good as possible half-way there. It has two
+  // correction targets with the same weight, or one if that is nearly as good or leaves a small part of the tolerance
+  // (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -231,7 +234,7 @@ class Corrector {
   struct PairCorrection {
     Vec3d one;
     std::array<Vec3d, 2> two;
-    double error_of_one = 0, error_of_two = 0;  // half-way, radians
+    double error_of_one = 0, error_of_two = 0;  // errors half-way, in radians
   };
 
   [[nodiscard]] PairCorrection pair_correction(const Asked& asked, const Vec3d& half_of_element,
@@ -253,7 +256,7 @@ class Corrector {
       if (right_half == Vec3d{}) return 0.0;
       return max_abs(now) > 0 ? angle_between(now, right_half) : std::numbers::pi;
     };
-    // A normal that is right by itself stays as it is.
+    // A normal that needs no correction in the pose stays as it is.
     const bool is_right = max_abs(shown) > 0 && angle_between(shown, right) < kRight;
     result.error_of_one = result.error_of_two = error_with({});
     if (is_right && result.error_of_two < kRight) return result;
@@ -263,7 +266,8 @@ class Corrector {
       if (u) result.one = base.length * (*u - base.direction);
       result.error_of_one = error_with((1 / base.length) * result.one);
     }
-    // The length of the sum in that pose is free, as far as two unit vectors reach.
+    // The sum in that pose may have any length that two unit vectors can reach; the length with the smallest error is
+    // chosen.
     std::optional<Vec3d> best;
     double size = kLongestSum;
     for (int n = 0; n < kTriedSums; ++n, size *= kNextSum) {
@@ -300,7 +304,7 @@ class Corrector {
     return max_abs(vector) > kLeastCorrection * base.length ? vector : Vec3d{};
   }
 
-  // Returns what a target adds by itself.
+  // Returns what target i alone adds to the normal of a vertex in a pose, with its correction targets.
   [[nodiscard]] Vec3d sum_of(std::size_t i, std::size_t vertex, const std::vector<double>& pose) const {
     Vec3d sum = pose[i] * to_double(form_.own[i].at(vertex));
     for (const std::size_t k : of_target_[i])
@@ -314,7 +318,7 @@ class Corrector {
   std::vector<bool> needs_element_;
   Lengths lengths_;
   Products& form_;
-  std::vector<std::vector<std::size_t>> of_target_;  // the correction targets of each target alone
+  std::vector<std::vector<std::size_t>> of_target_;  // for each target, the correction targets that it alone drives
 };
 
 // Two targets, with the pose of the file in which both are strongest.
@@ -367,14 +371,14 @@ struct Worth {
   double worst = 0;    // degrees
 };
 
-// Measures the effects at poses, on vertices that need corrections.
+// Measures the worth of correction targets at poses, on vertices that need corrections.
 std::vector<Worth> worths(const RightNormals& rights, const Products& form, std::span<const std::uint32_t> vertices,
                           const PoseList& all_poses) {
   const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostHarmlessPoses);
   PoseList poses;
   const std::size_t count = std::min(most, all_poses.size());
   for (std::size_t n = 0; n < count; ++n) poses.push_back(all_poses[n * all_poses.size() / count]);
-  // Holds the weights of correction targets, side by side.
+  // Lays out the weights of correction targets: `count` poses for each target, one after the other.
   std::vector<float> weights(form.weights.size() * count);
   for (std::size_t k = 0; k < form.weights.size(); ++k) {
     const ExtraWeight& extra = form.weights[k];
@@ -385,7 +389,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // Holds (entries of extras, 2): squares and worst, which are added up afterwards in a fixed order.
+  // Holds, for each entry, the sum of squares and the worst angle. These are added up afterwards in a fixed order, so
+  // the result does not depend on threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));
@@ -420,8 +425,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   return result;
 }
 
-// Drops the correction targets that turn normals least, together by at most half the tolerance, and those beyond the
-// limit.
+// Drops the correction targets that turn normals least: as many as turn a normal by at most half the tolerance
+// together, and all beyond the limit.
 void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& limits, Products& form) {
   std::vector<std::size_t> order(worths.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -449,7 +454,7 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
   form.extras = std::move(kept.extras);
 }
 
-// Adds correction targets for some poses, to vertices that need them: `worst` is the error of each vertex, in degrees.
+// Adds correction targets for some poses, to vertices that need them: `worst` has the error of each vertex in degrees.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {

@@ -1,5 +1,6 @@
-// A weight changes its vectors linearly. For viewers that keep only directions each vector therefore becomes two: one
-// for the terms above zero, and one for those below.
+// Makes candidates whose correction targets have weights that are quadratic in the weights of the mesh's own targets.
+// Viewers that keep only directions must not get negative weights, so each vector then becomes two correction targets:
+// one for the positive terms of the weight, and one for the negative terms.
 
 #include "workflow/bake/candidates/makers.h"
 
@@ -25,7 +26,7 @@ GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
   return weight;
 }
 
-// Returns the terms of one sign, made positive.
+// Returns the terms of one sign, multiplied by that sign.
 GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   GltfExtraTarget result;
   for (const auto& term : weight.linear)
@@ -66,7 +67,7 @@ QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses&
   return result;
 }
 
-// Makes drivers from sums. Along tracks, which move nothing, the correction targets rest.
+// Makes drivers from sums. The tracks of such a mesh move nothing, so correction targets have weight 0 in all of them.
 ExtraDrivers drivers_of(const MeshWeights& weights, std::vector<GltfExtraTarget> sums) {
   ExtraDrivers drivers;
   const std::size_t extras = sums.size();

@@ -25,7 +25,7 @@ void set_vector(std::vector<float>& all, std::size_t vertex, const Vec3f& vector
   VectorView<float>::packed(all.data(), all.size() / 3).set(vertex, vector);
 }
 
-// Returns the bytes by which the tracks grow that drive correction targets.
+// Returns the number of bytes by which tracks grow to drive the correction targets.
 std::size_t bytes_of_tracks(const MeshWeights& weights, const ExtraDrivers& drivers) {
   std::size_t bytes = 0;
   for (std::size_t t = 0; t < weights.tracks.size() && drivers.size() > 0; ++t) {
@@ -138,7 +138,7 @@ bool changes(const GltfShading& shading, const Candidate& candidate) {
 }
 
 std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate) {
-  constexpr std::size_t kTerm = 40;  // the mesh and its node each have the term
+  constexpr std::size_t kTerm = 40;  // bytes of a term; it is written to the mesh and to its node
   std::size_t total = bytes_of_tracks(weights, candidate.drivers);
   for (const GltfExtraTarget& sum : candidate.drivers.sums) total += kTerm * (sum.linear.size() + sum.quadratic.size());
   const SharedParts parts(shading);

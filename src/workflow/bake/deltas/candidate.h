@@ -29,7 +29,8 @@ struct Candidate {
   bool animations_only = false;       ///< its deltas mean nothing for a target alone
 };
 
-/// Returns the same deltas by vertex: columns of the mesh's own targets first, and then of correction targets.
+/// Returns the deltas of a candidate ordered by vertex. The columns are the mesh's own targets, followed by the
+/// correction targets.
 [[nodiscard]] VertexColumns columns_of(const Candidate& candidate, std::span<const std::uint32_t> vertices);
 
 /// Returns the nonzero deltas that the file stores, of vertices that show a normal.
@@ -42,7 +43,7 @@ struct Candidate {
 [[nodiscard]] std::vector<std::uint32_t> judged_vertices(const DeltaSource& source,
                                                          const std::vector<VertexVectors>& stored);
 
-/// Returns, for each target, the indices in `vertices` of those that it may turn.
+/// Returns for each target the vertices that it may turn, as indices into `vertices`.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
                                                                          const std::vector<VertexVectors>& stored,
                                                                          std::span<const std::uint32_t> vertices);
@@ -54,8 +55,8 @@ struct Candidate {
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
 /// Tells whether anything changes from what is stored.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
-/// Estimates the bytes of its arrays of deltas, of the drivers of its correction targets, and of the growth of their
-/// tracks.
+/// Estimates the bytes that a candidate takes: its arrays of deltas, the drivers of its correction targets, and the
+/// growth of the tracks that drive them.
 [[nodiscard]] std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate);
 
 }  // namespace chronormal::inline internal

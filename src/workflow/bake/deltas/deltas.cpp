@@ -1,5 +1,6 @@
 // Every delta starts as a term of the quadratic form n(w) of an element (terms.h), or as the best single delta made of
-// two of them. It is turned and scaled for each vertex that shows the element, so that it adds to the stored normal.
+// its linear and its square term. It is turned and scaled for each vertex that shows the element, to fit the stored
+// normal.
 #include "workflow/bake/deltas/deltas.h"
 
 #include <cmath>
@@ -12,9 +13,11 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kDeltasBlock = 1024;
-// Stored base normals should have length 1; with shorter ones than this no viewer renders anything right.
+// The shortest stored base normal, which should have length 1, that can get deltas. No viewer renders a shorter one
+// right.
 constexpr double kShortest = 1e-3;
-// A normal of this length, with deltas of 1e6 times that, can be squared in float32, and so can its inverse.
+// The longest stored normal that stays as it is. With deltas of 1e6 times its length it can be squared in float32, and
+// so can its inverse.
 constexpr double kLongestStored = 1e10;
 
 Vec3d stored_normal(std::span<const float> normals, std::size_t vertex) {
@@ -35,14 +38,14 @@ double error_within(const WeightRange& range, const ControlNormals& normals, con
   return largest_line_error(normals_between(normals, range.low, range.high), from, to);
 }
 
-// Describes a block of deltas.
+// The result for a block of deltas.
 struct Found {
   bool any = false;
   double error = 0;
 };
 
-// Gathers the deltas that find_delta(element, vertex, delta, error) writes for the vertices of all parts that show one
-// of these elements. find_delta returns whether there is a delta.
+// Gathers the deltas of all vertices that show one of these elements. find_delta(element, vertex, delta, error) writes
+// the delta of a vertex, and returns true if there is one.
 template <class FindDelta>
 TargetDeltas gather(const GltfShading& shading, std::span<const std::uint32_t> elements, const FindDelta& find_delta) {
   TargetDeltas result;

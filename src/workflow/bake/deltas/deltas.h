@@ -1,5 +1,5 @@
-/// Computes the arrays of a bake: base normals and deltas of one mesh, and their errors. Everything here is a function
-/// of what was read and planned; write_mesh.h puts the arrays into the file. Private to workflow.
+/// Computes the arrays of a bake: base normals and deltas of one mesh, and their errors. Everything here depends only
+/// on the mesh that was read and on the plan; write_mesh.h puts the arrays into the file. Private to workflow.
 ///
 /// Shapes     V = vertices of the shading, part after part; a part has a contiguous range of them.
 /// Threads    on all cores; the same bits on any number of them.
@@ -31,10 +31,10 @@ struct NewBaseNormals {
   std::size_t rescaled = 0;       ///< vertices whose normal was brought to length 1
 };
 
-/// Replaces the base normals of some parts by those of the geometry. A vertex without one keeps its stored normal, or
-/// gets (0, 0, 1) if that is zero: a file cannot say that there is none. In other parts, only normals longer than 1e10,
-/// or shorter than 1e-10, are brought to length 1: no viewer can square them in float32, nor add deltas to them.
-/// is_recomputed has one entry for each part.
+/// Replaces the base normals of some parts by those of the geometry. If a vertex has no normal by geometry, it keeps
+/// its stored normal, or gets (0, 0, 1) if that is zero: a file cannot say that there is none. In other parts, only
+/// normals longer than 1e10 or shorter than 1e-10 change, to length 1: no viewer can square them in float32, nor add
+/// deltas to them. is_recomputed has one entry for each part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 
@@ -54,11 +54,12 @@ struct TargetDeltas {
 };
 
 /// Returns the deltas of one of the mesh's own targets: the sum of its own terms at weight 1, or the best single delta
-/// if the plan says so; none if it moves no vertex. The error does not cover fitted lines, which state their own.
+/// if the plan says so; no deltas if the target moves no vertex. The error does not cover fitted lines, which have
+/// their own error.
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
-/// Returns the deltas of the correction target of two targets or, for one target with itself, of the term that is zero
-/// at the weights 0 and 1 (docs/theory.md, eq. 45).
+/// Returns the deltas of the correction target for two targets. For one target with itself, returns the deltas of the
+/// term that is zero at the weights 0 and 1 (docs/theory.md, eq. 45).
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Fits single deltas to targets that move the same normal.
+// Fits a single delta to each of several targets that move the same normal.
 #include "workflow/bake/deltas/fitted_lines.h"
 
 #include <algorithm>
@@ -15,31 +15,33 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A viewer scales the sum to length 1, so that any length will do: each round takes the length that comes nearest to
-// the result of the round before.
+// The most rounds of a fit. A viewer scales the sum to length 1, so the sum may have any length. Each round fits to the
+// length that is nearest to the result of the round before.
 constexpr int kRounds = 12;
-// A round that leaves more than this part of the squares of the round before is the last.
+// A round is the last one if more than this part of the previous round's squared error remains.
 constexpr double kStandstill = 0.99;
-// If a sum points away from the right normal, the fit asks it to have this much of its length along the normal.
+// If a sum points away from the true normal, the fit aims at a sum that has this part of its length along the true
+// normal.
 constexpr double kLeastPart = 0.1;
 // A normal that is shorter than this share of its longest term is not judged.
 constexpr double kLeastLine = 1e-4;
-// The pull towards the best delta of each target alone, relative to what the weights tell on average: weights that
-// differ by a thousandth of themselves do not tell deltas apart, and weights of a thousandth tell nothing.
+// kRidge: the strength of the pull towards the best delta of each target alone, relative to the average information in
+// the weights. Deltas cannot be told apart if their weights differ by only a thousandth. kLeastWeight: weights of a
+// thousandth tell nothing about a delta.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
-// Radians: a smaller error is not worth a fit, since directions are rounded to a third of it.
+// The error in radians below which no fit is made. Directions are rounded to a third of it.
 constexpr double kLeastError = 1e-4;
-// If an element has more targets than this, it keeps the deltas of each alone.
+// If more targets than this move an element, each target keeps its best delta alone.
 constexpr std::size_t kMostTargets = 64;
-// Limits for the weighted deltas that a round adds up, and for the fewest poses per target.
+// kSums: the most weighted deltas that a round adds up. The others limit the number of poses.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
-// Poses at which the error is stated: all keys, if there are few elements.
+// The most poses at which the final error is measured. With few elements, these include all keys.
 constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kLineBlock = 64;
 
 using Matrix = std::vector<std::vector<double>>;  // weights: a row for each pose
 
-// A direction, to 3e-5; (0, 0, 0) if it is not judged.
+// A direction, rounded to 3e-5; (0, 0, 0) if it is not judged.
 using Rounded = std::array<std::int16_t, 3>;
 
 Rounded rounded(const Vec3d& unit) {
@@ -95,7 +97,8 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // Replaces the deltas of each target alone by the best of all rounds. Returns whether they are better.
+  // Starts from the best deltas of each target alone, and replaces them by the best deltas of all rounds. Returns true
+  // if these are better.
   bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
@@ -123,9 +126,9 @@ class Fit {
     double w;
   };
   struct Row {
-    Vec3d right, alone, shown;         // the right direction, and the sum: of single deltas, and now
-    std::size_t first = 0, count = 0;  // of active_
-    double part = 0;                   // its weight in the fit: errors count as angles, as far as that is linear
+    Vec3d right, alone, shown;         // the true direction, the sum of single deltas, and the present sum
+    std::size_t first = 0, count = 0;  // range in active_
+    double part = 0;                   // its weight in the fit; for small errors, this makes them angles
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
     return std::span(active_).subspan(row.first, row.count);
@@ -154,7 +157,7 @@ class Fit {
     for (const Row& row : rows_) {
       for (const auto& [i, w] : active(row)) {
         for (const auto& [j, v] : active(row)) {
-          if (j > i) break;  // they are ascending
+          if (j > i) break;  // targets are ascending
           matrix[i * size + j] += row.part * w * v;
         }
         trace += row.part * w * w;
@@ -188,7 +191,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// Finds elements with targets that are active at once somewhere.
+// Finds the elements whose targets are active at the same time in some pose.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)
@@ -206,7 +209,7 @@ class Together {
     }
   }
 
-  // Returns them with the best deltas of each target alone.
+  // Returns these elements with the best deltas of each target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {
@@ -240,16 +243,16 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // Without a base to begin at, the sum should be right at the end.
+    // If the base has no normal to begin at, the sum should be right at weight 1.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }
 
   const NormalTerms& terms_;
   std::vector<std::size_t> active_;                     // targets
-  std::vector<std::vector<std::uint32_t>> targets_of_;  // of each element, the active ones
+  std::vector<std::vector<std::uint32_t>> targets_of_;  // for each element, its active targets
   std::vector<std::size_t> place_;                      // of each target, its index in active_
-  std::vector<bool> pairs_;                             // (active, active), below the diagonal
+  std::vector<bool> pairs_;  // (active, active): whether two are active together; below the diagonal
 };
 
 }  // namespace
@@ -259,7 +262,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
   const Together together(shading, terms, use);
   std::vector<Element> elements = together.elements(is_shown);
   if (elements.empty()) return;
-  // Calls body(n, direction) for elements that are judged in a pose, on all cores.
+  // Calls body(n, direction) on all cores, for each element that is judged in a pose.
   const auto judge = [&](const std::vector<double>& pose, const auto& body) {
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
     const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();
@@ -284,7 +287,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     std::vector<Vec3d> deltas = elements[n].deltas;
     Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
     is_fitted[n] = fit.improve(deltas) ? 1 : 0;
-    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // a smaller error is rounding
+    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // a smaller error is only rounding
     elements[n].deltas = std::move(deltas);
   });
   right = std::vector<Rounded>();

@@ -1,6 +1,7 @@
-// The effect of an entry of a term, over all poses, is bounded by its length divided by the shortest normal of its
-// element. A heap yields the entries in the order of that bound; the search ends when the bound is below the largest
-// effect found. Angles are compared by their tangents, and only the largest becomes an angle.
+// An entry of a term can turn the normal of its element by no more than a bound: its length divided by the shortest
+// normal of the element in any pose. A heap yields the entries from the largest bound down, and the search ends when
+// the bound is below the largest turn found. Angles are compared by their tangents; only the largest one is converted
+// to an angle.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <algorithm>
@@ -14,21 +15,22 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The number of normals that are held at once: all of a mesh or, if they are too many, those of some elements.
+// kHeldNormals: the most normals in memory at once. If a mesh has more, kSomeElements of its elements are handled at
+// once.
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
 // The number of terms that are held in memory at a time, to measure them.
 constexpr std::size_t kHeldEntries = 1000000;
-// Below this part of its terms, the direction of a normal is not judged.
+// The direction of a normal is not judged if its length is below this part of its terms.
 constexpr double kLeastLength = 1e-4;
-// Rounding never takes a bound with this factor below what it bounds.
+// A factor on bounds that is larger than any rounding error, so that a bound stays a bound.
 constexpr double kSlack = 1 + 1e-9;
 constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
-// Returns the correction target of a pair. For a target with itself, it only takes away the excess that the end point
-// has on the way, so that weight 1 is right without it.
+// Returns the correction target of a pair. The correction target of a target with itself is zero at weight 1, and
+// removes the excess of the square term between 0 and 1.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
-// Returns the factor of the term of a correction target in a pose.
+// Returns the factor with which a pose multiplies the term of a correction target.
 double weight_of_term(const ExtraWeight& extra, const std::vector<double>& pose) {
   const double of_extra = extra.at(pose[extra.i], pose[extra.j]);
   return extra.i == extra.j ? -of_extra : of_extra;
@@ -40,14 +42,15 @@ double tangent_between(const Vec3d& unit, const Vec3d& other) {
   return along > 0 ? length(cross(unit, other)) / along : std::numeric_limits<double>::infinity();
 }
 
-// Returns the largest possible tangent if the vectors differ by a vector of this length.
+// Returns the largest possible tangent of the angle between a unit vector and another vector, if the length of their
+// difference is this.
 double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
 
 double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? portable::atan(tangent) : std::numbers::pi; }
 
-// Returns the entries of the term of a pair that are shown and not zero.
+// Returns the entries of the term of a pair for elements that are shown, without zeros.
 BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, const std::vector<bool>& is_shown) {
   BlendTerm term = terms.pair(i, j);
   std::size_t kept = 0;
@@ -116,11 +119,11 @@ void PosedNormals::hold(std::size_t first) {
 // One pair while it is measured.
 struct PairMeter::Candidate {
   ExtraWeight extra;
-  BlendTerm term;                                       // only shown entries; freed once it is measured
-  double aside = 0;                                     // the largest part of it across a normal, in lengths of that
-  double size = 0;                                      // the largest of all of it
-  double tangent = 0;                                   // of the largest angle
-  std::vector<std::pair<double, std::uint32_t>> poses;  // the factor of the term in each pose, largest first
+  BlendTerm term;                                       // only shown entries; freed after it is measured
+  double aside = 0;                                     // largest part across a normal, relative to that normal
+  double size = 0;                                      // largest length of the term, relative to the normal
+  double tangent = 0;                                   // tangent of the largest angle
+  std::vector<std::pair<double, std::uint32_t>> poses;  // factor of the term, and the pose; largest first
 };
 
 PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
@@ -132,7 +135,7 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       longest_base_(longest_base_normal(shading, terms)),
       normals_(shading, terms, poses) {}
 
-// Most normals are longer than any base requires.
+// The first test is cheap and decides for most normals, because its limit is at least that of the second test.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -226,7 +229,7 @@ std::vector<MeasuredPair> PairMeter::measure(std::span<const Pair> pairs) {
   measure_held();
   std::vector<MeasuredPair> result;
   for (Candidate& candidate : candidates) {
-    // Along the normal an error turns nothing only as long as it is small.
+    // An error along the normal turns it only in combination with others, so that part counts little.
     candidate.extra.gain = 1.02 * candidate.aside + 1e-3 * candidate.size;
     result.push_back({candidate.extra, candidate.size, angle_of_tangent(candidate.tangent)});
   }
@@ -247,7 +250,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // Holds what is left of the normals of these elements, in all poses: (elements, poses).
+      // Holds the remainders of the normals of these elements in all poses: (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);
       const std::size_t begin = first + range.first;

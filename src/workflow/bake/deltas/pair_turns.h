@@ -1,9 +1,9 @@
-/// Measures how far normals turn if the correction target of a pair is left out, at poses of the file. Private to
-/// workflow.
+/// Measures the angle by which normals turn if the correction target of a pair is left out, at poses of the file.
+/// Private to workflow.
 ///
-/// A pair with the term T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Over
-/// all elements and poses only the largest angle counts, and it is below asin(|weight| |T| / |n|): elements are
-/// examined in the order of that bound, and most of them never.
+/// A pair with the term T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Only
+/// the largest angle over all elements and poses counts. An angle is at most asin(|weight| |T| / |n|), so elements are
+/// examined from the largest such bound down, and most elements are never examined.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
@@ -22,14 +22,14 @@
 
 namespace chronormal::inline internal {
 
-/// A pair of targets, or one with itself, and the effect of its correction target.
+/// A pair of two targets, or of one target with itself, and the effect of its correction target.
 struct MeasuredPair {
   ExtraWeight extra;  ///< with its gain
   double size = 0;    ///< the largest length of its term, relative to the normals where it is
   double turn = 0;    ///< radians: the largest angle by which leaving it out turns a normal, in the measured poses
 };
 
-/// Normals of elements in poses, for as many elements at a time as may be held.
+/// Normals of elements in poses. Memory holds those of a limited number of elements at a time.
 class PosedNormals {
  public:
   struct Normal {
@@ -37,11 +37,11 @@ class PosedNormals {
     double size = 0;
   };
 
-  /// Computes nothing yet. All arguments must outlive this.
+  /// Creates an object that holds no normals yet. All arguments must outlive it.
   PosedNormals(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses);
 
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns how many elements are held at once: hold(first) holds [first, first + chunk()).
+  /// Returns the number of elements that are held at once: hold(first) holds the elements [first, first + chunk()).
   [[nodiscard]] std::size_t chunk() const noexcept { return chunk_; }
   /// Computes the normals of elements from `first` on, unless they are held already.
   void hold(std::size_t first);
@@ -62,14 +62,16 @@ class PairMeter {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;
 
-  /// is_shown tells of each element whether some vertex shows it; largest has the length of its largest term so far.
-  /// All arguments must outlive this.
+  /// is_shown tells for each element whether some vertex shows it, and `largest` has the length of its largest term so
+  /// far. All arguments must outlive this object.
   PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
             const std::vector<bool>& is_shown, std::vector<double>& largest);
 
-  /// Measures the pairs (i <= j) that have a term at all; `largest` is updated with their terms.
+  /// Measures the pairs (i <= j), and leaves out pairs without any term. Raises `largest` to the lengths of their
+  /// terms.
   [[nodiscard]] std::vector<MeasuredPair> measure(std::span<const Pair> pairs);
-  /// Returns how far leaving out all of these together turns a normal, in radians.
+  /// Returns the largest angle in radians by which a normal turns if all of these correction targets are left out
+  /// together.
   [[nodiscard]] double turn_without(std::span<const ExtraWeight> extras);
 
  private:

@@ -1,6 +1,7 @@
-// A target's own terms are always written; only the pairs are chosen. Each pair of targets that some pose has active at
-// once is a candidate for a correction target. It is measured by how far leaving it out would turn a normal at poses of
-// the file. The pairs that turn normals least are left out, until all of them together might turn one by the tolerance.
+// A target's own terms are always written; only pairs of targets are chosen. Each pair that is active at the same time
+// in some pose is a candidate for a correction target. Its worth is the angle by which normals turn without it, at
+// poses of the file. The pairs that turn normals least are left out, as many as turn a normal by at most the tolerance
+// together.
 #include "workflow/bake/deltas/plan.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
-// The number of poses to measure at: all of them on small meshes.
+// Limits for the number of poses at which pairs are measured. Small meshes are measured at all poses.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
 
 std::string place_of(const GltfDocument& document, std::size_t mesh) {
@@ -29,7 +30,7 @@ struct MeshUse {
   const WeightUse& use;
   bool is_driven;
 
-  // Without animations a viewer may set any weights.
+  // If there are no animations, a viewer may set any weights.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
   [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
     const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };
@@ -39,7 +40,7 @@ struct MeshUse {
   }
 };
 
-// Tells whether float32 can hold the products of weights, and deltas of any size that they multiply.
+// Returns true if float32 can hold the products of weights, multiplied by deltas of any size.
 bool products_fit(const MeshUse& mesh) {
   constexpr double kLargestProduct = 1e30;
   double largest = 0;
@@ -48,10 +49,10 @@ bool products_fit(const MeshUse& mesh) {
   return largest * largest <= kLargestProduct;
 }
 
-// The weights to measure at.
+// The weights at which pairs are measured.
 struct Poses {
   std::vector<std::vector<double>> weights;
-  bool are_all = false;  // the file has no others
+  bool are_all = false;  // whether the file has no other poses
 };
 
 std::vector<bool> shown_elements(const GltfShading& shading) {
@@ -78,7 +79,7 @@ std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encodin
 
 void note_length(const Vec3d& value, double& largest) { largest = std::fmax(largest, length(value)); }
 
-// Returns, for each element, the length of the largest term that single targets have there.
+// Returns for each element the length of the largest linear or square term of any single target.
 std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<bool>& is_line) {
   std::vector<double> largest(mesh.shading.groups.size(), 0.0);
   const auto note_lengths = [&](const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
@@ -98,7 +99,7 @@ std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<boo
 
 using Pairs = std::vector<PairMeter::Pair>;
 
-// Returns the pairs of targets that move a normal at once.
+// Returns the pairs of targets that can move the same normal at the same time.
 Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
   Pairs pairs;
   for (std::size_t i = 0; i < mesh.use.targets(); ++i) {
@@ -131,11 +132,12 @@ Poses poses_to_measure_at(const MeshUse& mesh) {
   return poses;
 }
 
-// Leaves out the pairs that turn least, until together they may turn a normal by the tolerance; the rest get correction
-// targets.
+// Leaves out the pairs that turn normals least, as many as turn a normal by at most the tolerance together. All other
+// pairs get correction targets.
 void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, const Poses& poses, PairMeter& meter,
                    double tolerance, MeshPlan& plan) {
-  // Weights that no measured pose has, such as one wink in a long animation, are bounded instead.
+  // If the file has other poses than the measured ones, such as one wink in a long animation, the turn of a pair is
+  // bounded by its largest weight.
   for (MeasuredPair& candidate : candidates)
     if (!poses.are_all) candidate.turn = candidate.size * mesh.largest_weight(candidate.extra);
   std::vector<std::size_t> order(candidates.size());
@@ -147,7 +149,7 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   while (count < order.size() && (turn + candidates[order[count]].turn) * kDegreesPerRadian <= tolerance)
     turn += candidates[order[count++]].turn;
   order.resize(count);
-  // Terms along a normal turn nothing one by one, but together they may be longer than it is.
+  // A term along a normal does not turn it alone, but several of them together may be longer than the normal.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

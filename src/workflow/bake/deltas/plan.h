@@ -32,13 +32,13 @@ struct MeshPlan {
   double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
 };
 
-/// Returns the encoding of a mesh, also if none was asked for.
+/// Returns the requested encoding, or kSmallest if none was requested.
 [[nodiscard]] inline BakeEncoding encoding_of(const BakeOptions& options) {
   return options.encoding.value_or(BakeEncoding::kSmallest);
 }
 
-/// Decides what to write. use has the weights that the file gives the mesh; is_driven says whether animations give any.
-/// Pure. Errors: kInvalidInput if there would be too many pairs.
+/// Decides what to write. `use` has the weights that the file gives the mesh; is_driven is true if animations set any
+/// of them. Pure. Errors: kInvalidInput if there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
                                          const NormalTerms& terms, const WeightUse& use, bool is_driven,
                                          const BakeOptions& options);

@@ -22,27 +22,27 @@ namespace chronormal::inline internal {
 
 class RightNormals {
  public:
-  /// Takes the base normals (V, 3) that the file will store, and the length of the largest term of each element. All
-  /// arguments must outlive this.
+  /// Takes the base normals (V, 3) that the file will store, and for each element the length of its largest term. All
+  /// arguments must outlive this object.
   RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
                const std::vector<double>& largest);
 
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
-  /// Tells whether the normals are by area, and so quadratic in the weights.
+  /// Returns true if normals are weighted by area, which makes them quadratic in the weights.
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
   /// Returns the stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Return the normals of all elements or some of them, before an author's own rotation of the base. O(vertices +
-  /// elements)
+  /// Return the normals of all elements, or of some, without the rotation that the author's own base normals add.
+  /// O(vertices + elements)
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
-  /// Returns the right normal of a vertex, from that of its element.
+  /// Returns the right normal of a vertex, given the normal of its element.
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
-  /// Calls visit(n, first, right) for vertex number n of a list and batches of poses: `right` has the unit normals of
-  /// the vertex in the poses from number `first` on. Different n are visited at once, the batches one after the other.
-  /// Cost: for each pose all positions, and the normals of these vertices.
+  /// Calls visit(n, first, right) for each vertex, where n is its index in the list. `right` has its unit normals in a
+  /// batch of poses, from pose number `first` on. Calls for different n may run at the same time; the batches follow
+  /// each other. Cost: for each pose all positions, and the normals of these vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kTogether = 8, kVertices = 64;
@@ -52,7 +52,7 @@ class RightNormals {
     std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
     for (std::size_t first = 0; first < poses.size(); first += batch) {
       const std::size_t count = std::min(batch, poses.size() - first);
-      // Some poses are written at once, so that they fill whole lines of memory.
+      // Several poses are written at once, so that they fill whole cache lines.
       parallel_blocks(count, std::min(batch, kTogether), [&](IndexRange some) {
         std::vector<std::vector<Vec3d>> directions;
         for (std::size_t p = some.first; p < some.end(); ++p)
@@ -92,10 +92,10 @@ class RightNormals {
   const NormalTerms& terms_;
   std::span<const float> base_normals_;
   const std::vector<double>& largest_;
-  std::vector<Vec3d> base_;           // n(0) of each element, which is often needed
-  std::vector<double> base_lengths_;  // the length of each
+  std::vector<Vec3d> base_;           // n(0) of each element, kept because it is often needed
+  std::vector<double> base_lengths_;  // lengths of base_
   std::vector<std::uint32_t> all_elements_;
-  std::vector<ShownTurn> turns_;  // of each vertex
+  std::vector<ShownTurn> turns_;  // one for each vertex
 };
 
 }  // namespace chronormal::inline internal

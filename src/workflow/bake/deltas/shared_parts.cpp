@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kComponents = 3;
 
-// Tells whether two parts have the same floats in an array of `width` numbers per vertex, which may be empty.
+// Returns true if two parts have equal floats in an array with `width` numbers per vertex. The array may be empty.
 bool have_same(const std::vector<float>& all, std::size_t width, const GltfPart& a, const GltfPart& b) {
   const auto begin = [&](const GltfPart& part) {
     return all.begin() + static_cast<std::ptrdiff_t>(width * part.first_vertex);

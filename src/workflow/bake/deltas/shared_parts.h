@@ -1,5 +1,6 @@
-/// Primitives of a mesh that share their vertices, of which each shows some: exporters split a mesh into one primitive
-/// per material, with arrays that all of them share. A bake then writes one array for them too. Private to workflow.
+/// Primitives of a mesh that share vertex arrays. Exporters split a mesh into one primitive for each material; all of
+/// them use the same arrays, and each shows some of the vertices. A bake then also writes one array for all of them.
+/// Private to workflow.
 ///
 ///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same arrays: the deltas of
 ///     both are one array, of the vertices 0 to 4
@@ -19,7 +20,8 @@ namespace chronormal::inline internal {
 
 class SharedParts {
  public:
-  /// The shading must have its deltas, and outlive this. O(bytes of all arrays) if there are several parts.
+  /// Finds the parts that share arrays. The shading must have its deltas, and outlive this object. O(bytes of all
+  /// arrays) if there are several parts.
   explicit SharedParts(const GltfShading& shading);
 
   /// Gives parts with the same vertices the same array, unless a vertex has two different deltas.
@@ -33,7 +35,7 @@ class SharedParts {
   [[nodiscard]] bool are_alike(const GltfPart& a, const GltfPart& b) const;
 
   const GltfShading& shading_;
-  std::vector<std::vector<std::size_t>> groups_;  // of parts that have the same vertices, at least one each
+  std::vector<std::vector<std::size_t>> groups_;  // groups of parts with the same vertices; each has at least one part
 };
 
 }  // namespace chronormal::inline internal

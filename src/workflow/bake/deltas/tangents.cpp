@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStale = 1;            // degrees
 constexpr double kThinnest = 1e-12;     // squared sine of the narrowest face that carries a tangent
-constexpr double kLeastUpright = 1e-6;  // part of a carried tangent that must be left beside the normal
+constexpr double kLeastUpright = 1e-6;  // smallest part of a tangent that must remain across the normal
 
 Vec3d tangent_of(const GltfShading& shading, std::size_t vertex) {
   const float* const t = shading.tangents.data() + 4 * vertex;
@@ -24,7 +24,7 @@ Vec3d normal_of(const DeltaSource& source, std::size_t vertex) {
   return to_double(Vec3f{n[0], n[1], n[2]});
 }
 
-// Returns the unit normals of the vertices in the pose where a target has the weight 1; zero if there is none.
+// Returns the true unit normals of the vertices at weight 1 of a target; (0, 0, 0) for a vertex without one.
 std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) {
   const GltfShading& shading = source.shading;
   std::vector<double> weights(shading.set.targets.size(), 0.0);
@@ -42,7 +42,7 @@ std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) 
   return result;
 }
 
-// Carries a vector in the plane of two edges along as the edges change; zero if the face is too thin.
+// Returns a vector in the plane of two edges, transformed as the edges change; zero if the face is too thin.
 Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::array<Vec3d, 2>& to) {
   const double aa = dot(from[0], from[0]), ab = dot(from[0], from[1]), bb = dot(from[1], from[1]);
   const double determinant = aa * bb - ab * ab;
@@ -51,8 +51,8 @@ Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::
   return ((a * bb - b * ab) / determinant) * to[0] + ((b * aa - a * ab) / determinant) * to[1];
 }
 
-// Returns the tangents of all vertices, as a target at weight 1 carries them along, of any length. A tangent stays that
-// of the base if the target moves no face around the vertex.
+// Returns the tangents of all vertices at weight 1 of a target, of any length: they move with their faces. If the
+// target moves no face around a vertex, its tangent is that of the base.
 std::vector<Vec3d> carried_tangents(const GltfShading& shading, std::size_t target) {
   const std::size_t vertices = shading.element_of_vertex.size();
   std::vector<double> weights(shading.set.targets.size(), 0.0), after(3 * vertices);

@@ -1,12 +1,13 @@
-/// Computes the changes that targets make to the tangents of normal-mapped primitives, so that they stay perpendicular
-/// to the right normals and of length 1. Private to workflow.
+/// Computes the changes that targets make to the tangents of normal-mapped primitives, so that tangents stay
+/// perpendicular to the right normals and keep length 1. Private to workflow.
 ///
 ///     carried    a tangent lies in the faces around its vertex and follows each of them, as texture coordinates do: if
 ///                it is a e1 + b e2 of the edges of a face in the base, it is a e1' + b e2' at weight 1 of a target.
 ///                The results are weighted by the angle of the face there, as in MikkTSpace.
-///     upright    its part along the right normal is removed, and it is brought to length 1
-///     stale      at some vertex, the stored tangent leans on the right normal at weight 1 by more than a degree more
-///                than in the base; then all tangents of the target are made anew, and otherwise they stay as they are
+///     upright    the part of the tangent along the right normal is removed, and the rest is scaled to length 1
+///     stale      at weight 1 of the target, the angle between a stored tangent and the right normal is farther from 90
+///                degrees than in the base, by more than a degree. One such vertex is enough to compute all tangents of
+///                the target anew; otherwise they all stay as they are
 ///
 /// With several active targets, changes of tangents add up; they are then as accurate as normals with one delta per
 /// target.

@@ -19,35 +19,37 @@
 
 namespace chronormal::inline internal {
 
-/// The truth of all elements as a quadratic form. By area it is exact. By other rules the truth is no polynomial, and
-/// the form is fitted: it has the direction of the truth, and the length by area, if one target has the weight 0, 1/2
-/// or 1, or if two have the weight 1.
+/// The true normals of all elements as a quadratic form in the weights. With area weights the form is exact. With other
+/// weightings the true normal is no polynomial, and the form is fitted. It then has the true direction, and the length
+/// by area, if one target has the weight 0, 1/2 or 1, or if two have the weight 1.
 class NormalTerms {
  public:
-  /// Fits all targets if the truth is not by area. The shading and its truth must outlive this.
+  /// Fits the terms of all targets if the true normals are not weighted by area. The shading and its truth must outlive
+  /// this object.
   NormalTerms(const GltfShading& shading, const AuthorTruth& truth);
 
   /// Returns n(0) of an element.
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
     return base_.empty() ? by_area_.base_of(element) : base_[element];
   }
-  /// Return A_i and C_ij, without their rounding noise.
+  /// Return the linear term A_i of a target and the term C_ij of a pair (docs/theory.md), without rounding noise.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
   /// Return terms whose values are looked up element by element.
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
-  /// Returns all elements in which a target may have terms, ascending.
+  /// Returns the elements in which a target may have terms, ascending.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const {
     return is_fitted() ? fits_[i].elements : by_area_.elements(i);
   }
-  /// Returns all elements in which the pair may have a term, ascending.
+  /// Returns the elements in which the pair may have a term, ascending.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i, std::size_t j) const;
-  /// Tells whether two targets can have a pair term: a face that both move or, for fitted weightings, an element.
+  /// Returns true if two targets can have a term as a pair: if both move the same face or, for fitted weightings, the
+  /// same element.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
-  /// Return the right normals at some weights from the blended positions, with the length by area; and the normals by
-  /// area, whatever the weighting.
+  /// Return normals at some weights, computed from the blended positions: exact_at() the right ones with the length by
+  /// area, by_area_at() those weighted by area, whatever the weighting.
   [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
   [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const { return exact_at(weights); }
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
@@ -57,14 +59,14 @@ class NormalTerms {
   [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return !truth_.is_plain(); }
-  /// Tells whether the file has the author's normals of its targets, which the truth passes through.
+  /// Returns true if the file has the author's normals at keys, and the true normals equal them there.
   [[nodiscard]] bool follow_keys() const { return truth_.follows_keys(); }
-  /// Returns the largest angle between the fit of a target alone and the true normals, in radians, at eighths of its
-  /// weight; 0 by area.
+  /// Returns the largest angle between the fitted and the true normals of a single target, in radians, measured at
+  /// eighths of its weight; 0 by area.
   [[nodiscard]] double fit_error(std::size_t i) const { return is_fitted() ? fits_[i].error : 0; }
 
  private:
-  // The terms of one target, for elements with a face that it moves.
+  // The terms of one target, for the elements of the faces that it moves.
   struct Fit {
     std::vector<std::uint32_t> elements;
     std::vector<Vec3d> linear, square;
@@ -73,7 +75,7 @@ class NormalTerms {
   static constexpr std::size_t kMostSampledBytes = std::size_t{256} << 20;
 
   void fit_targets();
-  // Returns the truth of all elements at some weights, with the length by area, and keeps it while there is room.
+  // Returns the true normals of all elements at some weights, with the length by area. Keeps them while there is room.
   [[nodiscard]] std::vector<Vec3d> sample_all(std::span<const double> weights, std::span<const double> positions) const;
 
   const GltfShading& shading_;
@@ -99,18 +101,18 @@ class NormalTerms::Term {
   BlendTerm fitted_;
 };
 
-/// Returns the control normals of a target alone, from weight 0 to 1.
+/// Returns the control normals of a single target from weight 0 to 1, from its terms.
 [[nodiscard]] ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
 
-/// Returns the control normals between two weights, from those between 0 and 1.
+/// Returns the control normals from weight `from` to weight `to`, given those from 0 to 1.
 [[nodiscard]] ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept;
 
-/// Turns and scales the terms of an element for a vertex that shows it: it divides by |n(0)|, multiplies by the length
-/// of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is zero or nearly so, the terms
-/// cannot be divided by it: they are made so long that N does not count beside them.
+/// Turns and scales the terms of an element for a vertex that shows it: divides by |n(0)|, multiplies by the length of
+/// the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is nearly zero, a division is
+/// impossible; the terms are then made so long that N does not matter beside them.
 class VertexTerms {
  public:
-  /// Takes n(0) of the element, and the length of its largest term.
+  /// Takes n(0) of the element, the length of its largest term, and the stored normal of the vertex.
   VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept;
 
   [[nodiscard]] static bool has_base(const Vec3d& base, double largest) noexcept {

@@ -1,8 +1,9 @@
 /// Deltas that every viewer renders alike: from the base normal N to other unit normals. Private to workflow.
 ///
-/// One viewer adds N + D, another keeps only its direction, and a third clamps the components of D to 1. If |N + D| = 1
-/// and no component of D is beyond 1, all three are the same. So a target of the author and a correction target may
-/// only add u - N, with unit vectors u (docs/theory.md, section 16).
+/// Some viewers render N + D, some keep only its direction, and some clamp the components of D to 1. If |N + D| = 1 and
+/// no component of D is beyond 1, all of them render the same. So each delta, of the author's targets and of correction
+/// targets, is u - N with a unit vector u (docs/theory.md, section 16). Such a u "fits" if no component of u - N is
+/// beyond 1.
 ///
 /// Vectors    base and u have length 1; base may be (0, 0, 0), from which any u is reached.
 /// Threads    pure
@@ -37,19 +38,18 @@ struct BaseNormal {
 /// Returns the last unit vector on the arc from base to u that fits.
 [[nodiscard]] Vec3d farthest_that_fits(const Vec3d& base, const Vec3d& u) noexcept;
 
-/// Returns the unit vector u that fits and for which shown + weight (u - base) has the direction `right`, which has
-/// length 1. The length of u is given but that of the sum is free, so there are two such vectors; the longer sum is
-/// taken if it fits (eq. 46). If none fits, returns the nearest vector that does; nothing if the sum would be nearly
-/// zero. weight must not be 0
+/// Returns a unit vector u that fits, for which shown + weight (u - base) has the direction `right`. `right` must have
+/// length 1, and weight must not be 0. The sum may have any length, so two vectors u are possible; the one with the
+/// longer sum is chosen if it fits (eq. 46 of docs/theory.md). If neither fits, returns the nearest vector that fits.
+/// Returns nothing if the sum would be nearly zero
 [[nodiscard]] std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right,
                                                 double weight) noexcept;
 
-/// Returns the delta u - base of a unit vector u that fits and whose part across base is this vector, as far as
-/// possible.
+/// Returns the delta u - base for a unit vector u that fits. The part of u across base is `vector`, as far as possible.
 [[nodiscard]] Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) noexcept;
 
-/// Returns two unit vectors that fit and for which u + v - 2 base is this vector (eq. 47). Returns nothing if there are
-/// none: they cannot make a normal longer.
+/// Returns two unit vectors u and v that fit, for which u + v - 2 base is `vector` (eq. 47 of docs/theory.md). Returns
+/// nothing if there are none: u and v cannot make a normal longer.
 [[nodiscard]] std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& vector) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Vectors of vertices in columns, each with a weight: by column, as files store them, or by vertex, as they are added
-/// up. Private to workflow.
+/// Vectors of vertices in columns, where each column (a target) has one weight. Files store them column by column;
+/// adding them up needs them vertex by vertex. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 
@@ -36,7 +36,7 @@ struct VertexColumns {
   }
 };
 
-/// Turns columns of vectors, each with its own vertices, into columns of vertices.
+/// Reorders columns of vectors, each for its own vertices, into lists of columns for each vertex.
 [[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
                                       std::span<const std::uint32_t> vertices);
 

@@ -18,27 +18,30 @@ namespace {
 
 constexpr std::size_t kPointBlock = 16;  // points at a time
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts by the 2 % quantile of the lengths of its normals, but as no shorter than a thousandth, and than a
-// part of what it lacks at most: errors stop at a right angle, and must not drown the other points.
+// The weight of a point in the fit is 1 / length, where length is the 2 % quantile of the lengths of its normals, but
+// at least kShortest and at least kPartOfLack of its missing vectors. The angle of an error is bounded, so a few points
+// with very short normals must not dominate all others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Parts of the tolerance: beyond the first, points count more; beyond the second, they are fitted by themselves.
+// Parts of the tolerance. Points with an error beyond kPartThatCounts count more, and points with an error beyond
+// kPartToRefit get a fit of their own.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
-// A limit for the multiplications of all least squares: if many correction targets make each refit expensive, there are
-// fewer.
+// The limit of multiplications in all fits of single points. With many correction targets each fit costs more, so fewer
+// points are fitted.
 constexpr double kRefitWork = 1e10;
-// Relative to n(0): the direction of a shorter normal is not fitted to.
+// The direction of a normal that is shorter than this, relative to n(0), is not fitted to.
 constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
-// Between nodes a normal may be much shorter than at them. The search takes this many steps, where one of the nodes is
-// shorter than kNearDip (squared, of n(0)); a dip counts if it is shorter than the nodes by kDip (squared).
+// Between nodes a normal may be much shorter than at the nodes, which is called a dip. The search for dips takes
+// kDipSteps steps in a piece if the squared length at one of its nodes is below kNearDip, relative to n(0). A dip
+// counts if its squared length is below kDip times that at the nodes.
 constexpr int kDipSteps = 32;
 constexpr double kNearDip = 0.25, kDip = 0.5;
 constexpr double kRidgeOfRefit = 1e-4, kLeastSquare = 1e-6;
 
-// Returns a place of a piece between its three nodes at 0, 1/2 and 1.
+// Returns the place at t in a piece whose three nodes are at 0, 1/2 and 1.
 PlaceOfRows place_at(const std::array<std::size_t, 3>& nodes, double t) {
   return {nodes, {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}};
 }
@@ -100,7 +103,7 @@ void LowRankFit::take_weights(std::span<const double> vectors, std::size_t colum
     for (std::size_t k = 0; k < extras; ++k) weights_[r * padded_ + k] = static_cast<float>(vectors[r * columns + k]);
 }
 
-// The weights are orthonormal, so the deltas are inner products with them.
+// Computes the deltas. The columns of weights are orthonormal, so a delta is an inner product with a column.
 void LowRankFit::project() {
   deltas_.assign(missing_.points() * 3 * padded_, 0.0F);
   parallel_blocks(missing_.points(), kPointBlock, [&](IndexRange points) {
@@ -193,14 +196,14 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
-// Finds the largest error of each point at its rows.
+// Measures the largest error of each point at the rows.
 void LowRankFit::measure_rows() {
   const Basis basis = basis_of({}, {});
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// Finds the largest error of some points at rows, places, unseen places and their dips. own_weights go with the
-// corrections of own deltas, if there are any.
+// Measures the largest error of some points at rows, places, unseen places and dips. If the own deltas of the mesh are
+// corrected as well, own_weights has the weights of these corrections.
 void LowRankFit::measure(std::span<const float> own_weights, std::span<const std::size_t> points) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
@@ -238,8 +241,8 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   return static_cast<float>(degrees_of(largest_openness(planes(course.shown), planes(course.right), basis.stride)));
 }
 
-// Returns the places between nodes where the right normal of a point is much shorter than at the nodes around, and
-// still has a direction: it turns fastest there, and missing parts count most.
+// Returns the places of a point's dips: between nodes, where its right normal is much shorter than at the nodes around,
+// but still has a direction. The normal turns fastest there, and missing parts matter most.
 std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   const std::size_t stride = missing_.stride();
   const float *const shown = missing_.shown(point), *const lack = missing_.missing(point);
@@ -248,7 +251,7 @@ std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
                            shown[2 * stride + row] + lack[2 * stride + row]});
   };
   std::vector<PlaceOfRows> result;
-  for (std::size_t i = 0; i < places_.size(); i += 2) {  // two of each piece
+  for (std::size_t i = 0; i < places_.size(); i += 2) {  // each piece has two places
     const std::array<std::size_t, 3>& nodes = places_[i].nodes;
     const std::array<Vec3d, 3> normals = {right_at(nodes[0]), right_at(nodes[1]), right_at(nodes[2])};
     double shortest = dot(normals[0], normals[0]);
@@ -270,8 +273,8 @@ std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   return result;
 }
 
-// Minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction, with weights that grow
-// with the error and a ridge towards the singular vectors. Keeps the best of all rounds.
+// Minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction. Instants with larger
+// errors count more, and a ridge pulls x towards the singular vectors. Keeps the best of all rounds.
 void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
   const Course course = course_of(point, places);
@@ -393,7 +396,7 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
     of_point.insert(of_point.begin(), places_.begin(), places_.end());
     refit(bad[n], basis_of(own_weights, of_point), of_point, tolerance);
   });
-  measure(own_weights, bad);  // the others are as they were
+  measure(own_weights, bad);  // all other points keep their errors
 }
 
 double LowRankFit::worst() const {

@@ -1,7 +1,7 @@
-/// Fits correction targets of low rank: by singular vectors of what is missing, and by least squares of angles for each
-/// point. Private to workflow.
+/// Fits correction targets of low rank: to all points by singular vectors of the missing normals, and to points with
+/// large errors by least squares of the angles. Private to workflow.
 ///
-/// Shapes     points, rows and stride as in MissingNormals; extras = columns, in rows of `padded()` floats, of
+/// Shapes     points, rows and stride as in MissingNormals. `extras` columns are stored in rows of `padded()` floats, of
 ///            which those beyond extras() are zero.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
@@ -21,15 +21,16 @@ using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {
  public:
-  /// Fits to all rows and these places, and also judges at the unseen places. All arguments must outlive this.
+  /// Fits to all rows and these places, and also measures errors at the unseen places. All arguments must outlive this
+  /// object.
   LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
-  /// Returns, for each count of correction targets, the error in degrees that 99.9 % of the samples of some points and
-  /// rows are within, with singular vectors alone.
+  /// Returns the error in degrees for each count of correction targets, with singular vectors alone. It is the error
+  /// that 99.9 % of the samples do not exceed, for some of the points and rows.
   [[nodiscard]] std::vector<double> errors_with(std::span<const std::size_t> extras);
 
-  /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get least squares of their
-  /// own; if own_weights (rows, targets) are given, these also correct the deltas of the mesh's own targets.
+  /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get a fit of their own. If
+  /// own_weights (rows, targets) is given, that fit also corrects the deltas of the mesh's own targets.
   void fit(std::size_t extras, double tolerance, std::span<const float> own_weights, std::size_t own_targets);
 
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
@@ -40,17 +41,17 @@ class LowRankFit {
   [[nodiscard]] std::span<const float> deltas(std::size_t point) const {
     return std::span(deltas_).subspan(3 * padded_ * point, 3 * padded_);
   }
-  /// Returns the corrections of a point's own deltas: (3, own targets); empty without own weights.
+  /// Returns the corrections of a point's own deltas: (3, own targets); empty if fit() got no own_weights.
   [[nodiscard]] std::span<const float> own_deltas(std::size_t point) const {
     return std::span(own_deltas_).subspan(3 * own_targets_ * point, 3 * own_targets_);
   }
   /// Returns the weight of a point in the fit.
   [[nodiscard]] float importance(std::size_t point) const { return importance_[point]; }
-  /// Returns the largest error of all points, at unseen places too, in degrees.
+  /// Returns the largest error of all points in degrees, also at unseen places.
   [[nodiscard]] double worst() const;
 
  private:
-  // A basis at rows and places: (instants, columns), padded, and its transpose.
+  // A basis at rows and places: an array (instants, columns), padded, and its transpose.
   struct Basis {
     std::size_t columns = 0, padded = 0, instants = 0, stride = 0;
     std::vector<float> by_instant, by_column;

@@ -16,11 +16,11 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMissingBlock = 64;
-constexpr std::size_t kPosesAtOnce = 16;    // whose normals are held
+constexpr std::size_t kPosesAtOnce = 16;    // poses whose normals are in memory at once
 constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
 
-// Returns the vector in the right direction that a sum reaches if only vectors across the normal N are added to it; if
-// that is too far, the right normal itself.
+// Returns the vector with the true direction that can be reached from a sum by adding vectors across the normal N. If
+// that would be too far, returns the true normal itself.
 Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
   constexpr double kLeastAlong = 0.2;
   const Vec3d u = unit(right);
@@ -49,7 +49,7 @@ std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const
     if (is_new) points.emplace_back();
     points.back().push_back(vertex);
   }
-  // Sorting by vertex makes neighbours in the file neighbours here.
+  // Sorts points by their first vertex, so that neighbours in the file are neighbours in the list.
   std::sort(points.begin(), points.end());
   return points;
 }
@@ -105,7 +105,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
 std::vector<double> MissingNormals::inner_products(std::span<const float> importance, std::size_t step) const {
   constexpr std::size_t kPoints = 16, kParts = 32, kColumnsAtOnce = 64;
   const std::size_t rows = this->rows(), sampled = (points() + step - 1) / step;
-  std::vector<std::vector<double>> of_parts(kParts);  // sums over points, each in the memory of a whole matrix
+  std::vector<std::vector<double>> of_parts(kParts);  // sums over some points each; each is a whole matrix
   parallel_for(kParts, [&](std::size_t part) {
     std::vector<double>& sum = of_parts[part];
     sum.assign(rows * stride_, 0.0);
@@ -119,7 +119,7 @@ std::vector<double> MissingNormals::inner_products(std::span<const float> import
         for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
       }
       std::fill(products.begin(), products.end(), 0.0F);
-      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // the part right of the diagonal
+      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // only the upper triangle of the matrix
         const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
         const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};
         add_products(a, b, products.data() + i * stride_ + i, stride_);

@@ -1,5 +1,5 @@
-/// The errors of the deltas of a mesh's own targets at the instants of its file: the matrix that correction targets of
-/// low rank approximate (docs/theory.md, section 17). Private to workflow.
+/// The missing normals of a mesh: the errors that the deltas of its own targets leave at the instants of the file. They
+/// form the matrix that correction targets of low rank approximate (docs/theory.md, section 17). Private to workflow.
 ///
 /// Points     vertices that show the same normal: of one element, with the same stored base normal.
 /// Shapes     (points, 3, stride) floats, of which the first rows() of each run of `stride` count and the rest is zero.
@@ -29,11 +29,11 @@ namespace chronormal::inline internal {
 /// Vertices that show the same normal; the first stands for all.
 using PointVertices = std::vector<std::uint32_t>;
 
-/// Groups vertices into points. Vertices whose base normal is too short to add to are left out.
+/// Groups vertices into points. Leaves out vertices whose base normal is too short for deltas.
 [[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                                    std::span<const std::uint32_t> element_of_vertex);
 
-/// All instants of a file at which a curve has a value: the nodes of each track, and then the poses that the file
+/// All instants of a file at which curves have values: first the nodes of each track, then the poses that the file
 /// stores.
 struct FileInstants {
   explicit FileInstants(const MeshWeights& weights);
@@ -43,11 +43,12 @@ struct FileInstants {
   PoseList poses;
 };
 
-/// The weights of own targets in each row, and the rendered and missing normals there.
+/// The weights of the mesh's own targets in each row, and the rendered and missing normals in that row.
 class MissingNormals {
  public:
-  /// own has the deltas of the mesh's own targets for the first vertex of each point. If `across` is set, the missing
-  /// vectors have no part along N, as far as the right direction can be reached so, and the resulting length is free.
+  /// Computes the missing normals. `own` has the deltas of the mesh's own targets for the first vertex of each point.
+  /// If `across` is true, the missing vectors have no part along N, as far as such vectors can reach the right
+  /// direction; the length of the resulting normal is then free.
   MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
                  std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own, PoseList poses,
                  bool across = false);
@@ -60,16 +61,17 @@ class MissingNormals {
   [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
   /// Returns the sums of own deltas for a point, (3, stride); zero where the right normal is not known.
   [[nodiscard]] const float* shown(std::size_t point) const { return shown_.data() + 3 * stride_ * point; }
-  /// Returns what the sums lack of the right normal, whose length is |n(w)| / |n(0)|: (3, stride).
+  /// Returns the missing vectors of a point: the right normal, whose length is |n(w)| / |n(0)|, minus the sum of own
+  /// deltas. (3, stride).
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
-  /// Returns the inner products of the missing normals in two rows, over every step-th point, each times its
-  /// importance: (rows, rows). Sums of a few points are float32, and sums of all are double.
+  /// Returns the inner products of the missing normals of each two rows: (rows, rows). They are sums over every step-th
+  /// point, each multiplied by its importance; float32 for a few points, and double for all.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
-  /// Adds to the sums of a point, so that less is missing; more is (3, stride).
+  /// Adds vectors (3, stride) to the sums of a point, and subtracts them from what is missing.
   void show_more(std::size_t point, std::span<const float> more);
-  /// Leaves out the points that are within this many degrees of the right normal in all rows.
+  /// Drops the points whose error is at most this many degrees in all rows.
   void keep_beyond(double degrees);
 
  private:
@@ -80,7 +82,8 @@ class MissingNormals {
 };
 
 /// Returns a measure of the angle between two vectors of any length. It grows with the angle, from 0 to 2, and needs no
-/// arc tangent: the squared sine up to a right angle, and 2 minus the squared sine beyond. 0 if one vector is zero.
+/// arc tangent: up to a right angle it is the squared sine, and beyond it is 2 minus the squared sine. It is 0 if one
+/// vector is zero.
 [[nodiscard]] inline float openness(const Vec3f& a, const Vec3f& b) noexcept {
   const Vec3f aside = cross(a, b);
   const float across = dot(aside, aside), along = dot(a, b), both = across + along * along;

@@ -20,15 +20,15 @@ constexpr unsigned kFitSeed = 101, kTermSeed = 102;
 constexpr std::size_t kQuadraticBlock = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kQuadraticPoints = 8000;
-// Beyond this number of products, weights would have more terms than anybody could evaluate.
+// The most products of two weights. With more, the weight of a correction target would have too many terms to evaluate.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Parts of the tolerance: an error that needs no correction, and how far one entry of a delta that is left out may turn
-// a normal.
+// Parts of the tolerance. kPartOfNeed: the error below which no correction is needed. kPartOfEntry: the angle by which
+// an entry of a delta that is left out may turn a normal.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
-// Relative to n(0): shorter normals count as no shorter than this, for they can hardly be fitted at all.
+// The shortest length that counts, relative to n(0). Shorter normals can hardly be fitted, so they count as this long.
 constexpr float kLeastCounted = 0.1F;
-// The share of all terms that the omitted terms may have, as a root mean square.
+// The terms that may be left out, as a part of all terms (root mean square).
 constexpr double kPartOfTerms = 0.02;
 constexpr double kRidgeOfTerms = 1e-5, kLeastRidge = 1e-12;
 
@@ -47,7 +47,7 @@ PoseList poses_to_fit(const RigPoses& rig, std::span<const std::vector<double>> 
   return poses;
 }
 
-// Returns the points with a base normal to divide by.
+// Returns the points whose base normal is long enough to divide by.
 std::vector<PointVertices> points_to_fit(const DeltaSource& source, const RightNormals& rights,
                                          std::span<const std::uint32_t> vertices) {
   const GltfShading& shading = source.shading;
@@ -142,8 +142,8 @@ void QuadraticFit::find_features(const DeltaSource& source) {
       if (a == b || source.terms.overlap(moving[a], moving[b])) features_.push_back({moving[a], moving[b], false});
 }
 
-// Returns the sums of the missing normals over poses, with these weights (rows, extras), for each point: (points, 3,
-// padded).
+// Returns for each point the sums of the missing normals over the poses, weighted by these vectors (rows, extras):
+// (points, 3, padded).
 std::vector<float> QuadraticFit::directions(std::span<const double> vectors) const {
   std::vector<float> columns(missing_.rows() * padded_, 0.0F), result(3 * padded_ * points_.size(), 0.0F);
   for (std::size_t r = 0; r < missing_.rows(); ++r)
@@ -156,7 +156,7 @@ std::vector<float> QuadraticFit::directions(std::span<const double> vectors) con
   return result;
 }
 
-// Computes the terms of the weights: the terms of n(w) in the directions, by least squares over all points.
+// Computes the terms of the weights: expresses the terms of n(w) by the directions, by least squares over all points.
 void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions) {
   const GltfShading& shading = source.shading;
   std::vector<double> matrix(extras_ * extras_, 0.0);
@@ -165,7 +165,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
     return to_double(Vec3f{of[k], of[padded_ + k], of[2 * padded_ + k]});
   };
   std::vector<VertexTerms> turned;
-  std::vector<double> shares;  // of the terms of a point
+  std::vector<double> shares;  // of the terms of each point
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const std::uint32_t v = points_[p].front(), e = shading.element_of_vertex[v];
     const double square = static_cast<double>(importance_[p]) * static_cast<double>(importance_[p]);
@@ -206,7 +206,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
   });
 }
 
-// Drops the terms of each weight that count least in the poses of the rig.
+// Drops the smallest terms of each weight, measured in the poses of the rig.
 void QuadraticFit::leave_out_small(const RigPoses& rig) {
   std::vector<double> squares(features_.size(), 0.0);
   for (const std::vector<double>& pose : rig.sample(kPosesOfTerms, kTermSeed)) {
@@ -253,7 +253,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t k = 0; k < count; ++k) largest[k] = std::fmax(largest[k], std::fabs(weights_[r * padded_ + k]));
 
-  // Fits the deltas by least squares for each point. A row counts more the shorter its normal is.
+  // Fits the deltas of each point by least squares. A row counts more if its normal is shorter.
   std::vector<Vec3f> deltas(points_.size() * count);
   const double least = kPartOfEntry * tolerance_ / kDegreesPerRadian;
   parallel_blocks(points_.size(), kQuadraticBlock, [&](IndexRange points) {
@@ -261,7 +261,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       std::copy(lack, lack + 3 * stride, wanted.begin());
-      float most = 0;  // the largest weight of a row
+      float most = 0;  // largest weight in any row
       for (std::size_t r = 0; r < rows; ++r) {
         const Vec3f now = {shown[r], shown[stride + r], shown[2 * stride + r]};
         const Vec3f right = now + Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]};

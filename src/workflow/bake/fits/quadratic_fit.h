@@ -1,13 +1,13 @@
-/// Correction targets of rigs that nothing drives: the errors of a mesh's own deltas in the poses that the rig is made
-/// for, as the sum of a few deltas whose weights are quadratics of the weights (docs/theory.md, section 18). Private to
-/// workflow.
+/// Correction targets of a rig that no animation drives. The own deltas of a mesh leave errors in the poses for which
+/// the rig is made. These errors are written as a sum of a few deltas whose weights are quadratic in the weights of the
+/// rig (docs/theory.md, section 18). Private to workflow.
 ///
 ///     n(w) / |n(0)|  =  N + sum_i w_i D_i + sum_k s_k(w) E_k, nearly,   s_k(w) = sum_i l_ki w_i + sum_ij q_kij w_i w_j
 ///
-/// The missing normals in some poses of the rig form a matrix of low rank; its leading right singular vectors are the
-/// E_k worth having. Since n(w) is a quadratic form, the best weight of each E_k is one too, and its terms are the
-/// terms of n(w), projected. Small terms are dropped. The E_k are then fitted again for each point, to the missing
-/// normal divided by the length of n(w), which is about the angle.
+/// The missing normals in some poses of the rig form a matrix of low rank. Its leading right singular vectors are the
+/// deltas E_k that help most. n(w) is a quadratic form, so the best weight s_k is one too: its terms are the terms of
+/// n(w) projected on E_k. Small terms are dropped. Then the E_k are fitted again for each point, to the missing normal
+/// divided by the length of n(w), which is about the angle of the error.
 ///
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
@@ -31,25 +31,25 @@ inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
  public:
-  /// own has the deltas of the mesh's own targets; only `vertices` that have errors with them are fitted. rights must
-  /// outlive this. Cost: the right normals in 400 poses, and all terms of n(w).
+  /// Prepares the fit. `own` has the deltas of the mesh's own targets; of `vertices`, only those with errors are
+  /// fitted. rights must outlive this object. Cost: the right normals in 400 poses, and all terms of n(w).
   QuadraticFit(const DeltaSource& source, const RightNormals& rights, std::span<const std::uint32_t> vertices,
                const std::vector<VertexVectors>& own, const RigPoses& rig,
                std::span<const std::vector<double>> standing, std::size_t most_extras, double tolerance);
 
-  /// Returns how many correction targets are worth trying.
+  /// Returns the largest number of correction targets that is worth trying.
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
     std::vector<GltfExtraTarget> weights;  ///< about from -1 to 1 in the poses of the rig; no index is set
     std::vector<VertexVectors> vectors;    ///< of any length
   };
-  /// Returns the best `count` correction targets; count must be at most extras(). If viewers keep no lengths, only the
+  /// Returns the best `count` correction targets; count must be at most extras(). If keeps_lengths is false, only the
   /// direction of the sum is fitted, and its length stays as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:
-  // A product that n(w) has a term for: w_i, or w_i w_j.
+  // A factor of a term of n(w): the weight w_i, or the product w_i w_j.
   struct Feature {
     std::size_t i = 0, j = 0;
     bool is_linear = false;

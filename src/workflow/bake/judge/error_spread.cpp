@@ -1,4 +1,4 @@
-// Counts errors in bins that are a sixteenth of an octave wide.
+// Counts errors in bins; an octave (a factor of two) has sixteen bins.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <algorithm>
@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kBins = ErrorSpread::kBins;
 constexpr float kLeastBin = 1e-3F;
 
-// The exponent of a float counts octaves, and the first four bits of its fraction count sixteenths of an octave.
+// Returns the bin of an error: the exponent of a float counts octaves, and the first four bits of its fraction count
+// sixteenths of an octave.
 std::size_t bin_of(float degrees) {
   const auto bits = bit_cast<std::uint32_t>(std::max(degrees * (1 / kLeastBin), 1.0F));
   return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));

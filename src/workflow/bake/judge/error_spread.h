@@ -1,4 +1,5 @@
-/// Errors of many vertices in many poses: their mean, the worst, and the bound of 99.9 %. Private to workflow.
+/// Errors of many vertices in many poses: their mean, their largest value, and the value that 99.9 % of them do not
+/// exceed. Private to workflow.
 ///
 /// Units      degrees
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_ERROR_SPREAD_H_
@@ -13,7 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// The distribution of errors, to a sixteenth of themselves: it counts the errors in each sixteenth of an octave.
+/// The distribution of errors as a histogram with sixteen bins for each factor of two, so a value is known to a
+/// sixteenth.
 struct ErrorSpread {
   static constexpr std::size_t kBins = 320;
 
@@ -22,7 +24,7 @@ struct ErrorSpread {
   std::array<std::size_t, kBins> bins{};
 
   void add(const ErrorSpread& other);
-  /// Adds errors. Negative ones stand for missing errors, and are skipped.
+  /// Adds errors. Skips negative values, which mean that there is no error to judge.
   void add(std::span<const float> errors);
   [[nodiscard]] ShownErrors errors() const;
 };

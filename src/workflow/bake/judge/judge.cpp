@@ -1,4 +1,4 @@
-// Poses are columns of weights side by side, so that a delta is added to many poses in one loop over memory.
+// The weights of many poses lie side by side in memory, so that one loop adds a delta to many poses.
 #include "workflow/bake/judge/judge.h"
 
 #include <algorithm>
@@ -14,15 +14,16 @@ namespace {
 
 constexpr std::size_t kSamplesOfBlock = 8192, kMostOfBlock = 1024, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
-// Limits for the samples whose right normals are held, and for the poses of one kind.
+// kMostPairs: the most samples (a vertex in a pose) whose right normals are held. The others limit the poses of one
+// kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
-// A glance takes every eighth pose, but no fewer than this if there are more.
+// A glance takes every kGlance-th pose, but at least kFewestAtGlance poses if there are that many.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 // The number of errors of vertices that are held at once.
 constexpr std::size_t kMostErrors = 4000000;
 
-// Returns the viewer without rounding that is too fine to decide a choice, or comes from compressors: half floats, and
-// numbers of a few bits.
+// Returns the viewer without some of its rounding: half floats, which are too fine to decide a choice, and numbers of a
+// few bits, which come from compressors.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
@@ -37,14 +38,14 @@ bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
 
 std::size_t padded(std::size_t poses) { return block_count(poses, kPosePadding) * kPosePadding; }
 
-// Holds the weights of poses by column, side by side, and the range of poses in which a column has any: if targets are
-// judged alone, most columns have no weight in most poses.
+// The weights of poses, column by column, and for each column the range of poses in which it has a weight. If targets
+// are judged one by one, most columns have no weight in most poses.
 class PoseWeights {
  public:
   explicit PoseWeights(std::span<const SeenPose> poses)
       : stride_(padded(poses.size())),
         active_(poses.empty() ? 0 : poses[0].weights.size()),
-        weights_(stride_ * active_.size() + kPosePadding) {  // whole vectors are read from any pose on
+        weights_(stride_ * active_.size() + kPosePadding) {  // padded, since vectors are read from any pose on
     for (std::size_t p = 0; p < poses.size(); ++p) {
       for (std::size_t c = 0; c < active_.size(); ++c) {
         const auto weight = static_cast<float>(poses[p].weights[c]);
@@ -80,7 +81,7 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
 // Holds the sums of one vertex in many poses.
 class Sums {
  public:
-  // Adds up `count` poses from number `first` on. The normal and its deltas are as a viewer keeps them.
+  // Adds up the normal and its deltas in `count` poses, from number `first` on. Both must be as a viewer stores them.
   void add_up(const Vec3f& normal, std::span<const VertexColumns::Entry> entries, const PoseWeights& weights,
               std::size_t first, std::size_t count) {
     terms_.clear();
@@ -94,7 +95,7 @@ class Sums {
       else
         no_sums_.push_back({begin - first, end - begin});
     };
-    constexpr std::size_t kFew = 8;  // a list of entries is searched for columns only if it is this many times longer
+    constexpr std::size_t kFew = 8;  // a longer list of entries is searched for each column instead
     if (kFew * weights.columns().size() > entries.size()) {
       for (const auto& [column, delta] : entries) add(column, delta);
     } else {
@@ -111,7 +112,7 @@ class Sums {
       std::fill_n(planes_.data() + range.first, range.count, std::numeric_limits<float>::quiet_NaN());
   }
 
-  // Replaces the sums by what the skin makes of them.
+  // Replaces the sums by the normals that a viewer sees through the skin.
   void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule, std::size_t poses) {
     for (std::size_t p = 0; p < poses; ++p) {
       float *const x = planes_.data() + p, *const y = x + stride_, *const z = y + stride_;
@@ -122,7 +123,7 @@ class Sums {
     }
   }
 
-  // Does what compare_normals() does, with errors as planes side by side. right has three planes.
+  // Compares the sums with the right normals, in three planes, by compare_normals(). The errors are written as planes.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
@@ -135,8 +136,8 @@ class Sums {
   std::vector<float> planes_;
 };
 
-// Returns the edges with an end among some vertices, by indices in that list; other vertices have an index beyond its
-// end.
+// Returns the edges of which at least one end is in a list of vertices. An end is written as its index in the list, or
+// as an index beyond the list.
 std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<const std::uint32_t> vertices,
                                   std::size_t vertex_count) {
   const auto none = static_cast<std::uint32_t>(vertices.size());
@@ -149,7 +150,7 @@ std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<
   return result;
 }
 
-// Writes vectors as planes with this distance.
+// Writes vectors as three planes, `stride` floats apart.
 void write_planes(std::span<const Vec3f> vectors, float* planes, std::size_t stride) {
   for (std::size_t p = 0; p < vectors.size(); ++p) {
     planes[p] = vectors[p].x;
@@ -227,7 +228,7 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
 std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth, bool with_rounding) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
-  std::vector<std::pair<Viewer, VertexColumns>> of_viewers;  // as viewers keep them, if not as they are
+  std::vector<std::pair<Viewer, VertexColumns>> of_viewers;  // deltas as viewers store them, if these differ
   const auto kept_by = [&](const Viewer& viewer) -> const VertexColumns& {
     if (viewer.normals == NormalRule::kSum && !viewer.keeps_halves()) return columns;
     auto found = std::find_if(of_viewers.begin(), of_viewers.end(),
@@ -328,14 +329,14 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
 }
 
 TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
-  // Vertices that are not judged count as without error.
+  // The error of a vertex that is not judged counts as zero.
   const std::size_t count = known.numbers.size(), poses = differences.poses;
   const std::vector<float> none(3 * poses, 0.0F);
   return parallel_fold<TearCounts>(
       known.edges.size(), kEdgeBlock,
       [&](std::size_t edge, TearCounts& counts) {
         const auto [a, b] = known.edges[edge];
-        // A jump is no larger than the sum of both errors.
+        // The difference of two errors is at most the sum of their lengths.
         const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
         if (most * most < TearCounts::kSquares[0]) return;
         counts.add(differences.planes.data() + 3 * a * poses,

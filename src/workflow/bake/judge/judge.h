@@ -1,5 +1,5 @@
-/// Measures what viewers render with a candidate over the poses of a file: the one judge of a bake. Private to
-/// workflow.
+/// Measures what viewers render with a candidate, over the poses of a file. All decisions of a bake rest on this judge.
+/// Private to workflow.
 ///
 ///     error    the angle between the rendered normal and the right one, both as the viewer carries them by the skin of
 ///              the pose
@@ -30,8 +30,8 @@
 
 namespace chronormal::inline internal {
 
-/// Degrees by which an error may grow if nothing else is said: rounding to float32 and float16 may turn a normal by
-/// this.
+/// The angle in degrees by which an error may always grow, because rounding to float32 and float16 may turn a normal by
+/// it.
 inline constexpr double kHarmless = 0.02;
 
 /// The errors of one viewer in poses of one kind.
@@ -59,7 +59,7 @@ class Judge {
   /// The share of the poses that are judged: about an eighth, or all.
   enum class Depth { kGlance, kAll };
 
-  /// All arguments must outlive this.
+  /// Creates a judge. All arguments must outlive it.
   Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
         std::span<const Viewer> viewers, bool animations_only);
 
@@ -67,15 +67,15 @@ class Judge {
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Viewer> viewers() const noexcept { return viewers_; }
 
-  /// Measures what each viewer renders, in all kinds of poses. The rounding of compressors is left out unless it is
-  /// asked for.
+  /// Measures what each viewer renders, in all kinds of poses. Includes the rounding of compressors only if
+  /// with_rounding is true.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth,
                                                    bool with_rounding = false) const;
-  /// Returns the largest error of each vertex over some poses, in a viewer that adds deltas as stored.
+  /// Returns the largest error of each vertex over some poses, in a viewer that adds up deltas as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
  private:
-  // Poses and the right normals there.
+  // A set of poses, and the right normals in these poses.
   struct KnownSet {
     PoseSet set;
     std::vector<std::uint32_t> numbers;  // the vertices that it judges
