@@ -25,7 +25,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
 constexpr std::size_t kRowsPerTarget = 16;                  // rows of least squares
-constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // all rows together, in one list
+constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // most weights of all rows together, in one list
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // limit for terms; beyond it, normals come from positions
 constexpr std::size_t kChunk = 512;
 
@@ -37,12 +37,13 @@ Vec3d vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// The place that shows a normal, and the number that a person knows it by.
+// A place that shows a normal: its element, and the number of the face, vertex or corner for messages.
 struct Output {
   std::uint32_t element = 0, number = 0;
 };
 
-// A set whose normals are compared. Its elements are faces if groups is nullptr; shading belongs to the file, if any.
+// A set of blend shapes whose normals are compared. If groups is nullptr, its elements are faces. `shading` is nullptr
+// unless the set is from a glTF file.
 struct Subject {
   const BlendSet* set = nullptr;
   const NormalGroups* groups = nullptr;
@@ -57,15 +58,15 @@ struct SizedNormal {
   Vec3d value;
   double size = 0;
 
-  // Removes rounding error: if the terms cancel to less than this, the rest has no direction. Above the limit, a
-  // direction is right to 1e-6 rad.
+  // Returns the normal, or (0, 0, 0) if its terms cancel so far that the rest is only rounding error. A direction that
+  // is returned is right to 1e-6 rad.
   [[nodiscard]] Vec3d without_rounding() const { return length(value) > 1e-10 * size ? value : Vec3d{}; }
 };
 
 SizedNormal operator+(const SizedNormal& a, const SizedNormal& b) { return {a.value + b.value, a.size + b.size}; }
 
-// Computes n(w) of all elements from cross products of blended positions alone, and zero if n(w) is only rounding
-// error.
+// Computes n(w) of all elements only from cross products of blended positions. Returns (0, 0, 0) for an n(w) that is
+// only rounding error.
 std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
   const Topology& topology = subject.set->topology;
   std::vector<double> positions(subject.set->base.size());
@@ -148,7 +149,7 @@ class BlendMeter {
     return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
   }
 
-  // Measures the errors at rows of weights. The least squares are fitted to other rows.
+  // Measures the errors at some rows of weights. The deltas by least squares are fitted to other rows, fitted_rows.
   BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
                       const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);
@@ -182,7 +183,8 @@ class BlendMeter {
     return result;
   }
 
-  // Computes N + sum w D from the normals of the file, in float32 as viewers add.
+  // Computes the sum of the stored normal and of weight times stored delta, in float32 and in the order of targets, as
+  // viewers do.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
     Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -283,7 +285,7 @@ Status check(const BlendCompareOptions& options) {
   return Success{};
 }
 
-// Lists how many targets are active at once, for each of the `wanted` numbers that exist.
+// Lists the numbers of active targets to compare at: `wanted`, or if it is 0 the usual numbers that are possible.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;
@@ -296,13 +298,14 @@ std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) 
 std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max(rows, kRowsPerTarget * targets); }
 
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
-  // The left side cannot overflow: a list of targets that fits in memory is far too short.
+  // The number of rows cannot overflow, because a list of targets that fits into memory is far too short for that.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
   return invalid_input(place, std::to_string(targets).append(" targets are too many for ") + std::to_string(rows) +
                                   " poses; compare fewer poses");
 }
 
-// Draws random weights for some targets, in rows for all of them, and fills in the weights of correction targets.
+// Draws random weights for the mesh's own targets, in rows for all targets, and fills in the weights of correction
+// targets.
 std::vector<double> random_rows(const Subject& subject, const std::vector<std::size_t>& own, std::size_t count,
                                 std::size_t active, std::uint64_t seed) {
   const std::vector<double> drawn = random_blend_weights({own.size(), count, active, 0, 1, seed});
@@ -323,7 +326,7 @@ void measure_random(BlendMeter& meter, const Subject& subject, const std::vector
     const std::vector<double> others =
         random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
     result.errors.push_back(meter.measure(rows, others, progress));
-    result.errors.back().active = active;  // without correction targets
+    result.errors.back().active = active;  // counted without correction targets
   }
 }
 
@@ -345,7 +348,7 @@ std::vector<Output> outputs_of(const GltfShading& shading) {
   return result;
 }
 
-// Reads the weights that an animation gives a mesh, track after track. The list is empty if the animation gives none.
+// Reads the weights that an animation gives a mesh, track after track. Returns an empty list if it gives none.
 Result<std::vector<std::vector<double>>> animated_weights(const GltfDocument& document, std::size_t animation,
                                                           std::size_t mesh, std::size_t most) {
   const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;
@@ -371,7 +374,7 @@ bool has_stored_normals(const GltfMesh& mesh) {
                      [](const GltfPrimitive& p) { return p.has_faces() && p.has_normals; });
 }
 
-// Lists the targets that move vertices by themselves.
+// Lists the targets of a mesh that are not correction targets.
 std::vector<std::size_t> own_targets(const GltfMesh& mesh) {
   std::vector<std::size_t> result;
   for (std::size_t k = 0; k < mesh.target_count; ++k) {

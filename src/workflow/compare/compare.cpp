@@ -31,8 +31,8 @@
 namespace chronormal {
 namespace {
 
-// A block of the widest scheme stays in the second-level cache. A wave keeps few partial results and reports progress
-// often.
+// The number of elements in a block: with the widest scheme, a block stays in the second-level cache. A wave has
+// kBlocksPerWaveAndThread blocks for each thread: so few partial results are in memory, and progress is reported often.
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
@@ -42,7 +42,7 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-// Returns the median, which a few interrupted threads do not change.
+// Returns the median. A few values that are too large, because a thread was interrupted, do not change it.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -53,7 +53,7 @@ double median(std::vector<float> values) {
 // The results of one scheme on one block, or on all blocks of a segment so far.
 struct Tally : SchemeTally {
   std::vector<Quality> samples;                // errors of a block, if samples are kept
-  std::vector<float> prepare_ns, evaluate_ns;  // per element, a value per block
+  std::vector<float> prepare_ns, evaluate_ns;  // nanoseconds per element, one value for each block
 
   void add(const Tally& other) {
     chronormal::add(*this, other);
@@ -62,7 +62,7 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme, as the median of each segment, so that memory grows with segments and not with faces.
+// The times of one scheme. Only the median of each segment is kept, so memory grows with segments and not with faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -92,14 +92,14 @@ class Elements {
   }
   [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
-  // Returns the number that a person knows an element by: the face, or the first vertex or corner that shows it.
+  // Returns the number by which messages name an element: its face, or the first vertex or corner that shows it.
   [[nodiscard]] std::size_t first_output(std::size_t element) const {
     if (!groups_) return element;
     const auto outputs = groups_->element_of_output();
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Prepares segments first to last, because many groups share the control normals of faces.
+  // Computes the control normals of all faces for the segments from first to last, because many groups share them.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
@@ -119,7 +119,7 @@ class Elements {
       });
     }
   }
-  // Returns the time that one thread needs for the faces of a segment, divided by the elements that share them.
+  // Returns the nanoseconds that one thread needs for the faces of a segment, divided by the number of elements.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
   // Computes control normals. With a weighting other than area they are fitted.
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const {
@@ -135,7 +135,7 @@ class Elements {
     else
       face_control_normals(segment, range, result);
   }
-  // Returns the elements of a range, from which schemes are prepared. All arguments must outlive the result.
+  // Returns a range of elements in the form from which schemes are prepared. All arguments must outlive the result.
   [[nodiscard]] ElementBlock block(const Segment& segment, IndexRange range,
                                    std::span<const ControlNormals> normals) const {
     ElementBlock block{&segment, range, normals, are_faces()};
@@ -191,8 +191,8 @@ class Elements {
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
   std::size_t samples_ = 0;  // for groups
-  // Normals of faces with more corners than this are computed once for all groups; they take less than 400 bytes a
-  // corner.
+  // The number of corners above which the normal of a face is computed once for all groups that contain it. These
+  // normals take less than 400 bytes a corner.
   std::size_t many_corners_ = 0;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
   std::vector<std::uint32_t> large_;                             // faces of more than many_corners_, for groups
@@ -201,13 +201,15 @@ class Elements {
   double shared_ns_ = 0;
 };
 
-// Returns NaN if one of the two normals has no direction, as Quality leaves out such samples.
+// Returns the angle in degrees between an exact and a rendered normal, or NaN if one of them has no direction: Quality
+// leaves out such samples as well.
 float error_in_degrees(const Vec3d& exact, const Vec3d& shown) {
   if (exact == Vec3d{} || shown == Vec3d{} || !is_finite(shown)) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(angle_between(unit(exact), shown) * kDegreesPerRadian);
 }
 
-// Makes a table of the errors of one scheme, (rows, elements), that has each element once per place in the mesh.
+// Makes a table of the errors of one scheme, (rows, elements). An element that several places of the mesh share has an
+// entry for each place.
 ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOptions& options, const std::string& scheme,
                     const std::vector<float>& of_elements) {
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};

@@ -1,8 +1,8 @@
 /// Fits correction targets of low rank: to all points by singular vectors of the missing normals, and to points with
 /// large errors by least squares of the angles. Private to workflow.
 ///
-/// Shapes     points, rows and stride as in MissingNormals. `extras` columns are stored in rows of `padded()` floats, of
-///            which those beyond extras() are zero.
+/// Shapes     points, rows and stride as in MissingNormals. `extras` columns are stored in rows of `padded()` floats,
+///            of which those beyond extras() are zero.
 /// Threads    on all cores; the same bits on any number of them.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_

@@ -12,8 +12,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
-// The largest distance of a parabola from the square of a weight, and the number of places of a piece where it is
-// measured.
+// kNearParabola: the largest allowed distance between a parabola and the square of a weight. It is measured at
+// kPlacesOfPiece places of each piece.
 constexpr double kNearParabola = 0.002;
 constexpr int kPlacesOfPiece = 4;
 
@@ -48,7 +48,7 @@ std::size_t pieces_of_spline(const WeightTrack& track) {
   return pieces;
 }
 
-// The values and slopes of all columns at one key of a spline.
+// The values and the slopes (per second) of all columns at one key of a spline.
 struct SplineKey {
   double time = 0;
   std::vector<double> in, value, out;
@@ -77,10 +77,10 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
     const double from = track.keys.times[key], to = track.keys.times[key + 1];
     std::vector<std::array<double, 4>> rest(track.targets);
     for (std::size_t i = 0; i < track.targets; ++i) rest[i] = track.piece(key, i);
-    double start = 0;  // of the piece, as a part of the gap
+    double start = 0;  // start of the piece, as a part of the gap
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       const bool is_last = piece + 1 == pieces;
-      // Times are float32, so the new key is where the file can place it.
+      // Times in files are float32, so a new key can only be at such a time.
       const double part = static_cast<double>(piece + 1) / static_cast<double>(pieces);
       const double time = is_last ? to : static_cast<double>(static_cast<float>(from + (to - from) * part));
       if (!is_last && !(keys.back().time < time && time < to)) continue;
@@ -175,7 +175,7 @@ ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& cur
   result.interpolation = track.interpolation;
   result.keys = track.size();
   if (result.keys > most_keys) return result;
-  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // of one key
+  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // a spline with one key
   for (std::size_t key = 0; key < track.size(); ++key) {
     const auto append_tangents = [&](bool out) {
       for (std::size_t i = 0; i < track.targets; ++i) result.values.push_back(to_file(track.tangent(key, out, i)));

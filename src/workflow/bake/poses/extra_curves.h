@@ -3,9 +3,9 @@
 /// A curve is given by its values at nodes: the keys of a track and, if the track moves between them, the ends and
 /// middles of equal pieces of each gap between two keys. In each piece the curve is a parabola through the three nodes:
 ///
-///     STEP, or a single key    a node at each key; curves hold still as the track does
-///     LINEAR                   one piece per gap if the truth is by area: n(w(t)), and with it everything that is
-///                              missing, is quadratic there; otherwise as many as the track says
+///     STEP, or a single key    a node at each key; curves are constant between keys, as the track is
+///     LINEAR                   one piece per gap if the true normals are weighted by area, because n(w(t)) and the
+///                              missing normals are then quadratic there; otherwise as many as the track says
 ///     CUBICSPLINE              two, four or eight pieces per gap, so that parabolas are near squares of weights
 ///
 /// Threads    pure
@@ -33,16 +33,17 @@ struct ExtraCurves;
 class CurveNodes {
  public:
   explicit CurveNodes(const WeightTrack& track);
-  /// Takes the nodes with which the curves over the track were made.
+  /// Takes the nodes that the given curves over the track have.
   CurveNodes(const WeightTrack& track, const ExtraCurves& curves);
 
   [[nodiscard]] std::size_t size() const noexcept { return pieces_ == 0 ? keys_ : 2 * pieces_ * (keys_ - 1) + 1; }
-  /// Returns the pieces of each gap; 0 if curves hold still between keys.
+  /// Returns the number of pieces in each gap; 0 if curves are constant between keys.
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
   /// Returns the weights of the mesh's own targets at a node.
   [[nodiscard]] std::vector<double> pose(const WeightTrack& track, std::size_t node) const;
 
-  /// The nodes, and their factors, from which a curve is interpolated at a part of the gap after a key.
+  /// A place in the gap after a key: the nodes from which the value of a curve there is interpolated, and their
+  /// factors.
   struct Place {
     std::array<std::size_t, 3> nodes{};
     std::array<double, 3> factors{};
@@ -87,20 +88,21 @@ struct ExtraDrivers {
   TrackCurves curves;                 ///< for each track; none if there are formulas
   PoseList rest;                      ///< of curves: the weights in the poses that the file stores (MeshWeights)
   TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR; others become cubic splines
-  /// Radians: cubic splines get keys for formulas until no normal has a larger error. Infinite: they get none.
+  /// An angle in radians: cubic splines get more keys until the error of formulas turns no normal by more. If it is
+  /// infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }
   /// Returns correction target k as the file describes it; `index` is its index among all targets.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t k, std::size_t index) const;
-  /// Returns the same pose followed by the weights of correction targets, by formulas and sums.
+  /// Appends the weights of correction targets to a pose, by formulas and sums.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
-  /// Returns the poses that stand still, followed by the weights of correction targets. By curves, these weights are
-  /// zero in the expressions of an avatar, which come after the poses of `rest`.
+  /// Appends the weights of correction targets to poses that stand still (outside of animations). If curves drive the
+  /// correction targets, these weights are zero in the expressions of an avatar, which come after the poses of `rest`.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
-  /// Returns a track with the weights of correction targets. Cubic splines get keys for formulas until no normal has a
-  /// larger error than tolerance (radians) or spline_tolerance. If that takes more than most_keys, the result has no
-  /// values.
+  /// Returns a track with the weights of correction targets. Cubic splines get more keys until the error of formulas
+  /// turns no normal by more than tolerance (radians) or spline_tolerance. If that takes more than most_keys keys, the
+  /// result has no values.
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;
 };

@@ -1,5 +1,5 @@
-// A skin is judged wherever its joints or the weights have a key while the weights are played, and half-way between:
-// joints that turn against each other squash most at their keys or between them.
+// A skin is judged at all times at which its joints or the weights have a key, and half-way between these times: joints
+// that rotate against each other squash a mesh most at their keys or in the middle.
 #include "workflow/bake/poses/mesh_skins.h"
 
 #include <algorithm>
@@ -10,10 +10,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Limits for the samples at which a skin is judged, and the fewest instants.
+// kLookedAtPairs: the most samples at which a skin is judged. kFewestInstants: the fewest instants at which it is
+// judged.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
-// Tells whether a skin does more than turn and scale these vertices evenly while a track is played.
+// Returns true if a skin, while a track is played, deforms these vertices by more than a rotation and an even scale.
 bool is_uneven(MeshSkin skin, const WeightTrack& track, std::span<const std::uint32_t> vertices) {
   std::vector<double> times;
   const std::vector<double> keys = keys_of_both(track, skin);
@@ -72,7 +73,7 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
     }
     if (is_any_even) skins.emplace_back();
   }
-  // This is the skin that audit takes.
+  // An audit uses the same skin: that of the first node with a skin and this mesh.
   const auto first = std::find_if(nodes.begin(), nodes.end(),
                                   [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
   if (first == nodes.end()) return;

@@ -1,8 +1,7 @@
-/// The skins by which the nodes of a file deform one mesh, as far as they matter to the choice of a bake. Private to
-/// workflow.
+/// The skins by which the nodes of a file deform one mesh, if they matter to the choice of a bake. Private to workflow.
 ///
-/// If a blended matrix turns and scales evenly, errors are the same on both sides of it. So a skin that does no more
-/// than that to any vertex in question is left out, and changes neither results nor choices.
+/// A skin matters if it changes errors. A rotation with an even scale leaves the angle between two normals as it is, so
+/// a skin that does no more to any of the vertices is left out.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 
@@ -18,12 +17,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the times at which a track or the joints of a skin have a key while the track is played, ascending, each
-/// once.
+/// Returns the times of all keys of a track, and of the keys of a skin's joints while the track is played: ascending,
+/// each once.
 [[nodiscard]] std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin);
 
-/// Reads into weights.skins what the skins of all nodes of a mesh do to some of its vertices. A skin that cannot be
-/// read is left out: audit says why.
+/// Reads the skins of all nodes of a mesh into weights.skins, for the given vertices. A skin that cannot be read is
+/// left out; an audit reports why.
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights);
 

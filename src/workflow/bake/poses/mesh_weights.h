@@ -21,15 +21,15 @@ struct TrackName {
   friend auto operator<=>(const TrackName&, const TrackName&) = default;
 };
 
-/// The skins by which nodes deform a mesh, except those that turn and scale evenly (mesh_skins.h).
+/// The skins by which nodes deform a mesh, except skins that only rotate and scale evenly (mesh_skins.h).
 struct MeshSkins {
-  /// For each track, the skins of all nodes that it drives; nullopt for nodes without such a skin. Empty if nothing was
-  /// read, or there is none.
+  /// For each track, the skins of all nodes that it drives; nullopt for nodes without such a skin. Empty if no skin was
+  /// read.
   std::vector<std::vector<std::optional<MeshSkin>>> of_tracks;
   std::optional<MeshSkin> standing;  ///< of the first node that has a skin, as the file poses it
 
   [[nodiscard]] bool any() const;
-  /// Returns the skin for poses that no animation plays, as targets alone, or nullptr.
+  /// Returns the skin for poses that no animation plays, such as a single target at weight 1, or nullptr.
   [[nodiscard]] const MeshSkin* as_standing() const { return standing ? &*standing : nullptr; }
 };
 

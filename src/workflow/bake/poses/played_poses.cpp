@@ -41,7 +41,8 @@ struct Peak {
   std::size_t number = 0;
 };
 
-// Returns the targets that a track moves most after a key, with bounds of their weights there.
+// Returns the targets with the largest weights between a key and the next one, largest first, with bounds of these
+// weights.
 std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   std::vector<Peak> result;
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -58,7 +59,7 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
 // Finds where each weight, and each product of two weights, is largest.
 class Peaks {
  public:
-  // Adds the weights that are active at once in the item with this number.
+  // Adds the weights that are active at the same time in the item with this number.
   void add(const std::vector<Peak>& active, std::size_t number) {
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a; b < active.size(); ++b) {
@@ -70,7 +71,8 @@ class Peaks {
     }
   }
 
-  // Returns `most` of these numbers, ascending: those with the largest peaks, and a fourth of them evenly spread.
+  // Returns `most` of these numbers, ascending. A fourth of them are evenly spread, and the others have the largest
+  // peaks.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
@@ -115,7 +117,7 @@ std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std
 
 namespace {
 
-// Parts of a gap between two keys at which a track is judged, the most telling ones first.
+// Positions in a gap between two keys at which a track is judged. The most telling positions come first.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
 // Returns up to `room` instants of one track, at and after its telling keys.

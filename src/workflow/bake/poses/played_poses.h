@@ -1,4 +1,4 @@
-/// The poses of a file: those that viewers play from its tracks, its targets alone, and those that a program may set.
+/// The poses of a file: poses that viewers play from its tracks, each target alone, and poses that a program may set.
 /// Private to workflow.
 ///
 /// Threads    pure; the poses are the same on every system.
@@ -18,8 +18,8 @@
 
 namespace chronormal::inline internal {
 
-/// A pose of the mesh's own targets, and the source of the weights of correction targets: a track at a time, a pose
-/// that the file stores, or else the weights of the mesh's own targets.
+/// A pose of the mesh's own targets, and the place from which the weights of correction targets come: a time of a
+/// track, a pose that the file stores, or (if there is neither) the weights of the mesh's own targets.
 struct PlayedPose {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
@@ -31,23 +31,24 @@ struct PlayedPose {
 
 /// Returns the keys after which a track shows something new, because weights move, come to rest or jump there;
 /// ascending. If there are more than `most`, it prefers keys after which a weight, or the product of two weights, is
-/// larger than anywhere else, so that a wink in a long animation is included; the others are taken evenly.
+/// larger than anywhere else, so that a wink in a long animation is included; the other keys are chosen at even steps.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
 /// Returns the indices of at most `most` tracks, ascending. If there are more, it prefers tracks in which a weight, or
-/// the product of two weights, is larger than anywhere else; the others are taken evenly. All tracks must have the same
-/// targets.
+/// the product of two weights, is larger than anywhere else; the other tracks are chosen at even steps. All tracks must
+/// have the same targets.
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
-/// Returns the poses that a viewer plays from the tracks of a mesh, one after the other, except poses that look the
-/// same as the one before: for each telling key, the key itself and instants up to the next one. If these are more than
-/// `most`, it takes fewer instants of each key, and then fewer keys. Each track gets a share by the number of its
-/// telling keys, and at least one pose. With each skin of its nodes, which must outlive the poses, a track is judged at
-/// its keys, at keys of the joints and at instants between; if these are more than `most`, at some of them, chosen as
-/// above.
+/// Returns the poses that a viewer plays from the tracks of a mesh, in order, without poses that look the same as the
+/// previous one. There are poses at each telling key and at instants up to the next one. If these are more than `most`,
+/// it takes fewer instants after each key, and then fewer keys. The share of a track depends on the number of its
+/// telling keys; each track has at least one pose.
+///
+/// If nodes have skins, a track is judged with each of these skins: at its own keys, at keys of the joints, and at
+/// instants between. If these are more than `most`, some of them are chosen as above. The skins must outlive the poses.
 [[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 
-/// Returns each of these targets alone, at `steps` weights up to 1.
+/// Returns poses in which one of these targets has a weight and all others have none, at `steps` weights up to 1.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, std::size_t steps);
 
 }  // namespace chronormal::inline internal

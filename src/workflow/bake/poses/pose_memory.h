@@ -1,5 +1,5 @@
-/// Keeps vectors that were computed for poses of a mesh and are needed again and again: each viewer and each candidate
-/// is judged in the same poses. Private to workflow.
+/// Stores vectors that were computed for poses of a mesh. They are needed again and again, because each viewer and each
+/// candidate is judged in the same poses. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 
@@ -14,13 +14,13 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps the first vectors as long as there is room. Poses come in the same order each time, so that nothing would be
-/// found if the oldest were dropped. Threads: all functions may run at once.
+/// Stores vectors as long as there is room, and then no more. Poses come in the same order each time, so dropping the
+/// oldest vectors would leave nothing to be found. Threads: all functions may run at once.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
 
-  /// Returns the vectors kept for a pose, or nullptr. They stay as long as the memory does.
+  /// Returns the vectors stored for a pose, or nullptr. They are valid as long as this object.
   [[nodiscard]] const std::vector<Vec3d>* find(std::span<const double> pose) const {
     const std::vector<double> key(pose.begin(), pose.end());
     const std::scoped_lock lock(mutex_);

@@ -9,7 +9,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Limits for the weights that are held: in files with thousands of targets, not all are judged alone.
+// Limits for the weights in memory. In files with thousands of targets, not every target is judged alone.
 constexpr std::size_t kMostWeights = 8000000, kMostSteps = 8, kFewestSteps = 2;
 constexpr unsigned kRigSeed = 3;
 

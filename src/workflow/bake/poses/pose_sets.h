@@ -1,4 +1,4 @@
-/// The poses that a bake is judged at, by kinds. Private to workflow.
+/// The poses in which a bake is judged, by kinds. Private to workflow.
 ///
 /// Threads    pure; the poses are the same on every system.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_POSE_SETS_H_
@@ -16,8 +16,8 @@
 
 namespace chronormal::inline internal {
 
-/// The kinds of poses, in each of which a bake must be no worse than the file: its animations and the poses that stand
-/// still; each target alone; and poses that a program sets.
+/// The kinds of poses; in each kind a bake must be no worse than the file. kFile: the animations and the poses that
+/// stand still. kAlone: each target alone. kPosed: poses that a program sets.
 enum class PoseKind { kFile, kAlone, kPosed };
 inline constexpr std::size_t kPoseKinds = 3;
 
@@ -30,14 +30,14 @@ struct PoseSet {
 };
 
 /// Lists the poses of a mesh: about `most` poses of its tracks, as each viewer plays them; the poses that stand still;
-/// each target alone, unless only animations count; and those that the rig is made for. `numbers` has for each target
-/// the judged vertices that it turns; targets that turn none are in no pose.
+/// each target alone, unless only animations count; and the poses for which the rig is made. `numbers` has the judged
+/// vertices that each target turns. A target that turns none of them is left out of all poses.
 [[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                              std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                              bool animations_only);
 
-/// Returns the same poses with the weights of correction targets, as a viewer plays them from the tracks that will be
-/// written.
+/// Returns the poses of a set with the weights of correction targets, as a viewer plays these from the tracks that will
+/// be written.
 [[nodiscard]] std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights,
                                                        const ExtraDrivers& drivers, const Viewer& viewer);
 

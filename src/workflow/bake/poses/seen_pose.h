@@ -28,14 +28,14 @@ struct SeenPose {
 
 /// Tells whether any of these poses has a skin.
 [[nodiscard]] bool any_skinned(std::span<const SeenPose> poses);
-/// Returns poses without a skin, or all with the given one.
+/// Returns poses that are all seen through the given skin, or without a skin if it is nullptr.
 [[nodiscard]] std::vector<SeenPose> seen_through(PoseList poses, const MeshSkin* skin);
 /// Returns the weights of each pose.
 [[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
-/// Returns the same, but once for poses that differ only in the joints of a skin.
+/// Returns the weights of the poses, only once for neighbouring poses that differ only in the joints of a skin.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
-/// The skins of some poses, with their joints as they are in each.
+/// The skins of some poses, with the joints as each pose has them.
 class SkinsInPoses {
  public:
   explicit SkinsInPoses(std::span<const SeenPose> poses);
@@ -46,8 +46,8 @@ class SkinsInPoses {
   class Vertex {
    public:
     Vertex(const SkinsInPoses& skins, std::uint32_t vertex, std::size_t first, std::size_t count);
-    /// Returns the rendered normal in a pose, for a normal of any length: the normal itself if no skin carries it, and
-    /// otherwise a unit vector, or (0, 0, 0) if nothing is left of it.
+    /// Returns the normal that is rendered in a pose for a normal of any length. Without a skin this is the normal
+    /// itself; otherwise it is a unit vector, or (0, 0, 0) if the skin collapses the normal.
     [[nodiscard]] Vec3d seen(SkinRule rule, std::size_t pose, const Vec3d& normal) const;
 
    private:

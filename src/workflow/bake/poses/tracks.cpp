@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr int kMostHalvings = 10;  // of a piece between two keys of the file
+constexpr int kMostHalvings = 10;  // most halvings of the piece between two keys of the file
 
 using Cubic = std::array<double, 4>;
 using Sextic = std::array<double, 7>;
@@ -23,7 +23,8 @@ struct Knot {
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// A clamped value no longer gives a product or a straight line, so that the error of the normal is unknown.
+// Returns pi if any value was clamped, and otherwise 0. A clamped value is no longer a product or a straight line, so
+// the error of the normal is unknown.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
@@ -34,7 +35,7 @@ double error_of_clamping(const std::vector<float>& values) {
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
-// Returns a correction weight on a piece.
+// Returns the weight of a correction target on a piece.
 Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights) {
   const Sextic product = multiply(weights[extra.i], weights[extra.j]);
   const Sextic raised = multiply(weights[extra.i], Cubic{1, 1, 1, 1});
@@ -43,12 +44,12 @@ Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights)
   return result;
 }
 
-// Returns its slope, from the values and slopes of its factors.
+// Returns the slope of a correction weight, from the values a, b and the slopes of its two factors.
 double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, double slope_b) {
   return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
 }
 
-// Returns a bound of the distance between p and the cubic with the values and slopes of its ends.
+// Bounds the distance between p and the cubic that has the values and slopes of p at both ends.
 double cubic_error(const Sextic& p) {
   const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
   const Sextic raised = multiply(cubic, Cubic{1, 1, 1, 1});
@@ -57,8 +58,8 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Tells whether every correction weight is linear in time between all keys: one factor holds still, or it is no
-// product.
+// Returns true if every correction weight is linear in time between all keys: one of its factors is constant there, or
+// the weight is not a product.
 bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
@@ -69,7 +70,7 @@ bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> ex
   return true;
 }
 
-// Writes values only: for LINEAR, STEP, and single keys.
+// Writes only values, without tangents: for LINEAR and STEP tracks, and for single keys.
 void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras, std::vector<float>& values) {
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
@@ -78,7 +79,7 @@ void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras
   }
 }
 
-// A cubic spline while it is built, key by key: a row of knots for each.
+// A cubic spline that is built key by key; each key has a row of knots, one for each column.
 class Spline {
  public:
   explicit Spline(std::size_t columns) : columns_(columns) {}
@@ -130,7 +131,7 @@ class TrackExtender {
     }
     result.keys = keys_;
     if (keys_ > most_keys_) return result;
-    // The outermost slopes have no effect; those of the file stay.
+    // The slopes before the first key and after the last have no effect, so those of the file are kept.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
     }
@@ -160,7 +161,7 @@ class TrackExtender {
       error += extra.gain * cubic_error(exact);
       for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * extra.gain * std::fabs(b));
     }
-    // Times are float32, so the new key is where the file can place it.
+    // Times in files are float32, so a new key can only be at such a time.
     const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
     if (track_.interpolation == GltfInterpolation::kCubicSpline && error > std::fmax(tolerance_, rounding) &&
         halvings > 0 && from < middle && middle < to) {
@@ -180,7 +181,7 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
-    // Beyond the limit, keys are only counted.
+    // If there are too many keys, the rest is only counted.
     if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -202,7 +203,7 @@ class TrackExtender {
   const WeightTrack& track_;
   std::span<const ExtraWeight> extras_;
   double tolerance_;
-  std::size_t most_keys_, keys_ = 1;  // with the first
+  std::size_t most_keys_, keys_ = 1;  // number of keys, with the first
   Spline spline_;
   std::vector<Cubic> pieces_;
   double error_ = 0;
@@ -277,7 +278,7 @@ ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, 
     if (key + 1 == track.size()) break;
     const double to = track.keys.times[key + 1];
     for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
-      // Times are float32, so the new key is where the file can place it.
+      // Times in files are float32, so a new key can only be at such a time.
       const auto time = static_cast<float>(from + (to - from) * piece / pieces[key]);
       if (!(times.back() < time && static_cast<double>(time) < to)) continue;
       const double t = (static_cast<double>(time) - from) / (to - from);

@@ -1,10 +1,10 @@
 /// Extends weight tracks by the weights of correction targets, which are quadratic in other weights. Private to
 /// workflow.
 ///
-/// Between the keys of a LINEAR track such a weight is a quadratic in time. A CUBICSPLINE with the right tangents
-/// passes through it exactly, so the track becomes one. In a cubic spline, the product of two cubics has degree 6: keys
-/// are inserted until cubics between them are close enough. The weights in the file stay as they are, since a cubic is
-/// split exactly by its value and slope at the new key.
+/// Between the keys of a LINEAR track such a weight is quadratic in time. A cubic spline with the right tangents equals
+/// it exactly, so the track becomes a cubic spline. In a track that is a cubic spline already, the product of two
+/// weights has degree 6; keys are inserted until cubics between the keys are close enough. This does not change the
+/// other weights, because a cubic can be split exactly, by its value and slope at the new key.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
 
@@ -20,19 +20,19 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds a weight or a slope to float32, and clamps it: slopes of pieces shorter than 1e-38 seconds may be out of
-/// range.
+/// Rounds a weight or a slope to float32. Clamps it to the range of float32, which slopes exceed in pieces shorter than
+/// 1e-38 seconds.
 [[nodiscard]] float to_file(double number) noexcept;
 
 /// One correction target in a track: its weight is linear w_i + quadratic w_i w_j.
 struct ExtraWeight {
   std::size_t i = 0, j = 0;
   double linear = 0, quadratic = 1;
-  /// A bound of the angle by which a normal turns, in radians, if the weight has an error of 1.
+  /// A bound of the angle in radians by which a normal turns if the weight has an error of 1.
   double gain = 0;
 
   [[nodiscard]] double at(double w_i, double w_j) const noexcept { return linear * w_i + quadratic * w_i * w_j; }
-  /// Returns the same for the file, as the target with this index.
+  /// Returns the correction target in the form of the file; `target` is its index there.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t target) const;
 };
 
@@ -47,17 +47,17 @@ struct ExtendedTrack {
 /// The memory for each key and weight of an extended track, while it is made and afterwards.
 inline constexpr std::size_t kBytesPerWeight = 48;
 
-/// Extends a track by correction weights. Cubic splines get keys until no normal has a larger error than tolerance
-/// (radians), as far as float32 allows. If that takes more than most_keys, the result has no values, but the number of
-/// keys that it would have.
+/// Extends a track by correction weights. Cubic splines get more keys until the error of these weights turns no normal
+/// by more than tolerance (radians), as far as float32 allows. If that takes more than most_keys keys, the result has
+/// no values, but the number of keys that it would have.
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            double tolerance,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Extends a LINEAR track that stays LINEAR: between two keys it has the given number of equal, straight pieces. The
-/// weights in the file play as before (up to float32), and correction weights are right at all keys. If that takes more
-/// than most_keys, the result has no values, but the number of keys that it would have.
-/// pieces must have one number for each pair of neighbouring keys, none of them 0
+/// Extends a LINEAR track that stays LINEAR: the gap between two keys gets the given number of equal, straight pieces.
+/// The weights in the file play as before (up to float32), and correction weights are right at all keys. If that takes
+/// more than most_keys keys, the result has no values, but the number of keys that it would have. pieces must have one
+/// number for each pair of neighbouring keys, none of them 0
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
@@ -67,7 +67,7 @@ inline constexpr std::size_t kBytesPerWeight = 48;
 using ExtrasAt =
     std::function<void(std::size_t key, double part, std::span<const double> own, std::span<double> extras)>;
 
-/// Does the same with weights that a function computes.
+/// Extends a LINEAR track in the same way, by correction weights that a function computes.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, const ExtrasAt& extras_at,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());

@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kAreaBlock = 4096;            // elements
-constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces that are computed together if all areas are computed first
+constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces per block if all areas are computed first
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   std::uint32_t first = ~std::uint32_t{0}, end = 0;

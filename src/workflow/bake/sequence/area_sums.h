@@ -1,8 +1,8 @@
 /// Normals of elements as sums of the vector areas of the faces around them. Private to workflow.
 ///
-/// Each block of elements computes the areas of the faces around it by itself, so that they stay in a cache near the
-/// core. Faces between two blocks are computed twice. If that would be too many, because faces and elements are in no
-/// common order, all areas are computed first.
+/// Each block of elements computes the areas of its faces itself, so that they stay in a cache near the core. Faces
+/// between two blocks are computed twice. If faces and elements are not in a similar order, there would be too many
+/// such faces; then the areas of all faces are computed first.
 ///
 /// Threads    each function uses all cores (core/parallel.h); the same bits on any number of threads.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
@@ -26,28 +26,27 @@ using PointRows = AlignedArray<double>;
 
 class AreaSums {
  public:
-  /// The topology and the groups must outlive this.
+  /// Divides the elements into blocks. The topology and the groups must outlive this object.
   AreaSums(const Topology& topology, const NormalGroups& groups);
 
-  /// Calls body(elements, sums_of_a, sums_of_b) for blocks of elements, each with the sums of the areas at the points a
-  /// and b. The sums are valid until body returns. b may be nullptr, and then has no sums.
+  /// Calls body(elements, sums_of_a, sums_of_b) for blocks of elements, with the sums of the areas at the points a and
+  /// at the points b. The sums are valid until body returns. If b is nullptr, sums_of_b is empty.
   using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
-  /// Does the same. If the areas of an element cancel to less than 2^-20 of their size, so that the sum is hardly more
-  /// than their rounding error, the sum is computed by the function of_a or of_b, which is called on several threads at
-  /// once.
+  /// Does the same, but more exactly. If the areas of an element cancel to less than 2^-20 of their size, their sum is
+  /// hardly more than rounding error; then of_a() or of_b() computes it. These are called on several threads at once.
   using Exact = std::function<Vec3d(std::size_t element)>;
   void each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b, const Body& body) const;
 
  private:
-  // Replaces sums that cancel. first_face is the face of the first row of areas.
+  // Replaces sums of areas that cancel. first_face is the index of the face in the first row of areas.
   void settle(const double* areas, std::size_t first_face, IndexRange elements, const Exact& exact,
               std::span<Vec3d> sums) const;
   void write_areas(const PointRows& points, IndexRange faces, double* areas) const;
 
   const Topology* topology_;
   const NormalGroups* groups_;
-  std::vector<IndexRange> faces_of_block_;  // the faces around its elements, and those between them
+  std::vector<IndexRange> faces_of_block_;  // for each block, the faces around its elements and all faces between these
   bool are_scattered_ = false;
 };
 

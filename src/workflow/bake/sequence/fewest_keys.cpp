@@ -1,4 +1,4 @@
-// Extends every span of keys as far as its certificate allows.
+// Starts at each key and extends the line to the next key as far as its certificate allows.
 #include "workflow/bake/sequence/fewest_keys.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kKeyBlock = 128;
 
-// An instant: the segment that it lies in, or at the end of, and local t.
+// An instant: a segment, and the local time t in it, from 0 to 1.
 struct Instant {
   std::size_t segment = 0;
   double t = 0;
@@ -28,15 +28,15 @@ std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std:
   return result;
 }
 
-// Returns an instant of the sequence from a time, in which keyframe k is k. The last keyframe lies at the end of a
-// segment, and all others at a start.
+// Converts a time to an instant; keyframe k is at time k. The last keyframe is at the end of the last segment, and all
+// others are at the start of a segment.
 Instant instant_of(double time, std::size_t segments) {
   const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
   return {segment, time - static_cast<double>(segment)};
 }
 
-// Returns the directions of elements at a key. An element without a direction in its own segment takes the one from the
-// segment before.
+// Returns the directions of elements at a key. An element without a direction in the key's segment takes the direction
+// from the previous segment.
 template <class OfSegment>
 std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
   const std::vector<ControlNormals>& normals = of_segment(at.segment);
@@ -49,14 +49,14 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Holds the keyframes that determine the directions at two instants and everything between: the keyframes of the
-// segments that the instants lie in or begin, and of the segment before the first.
+// Holds all keyframes that affect the directions at two instants and in between: those of the segments of the instants,
+// and of the segment before the first.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// Judges lines between two instants. Times count keyframes: keyframe k is at k. If a keyframe cannot be read, status()
-// says so, and no answer is valid.
+// Judges straight lines between the normals at two instants. Times count keyframes: keyframe k is at k. After a
+// keyframe could not be read, status() has the error, and no answer is valid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
@@ -75,9 +75,10 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Returns whether a viewer may draw one line from a to b.
+  // Returns true if a viewer may interpolate linearly from a to b.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
-  // Returns the bound of the largest error, in radians. It stops at a bound above the tolerance.
+  // Returns a bound of the largest error on the line from a to b, in radians. Stops as soon as the bound exceeds the
+  // tolerance.
   [[nodiscard]] double error(double a, double b) {
     if (!hold(a, b)) return 0;
     const std::vector<Vec3d> from = directions(a), to = directions(b);
@@ -101,7 +102,8 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out the elements of one segment for which no line from a to b is within the tolerance.
+  // Leaves out (of all later judgements) the elements of a segment for which even the line from a to b within it
+  // exceeds the tolerance.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;
     const Instant start = at(a);
@@ -123,7 +125,8 @@ class LineJudge {
   void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
 
  private:
-  // The part of a line from a to b that lies in a segment: local t, and shares of the line.
+  // The part of a line from a to b that lies in a segment: its range of local t, and its range on the line, from 0 to
+  // 1.
   struct Part {
     double from_t, to_t, from_share, to_share;
   };
@@ -155,7 +158,7 @@ class LineJudge {
   [[nodiscard]] Vec3d position(const Instant& at, std::size_t v) const {
     return lerp(to_double(position(at.segment, v)), to_double(position(at.segment + 1, v)), at.t);
   }
-  // Returns whether all keyframes between a and b lie on the line.
+  // Returns true if all vertices of the keyframes between a and b lie on the straight line from a to b.
   [[nodiscard]] bool is_straight(double a, double b) {
     if (!hold(a, b)) return false;
     const Instant start = at(a), end = at(b);
@@ -180,8 +183,8 @@ class LineJudge {
 
 double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
 
-// Returns the last step up to `to` that a line from `from` may reach. It may certainly reach `reached`, which may be
-// `from`.
+// Returns the last step, at most `to`, that a line from step `from` can reach. The line certainly reaches `reached`,
+// which may equal `from`.
 std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
   std::size_t beyond = to + 1;
   while (beyond - reached > 1) {
@@ -206,7 +209,8 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   return last;
 }
 
-// Returns the number of pieces for each segment if all are split alike: as many as the one that needs most.
+// Returns the number of pieces per segment if all segments have the same number: the number that the worst segment
+// needs.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
   std::size_t pieces = 1;
   const auto suffices = [&](double start) {

@@ -1,12 +1,13 @@
-/// Finds the fewest keys of a sequence for viewers that draw straight lines between the normals of two keys. Private to
-/// workflow.
+/// Finds the fewest keys of a sequence for viewers that interpolate linearly between the normals of two keys. Private
+/// to workflow.
 ///
-/// Every key has the exact unit normals of its instant, and between two keys a viewer renders normalize((1-t) u_0 + t
-/// u_1). From the first key on, each next key is put as late as possible: as long as the line is within the tolerance
-/// of n(t) at every instant, by a certificate and not by samples (analysis/certificates/line_bound.h), and no vertex
-/// leaves the straight line between the two keys. A key may lie between two keyframes, where the motion is straight and
-/// the normal is known. Keyframes that add nothing, as in motions sampled by another program, are left out. If any part
-/// of a valid line is also valid, no choice has fewer keys.
+/// Every key has the exact unit normals of its instant. Between two keys with the normals u_0 and u_1, a viewer renders
+/// normalize((1-t) u_0 + t u_1). From the first key on, each next key is put as late as possible. Two conditions must
+/// hold on the whole line: its error from the true normals n(t) is within the tolerance, by a certificate and not by
+/// samples (analysis/certificates/line_bound.h), and no vertex leaves the straight line between the two keys. A key may
+/// lie between two keyframes, because the motion is straight there and the normal is known. Keyframes that add nothing,
+/// as in motions that another program has sampled, get no key. If every part of a valid line is also valid, no choice
+/// has fewer keys.
 ///
 /// Times      of a sequence: keyframe k is k, and instants between are in steps of 1 / kKeySteps.
 /// Threads    on all cores; the same keys on any number of them
@@ -37,14 +38,14 @@ struct SequenceKeys {
                            ///< kKeySteps pieces are tried
 };
 
-/// Chooses keys. tolerance is in radians, and above 0. progress gets the segment reached. Reads all keyframes three
-/// times, and holds those between two keys, with a few around them; key_pose() holds three. Errors of both: from
-/// reading keyframes.
+/// Chooses keys. tolerance is in radians, and above 0. progress() gets the segment that was reached. Reads all
+/// keyframes three times, and holds those between two keys and a few around these; key_pose() holds three. Errors of
+/// both functions: from reading keyframes.
 [[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                                const std::function<void(std::size_t segment)>& progress);
 
-/// The data of a key: the positions of its instant, as float32 deltas from keyframe 0, and the directions of all
-/// elements.
+/// The data of a key: the positions of its instant, as float32 deltas from keyframe 0, and the directions of the
+/// normals of all elements.
 struct KeyPose {
   std::vector<float> deltas;
   std::vector<Vec3d> directions;  ///< (0, 0, 0) if there is none in the segment

@@ -2,9 +2,9 @@
 /// workflow.
 ///
 /// N is the normal of key 0, and the target of a key has the delta from N to the normal at the key, both of length 1.
-/// Between two keys this draws a straight line between unit normals; one more unit normal for each segment, with the
-/// weight 4 t (1 - t), makes it right at t = 1/2 as well. Tracks are LINEAR: that weight is a chain of kBendPieces
-/// straight pieces.
+/// So a viewer interpolates linearly between two unit normals. One more target for each segment, the bend, leads to
+/// another unit normal. With the weight 4 t (1 - t) it makes the normal right at t = 1/2 as well. Tracks are LINEAR, so
+/// that weight is a chain of kBendPieces straight pieces.
 ///
 /// Threads    on all cores; the same bits on any number of them
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_HARMLESS_SEQUENCE_H_
@@ -21,7 +21,8 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kBendPieces = 8;
 
-/// Base normals, and the number of elements with a component of a delta beyond 1, which compressors clamp.
+/// Base normals of elements, and the number of elements that have a delta with a component beyond 1. Compressors clamp
+/// such components.
 struct HarmlessElements {
   std::vector<SequenceElement> elements;
   std::size_t without_room = 0;
@@ -37,12 +38,11 @@ struct SegmentEnds {
 [[nodiscard]] SegmentEnds segment_ends(std::span<const SequenceElement> elements, const SegmentForm& form,
                                        const std::vector<Vec3d>& before);
 
-/// Returns what a key adds to N, from the directions there.
+/// Returns the deltas from N to the given directions at a key.
 [[nodiscard]] std::vector<Vec3d> unit_key_deltas(std::span<const SequenceElement> elements,
                                                  std::span<const Vec3d> directions);
 
-/// The deltas that a segment adds if they reduce errors; and the angles, in radians, between rendered and right
-/// normals.
+/// The bends of a segment, if they reduce errors, and the angles between rendered and right normals, in radians.
 struct UnitBends {
   std::vector<Vec3d> deltas;       ///< empty if no element gains
   double gain = 0;                 ///< the sum over all elements of the reduction of their worst angle

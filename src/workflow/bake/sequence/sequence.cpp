@@ -1,5 +1,6 @@
-// Bakes a sequence. A viewer renders normalize(N + sum_k w_k D_k). With hat weights over the keys and t (1 - t) on one
-// more target for each segment, that is eq. 41, so that the normals are exact (docs/theory.md, section 15).
+// Bakes a sequence. A viewer renders normalize(N + sum_k w_k D_k). Each key has a target whose weight is a hat (1 at
+// the key, falling linearly to 0 at both neighbours), and each segment has one more target with the weight t (1 - t).
+// The sum is then eq. 41 of docs/theory.md (section 15), so the normals are exact.
 //
 //     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
 //     SequenceNormals                 normals at keys, and their bends between, from a stream       sequence_normals
@@ -10,7 +11,8 @@
 //     SequenceFile                    the arrays, the weights that drive them, and the mark, as a GLB   sequence_file
 //
 // The steps are passes over the keyframes. A pass holds two keyframes at a time or, to choose keys, those between two
-// keys. The arrays go to a spool. So memory does not grow with the number of keyframes; only fits of a weighting do.
+// keys. The arrays go to a spool. So memory does not grow with the number of keyframes, unless a weighting other than
+// area is fitted.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,8 +46,8 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
-// Returns the weighting that the stored normals of keyframe 0 clearly follow, or else area. It also returns area if the
-// fits of all segments, which are held in memory, would take too much.
+// Returns the weighting that the stored normals of keyframe 0 clearly follow, or area if there is none. Returns area
+// too if the fits of all segments, which must be in memory, would be too large.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
@@ -66,7 +68,7 @@ Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const B
       .detected;
 }
 
-// Returns the times as the file stores them: float32, and none before 0.
+// Returns the times as the file stores them: float32, shifted so that none is below 0.
 Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
   const double shift = std::max(-motion.keyframes[0].time, 0.0);
   if (shift > 0)
@@ -75,7 +77,7 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
-    // The slopes of weights between two keys are up to 1 over the time between them, which float32 must hold.
+    // The slope of a weight is up to 1 / (time between two keys), which float32 must be able to hold.
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
@@ -87,13 +89,13 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Wraps elements that are not limited by compressors.
+// Wraps the elements of encodings that do not limit deltas for compressors.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// Counts the polygons with triangles that face the other way: polygons that cross themselves.
+// Counts the polygons that cross themselves, because some of their triangles face the other way.
 std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
@@ -114,7 +116,7 @@ std::size_t count_crossing(const Topology& topology, const std::vector<float>& p
   return count;
 }
 
-// Returns the largest bound of the fits of a weighting, in degrees; 0 for areas.
+// Returns the largest error bound of the fits of a weighting, in degrees; 0 if normals are weighted by area.
 double largest_bound(const SequenceNormals& normals) {
   double largest = 0;
   for (const std::vector<double>& bounds : normals.bounds()) {
@@ -135,8 +137,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
                               "faces have no area there, or much less than later");
 }
 
-// Adds the targets of exact to the file, and notes which segments bend. Returns false if the elements are not final,
-// and a segment shows that they should be others.
+// Adds the targets of the encoding exact to the file, and notes which segments bend. If the elements are not final,
+// returns false as soon as a segment shows that they must be different.
 Result<bool> try_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, bool are_final,
                        const Step& step, SequenceTargets& targets, SequenceFile& file) {
   return each_exact_segment(normals, elements, are_final, [&](std::size_t s, const ExactSegment& values) {
@@ -155,8 +157,8 @@ bool any_frees_base(const std::vector<SequenceElement>& elements) {
   return std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
 }
 
-// Does the same in one pass over the keyframes if the first segment determines the elements, as it does for almost
-// every sequence, and otherwise in three.
+// Writes the targets of the encoding exact. For almost every sequence the first segment determines the elements, and
+// one pass over the keyframes is enough; otherwise it takes three passes.
 Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
                    SequenceTargets& targets, SequenceFile& file) {
   std::size_t furthest = 0;
@@ -180,7 +182,7 @@ Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>&
   return Success{};
 }
 
-// Adds the targets of endpoint to the file. Returns the largest remaining angle, in degrees.
+// Adds the targets of the encoding endpoint to the file. Returns the largest remaining angle, in degrees.
 Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               const Step& step, SequenceFile& file) {
   EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
@@ -197,7 +199,7 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
   return largest;
 }
 
-// Returns the number of targets that all of these viewers have room for.
+// Returns the number of targets that all of these viewers support.
 std::size_t room_for_targets(std::span<const Viewer> viewers) {
   std::size_t room = std::numeric_limits<std::size_t>::max();
   for (const Viewer& viewer : viewers)
@@ -216,7 +218,7 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Chooses the segments whose bends reduce errors most, as many as there is room for.
+// Chooses the segments that get a bend: as many as there is room for, and those in which it reduces errors most.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
   const std::size_t segments = normals.keys() - 1;
@@ -233,8 +235,8 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
   return is_bent;
 }
 
-// Adds the targets of harmless to the file, and notes which segments bend. Returns the largest remaining angle, in
-// degrees.
+// Adds the targets of the encoding harmless to the file, and notes which segments bend. Returns the largest remaining
+// angle, in degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
@@ -265,7 +267,7 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
   return kDegreesPerRadian * largest;
 }
 
-// Chooses keys, and adds a target for each but the first. Returns the times of all keys.
+// Chooses keys, and adds a target for each key except the first. Returns the times of all keys.
 Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormals& normals,
                                       const std::vector<SequenceElement>& elements, const std::vector<float>& keyframes,
                                       double tolerance, const Step& step, SequenceFile& file, SequenceBake& report) {
@@ -322,8 +324,7 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
                          std::string(viewer.beyond));
 }
 
-// Moves all viewers to the named ones: a sequence has no choice of candidates, and is made for the named viewers, or
-// for all.
+// Moves all viewers to the named viewers. A sequence has no choice of candidates, and is made for all of them alike.
 BakeOptions for_all_viewers(const BakeOptions& asked) {
   BakeOptions options = with_viewers(asked);
   options.viewers.insert(options.viewers.end(), options.spared.begin(), options.spared.end());
@@ -331,7 +332,7 @@ BakeOptions for_all_viewers(const BakeOptions& asked) {
   return options;
 }
 
-// Writes the arrays of the file to the spool, and passes all bytes of the file to `take`.
+// Bakes a sequence: writes the arrays of the file to the spool, and finally passes all bytes of the file to `take`.
 Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked, Spool spool,
                                  const GlbBuilder::Take& take) {
   const BakeOptions options = for_all_viewers(asked);
@@ -368,7 +369,7 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  if (!is_exact && normals.bounds().empty()) {  // exact checks deltas while it writes, and fits did before
+  if (!is_exact && normals.bounds().empty()) {  // exact checks deltas while it writes, and fits were checked before
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;

@@ -16,10 +16,11 @@ namespace {
 
 constexpr std::size_t kBlock = 256;
 
-// Relative to the length of its normal at key 0: an element with smaller or larger normals frees the base.
+// Limits for the length of an element's normals, relative to its normal at key 0. Beyond these limits, the base normal
+// N cannot be the normal at key 0.
 constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40;
 
-// The lengths of the control normals of an element, over segments.
+// The lengths of the control normals of an element: at key 0, and the smallest and largest of all segments.
 struct Sizes {
   double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;
 };
@@ -37,8 +38,9 @@ void look_at(const ControlNormals& n, bool is_first, SequenceElement& element, S
   sizes.largest = std::max(sizes.largest, size);
 }
 
-// Decides N of an element. With N = n_0 / |n_0|, float32 keeps the directions at other keys only if the normals there
-// are not much smaller; and if n_0 = 0 there is no such N.
+// Decides the base normal N of an element. Usually N = n_0 / |n_0|, where n_0 is the normal at key 0. This is
+// impossible if n_0 = 0, and it loses the directions at other keys in float32 if the normals there are much shorter
+// than n_0.
 void settle(const Sizes& sizes, SequenceElement& element) {
   constexpr double kWidest = 0x1p-60;
   const auto& [at_key_0, smallest, largest] = sizes;
@@ -50,7 +52,7 @@ void settle(const Sizes& sizes, SequenceElement& element) {
   element.scale = element.frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
 }
 
-// Returns whether a segment leaves an element as settle() made it from the segments before.
+// Returns true if a segment does not change the element that settle() made from the segments before it.
 bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
   if (element.has_none) return rounded_to_float(unit_normal_at(n, 0).vector) == Vec3d{};
   if (element.frees_base) return false;
@@ -62,7 +64,7 @@ bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
 }
 
 Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
-  // A delta that is only the rounding of N would needlessly fill the file.
+  // A delta that is only the rounding error of N is dropped, since it would needlessly fill the file.
   constexpr double kNothing = 0x1p-23;
   const Vec3d delta = (1 / element.scale) * at_key - element.normal;
   return !element.has_none && !(max_abs(delta) < kNothing) ? delta : Vec3d{};
@@ -149,11 +151,12 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
   return true;
 }
 
-// Only the ratio of the lengths at its two keys affects the directions in a segment. So every segment can have its own
-// best ratio, and lengths are products of the ratios.
+// Finds the deltas of a key for the smallest error in the segment before it. The directions in a segment depend only on
+// the ratio of the lengths at its two keys. So every segment can have the best ratio, and the lengths are products of
+// ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
-  constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;  // beyond, float32 sums lose digits
+  constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;  // beyond these lengths, sums in float32 lose digits
   EndDeltas result{before, 0};
   const auto fit = [&](std::size_t e, double& error) {
     const ControlNormals n = form.control_normals(e);

@@ -1,4 +1,4 @@
-/// Computes base normals and deltas of the elements of a sequence. Everything here is a function of the normals of the
+/// Computes base normals and deltas of the elements of a sequence. Everything here depends only on the normals of the
 /// sequence; sequence_file.h writes the results to a file. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
@@ -24,10 +24,10 @@ struct SequenceElement {
   bool has_none = true;     ///< it has no area in the whole sequence
 };
 
-/// Examines all segments, whose deltas must have been checked. Errors: from reading keyframes.
+/// Examines all segments to find the elements. The deltas must have been checked. Errors: from reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
-/// Examines the first segment alone; for almost every sequence the result is the same. Errors: kInvalidInput if a delta
-/// is too large for float32; errors from reading keyframes.
+/// Finds the elements from the first segment alone; for almost every sequence the result is the same. Errors:
+/// kInvalidInput if a delta is too large for float32; errors from reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals);
 
 /// The targets of one segment for the encoding exact, as float32 vectors one after the other.
@@ -39,17 +39,16 @@ struct ExactSegment {
   bool bends = false;            ///< any normal bends; otherwise `bend` is not valid
 };
 
-/// Calls body(segment, values) for every segment, one after the other, until it returns an error. Holds the keys of one
-/// segment at a time. If the elements are not final, this returns false as soon as a segment shows that
-/// sequence_elements() would return others. Errors: kInvalidInput if a delta is too large for float32; errors of body,
-/// and of the stream.
+/// Calls body(segment, values) for every segment in order, until it returns an error. Holds the keys of one segment at
+/// a time. If the elements are not final, returns false as soon as a segment shows that sequence_elements() would
+/// return different ones. Errors: kInvalidInput if a delta is too large for float32; errors of body, and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
     const SequenceNormals& normals, std::span<const SequenceElement> elements, bool are_final,
     const std::function<Status(std::size_t segment, const ExactSegment& values)>& body);
 
-/// The deltas that a key adds to N for the encoding endpoint, so that errors in the segment before it are smallest; and
-/// the largest remaining angle in that segment, in radians. `before` are the deltas of the key before. `bounds`, of the
-/// fits, are added to the angles, and may be empty.
+/// The deltas of a key for the encoding endpoint, with which the errors in the segment before the key are smallest, and
+/// the largest angle that remains in that segment, in radians. `before` are the deltas of the previous key. `bounds`
+/// has the error bounds of fits, which are added to the angles; it may be empty.
 struct EndDeltas {
   std::vector<Vec3d> deltas;
   double error = 0;

@@ -68,14 +68,15 @@ std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room,
   return room;
 }
 
-// Returns the bend of a segment, as an index into bent_segments; nothing if it has none.
+// Returns the index of a segment in bent_segments, or nothing if the segment has no bend.
 std::optional<std::size_t> bend_of_segment(const SequenceTargets& targets, std::size_t s) {
   const auto found = std::lower_bound(targets.bent_segments.begin(), targets.bent_segments.end(), s);
   if (found == targets.bent_segments.end() || *found != s) return std::nullopt;
   return static_cast<std::size_t>(found - targets.bent_segments.begin());
 }
 
-// Returns the track for the encoding exact: hats over the keys of the sequence, and t (1 - t) in bent segments.
+// Returns the track for the encoding exact: each key has a hat (its weight is 1 at the key and falls to 0 at both
+// neighbours), and each bent segment the weight t (1 - t).
 SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
   enum Row : std::size_t { kIn, kValue, kOut, kRows };
   const auto fill = [&targets, &times](std::size_t row, std::span<float> values) {
@@ -86,7 +87,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
     if (row % kRows == kValue) return set_key(key, 1);
     const bool is_in = row % kRows == kIn;
     if (key == (is_in ? 0 : targets.keys - 1)) return;
-    // Slopes are per second, with the length of the segment that a reader computes from the times in the file.
+    // Slopes are per second. A reader computes the length of the segment from the float32 times in the file, so this
+    // does too.
     const std::size_t s = is_in ? key - 1 : key;
     const auto slope = static_cast<float>(1 / (double{times[s + 1]} - double{times[s]}));
     set_key(s, -slope);
@@ -96,7 +98,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
   return {times, kRows * targets.keys, targets.count(), fill};
 }
 
-// Returns the track for the other encodings: hats and, in bent segments, 4 t (1 - t) at keys between.
+// Returns the track for the other encodings: each key has a hat, and each bent segment the weight 4 t (1 - t), with
+// more keys inside the segment.
 SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
   struct TrackKey {
     std::size_t key;
@@ -114,7 +117,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
     const double from = times[k], length = double{times[k + 1]} - from;
     for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
       const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
-      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between
+      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no such time between the keys
       add(time, {k, (double{time} - from) / length});
     }
   }
@@ -133,8 +136,8 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
   return track;
 }
 
-// Describes the weight t (1 - t), or 4 times that, as a product of the weights of two keys. If key 0 has no target, its
-// weight is 1 minus all others.
+// Describes the bend of a segment, t (1 - t) or 4 t (1 - t), as a product of the weights of two keys. If key 0 has no
+// target, its weight is 1 minus the sum of all others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
   const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;
@@ -258,7 +261,7 @@ Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string
   const std::size_t input = builder_.add_scalars(track.times, {true, true}),
                     output = builder_.add_table(track.rows, track.width, track.fill);
   std::move(bends_.begin(), bends_.end(), std::back_inserter(targets_));
-  // Accessors are numbered in the order in which the document names them.
+  // Numbers accessors in the order in which the document refers to them.
   std::vector<std::size_t> order;
   std::unordered_map<std::size_t, std::size_t> number_of;
   const auto number = [&](std::size_t accessor) {

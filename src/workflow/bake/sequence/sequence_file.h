@@ -38,7 +38,8 @@ struct SequenceTargets {
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// The vertices of a file. The vertices of the motion come first, and then their copies, one for each further normal.
+/// The vertices of a file: first the vertices of the motion, then copies of them, one for each further normal of a
+/// vertex.
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
@@ -50,17 +51,17 @@ struct SequenceVertices {
   bool are_elements = false;   ///< vertex i shows the normal of element i, and there are no other elements
 
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
-  /// Returns the position of each vertex of the file, from the positions of the motion, (V, 3): the given array, or a
-  /// new one in `room`.
+  /// Returns the position of each vertex of the file, from the positions of the motion (V, 3). The result is the given
+  /// array if there are no copies, or a new array in `room`.
   [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
-  /// Returns the vector of each vertex of the file, from the vectors of elements, (E, 3), and `none` for vertices
-  /// without a face: the given array, or a new one in `room`.
+  /// Returns the vector of each vertex of the file, from the vectors of elements (E, 3); vertices without a face get
+  /// `none`. The result is the given array or a new array in `room`.
   [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
                                                std::vector<float>& room) const;
 };
 
-/// The keys of an animation, and the values of its weights in rows, with one value for each target. Each key has one
-/// row or, in a cubic spline, three: in-tangents, weights and out-tangents. Rows are computed one by one, since their
+/// The keys of an animation and the values of its weights, as rows with one value for each target. Each key has one row
+/// or, in a cubic spline, three: in-tangents, weights and out-tangents. Rows are computed one at a time, because their
 /// number and their width both grow with the number of keys.
 struct SequenceTrack {
   std::vector<float> times;
@@ -71,12 +72,12 @@ struct SequenceTrack {
 /// The file while it grows, target by target. Its arrays go to the spool as they are made.
 class SequenceFile {
  public:
-  /// Writes key 0, whose positions are `base`, with the normals of the elements, and polygons as fans of triangles
-  /// (which keep the normals of the polygons). The topology must outlive this.
+  /// Begins the file with key 0: its positions are `base`, with the normals of the elements. Polygons become fans of
+  /// triangles and keep the normals of the polygons. The topology must outlive this object.
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
-  /// Places the node at the origin from which positions count.
+  /// Moves the node to the origin that was subtracted from positions.
   void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
 
   /// Begins again with other elements, as if nothing had been added.
@@ -84,25 +85,25 @@ class SequenceFile {
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
-  /// Adds a target for a key, with the deltas of its positions from key 0 as SequenceNormals returns them; none for key
-  /// 0 itself. normals has one float32 vector for each element, (E, 3).
+  /// Adds a target for a key. `positions` has its float32 deltas from key 0, as SequenceNormals returns them, and is
+  /// empty for key 0 itself. `normals` has one float32 vector for each element, (E, 3).
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for the bend of a segment; there may be several. Bends come after all other targets, whenever they
-  /// are added.
+  /// Adds a target for a bend of a segment; a segment may have several. Bends come after all other targets, in whatever
+  /// order they are added.
   void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
-  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have with `more`;
-  /// errors of the spool.
+  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have with `more`
+  /// bytes; errors of the spool.
   [[nodiscard]] Status check(std::uint64_t more = 0) const;
-  /// Adds the animation, puts the file together and passes its bytes to `take`. Returns their number. targets must
-  /// describe what was added. Errors: see GlbBuilder::finish()
+  /// Adds the animation, assembles the file, and passes its bytes to `take`. Returns the number of bytes. `targets`
+  /// must describe the targets that were added. Errors: see GlbBuilder::finish()
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
 
  private:
-  // Takes in `rest` the weights of the mesh that no animation plays.
+  // Finishes the file with this track. `rest` has the weights that the mesh has when no animation plays.
   [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest,
                                            const GlbBuilder::Take& take);
@@ -117,7 +118,7 @@ class SequenceFile {
   void begin(std::span<const float> base, std::span<const SequenceElement> elements);
   [[nodiscard]] Target target(std::string name, std::size_t positions, std::span<const float> normals);
   [[nodiscard]] std::size_t add_positions(std::span<const float> of_motion);
-  // Returns the accessor that all targets share that move nothing.
+  // Returns the accessor of zeros that all targets share which move no vertex.
   [[nodiscard]] std::size_t zero_positions();
   [[nodiscard]] std::span<const float> rounded(std::span<const Vec3d> of_elements);
 

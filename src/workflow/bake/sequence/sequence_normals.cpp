@@ -18,7 +18,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kVertexBlock = 8192;  // in one task
+constexpr std::size_t kVertexBlock = 8192;  // vertices in one task
 
 // Writes coordinate_at(i) for the three coordinates of each vertex; i is the index of the coordinate.
 template <class CoordinateAt>
@@ -67,7 +67,7 @@ Status SequenceNormals::check_deltas(std::size_t keys) const {
 }
 
 Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> deltas) {
-  constexpr std::size_t kTogether = 4096;  // without a branch for each
+  constexpr std::size_t kTogether = 4096;  // deltas that are checked together, without a branch for each
   for (std::size_t first = 0; first < deltas.size(); first += kTogether) {
     const std::span<const float> some = deltas.subspan(first, std::min(kTogether, deltas.size() - first));
     bool any_far = false;
@@ -81,7 +81,8 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
 }
 
 Status SequenceNormals::fit(Weighting weighting) {
-  // Fits have the length of the area at both ends, so that neighbours agree up to rounding.
+  // Every fit has at both ends the length of the normal by area. So the fits of neighbouring segments agree at their
+  // common key, up to rounding.
   constexpr double kSame = 1e-6;
   for (std::size_t s = 0; s + 1 < keys(); ++s) {
     if (Status status = hold(s, s + 1); !status) return status;
@@ -133,8 +134,8 @@ void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) 
 
 namespace {
 
-// Returns a function for the exact sums of the areas at the points a + b, in integers; both arrays are made when they
-// are first needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
+// Returns a function for the exact sums of the areas at the points a + b, computed in integers. The arrays a and b are
+// made when they are first needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
 template <class MakeA, class MakeB>
 AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
                            const MakeB& make_b) {
@@ -154,7 +155,7 @@ AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups,
   };
 }
 
-// Returns the deltas of a keyframe times 1 or -1, computed on this thread.
+// Returns the deltas of a keyframe, multiplied by sign (1 or -1). Computes them on this thread.
 std::vector<float> signed_deltas(std::span<const float> positions, std::span<const float> base, float sign) {
   std::vector<float> result(base.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = sign * delta_of(positions[i], base[i]);
@@ -193,7 +194,8 @@ std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   return vector_areas(positions, exact_at_key(key));
 }
 
-// The bend d, the sum of de x df, is twice the vector area of the polygon that the displacements of the corners make.
+// Computes the bend d = sum of de x df. It is twice the vector area of the polygon whose corners are the displacements
+// of the corners.
 std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;
@@ -214,7 +216,7 @@ void SequenceNormals::each_computed_block(std::size_t segment, Rows& rows, const
 }
 
 void SequenceNormals::find_offsets(VectorView<const float> stored) {
-  constexpr double kNone = 1e-4;  // radians
+  constexpr double kNone = 1e-4;  // radians; a smaller offset does not count
   if (stored.count == 0) return;
   const std::vector<Vec3d> n = computed_at_key(0);
   std::vector<ShownTurn> turns(n.size());

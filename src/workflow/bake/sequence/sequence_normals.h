@@ -1,7 +1,7 @@
-/// Computes the normals of a sequence in the form of eq. 40: one for each key, and one bend for each segment. Private
-/// to workflow.
+/// Computes the normals of a sequence in the form of eq. 40 of docs/theory.md: one normal for each key, and one bend
+/// for each segment. Private to workflow.
 ///
-/// A viewer sees the positions base + delta, both in float32: normals are computed from these positions, in double.
+/// A viewer sees the positions base + delta, both in float32. Normals are computed from these positions, in double.
 /// (They differ from the positions of the motion by half an ulp of the delta.)
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
@@ -25,34 +25,35 @@ namespace chronormal::inline internal {
 class SequenceNormals {
  public:
   /// Reads key 0 and, if the weighting is not area, all keyframes to fit all segments. If `stored` has the normals of
-  /// the corners at key 0, (corners, 3), their rotation from the geometry's normals there is applied at every instant.
-  /// Stream and groups must outlive this. Errors: kUsage if the fits of two neighbouring segments do not agree at their
-  /// key, which a hat cannot represent; errors of check_deltas(), if there are fits, and of the stream. Memory: for key
-  /// 0, and for the fits.
+  /// the corners at key 0, (corners, 3), their rotation away from the geometry's normals is applied at every instant.
+  /// Stream and groups must outlive the result. Errors: kUsage if the fits of two neighbouring segments do not agree at
+  /// their common key, because one target per key cannot represent both; errors of check_deltas(), if there are fits,
+  /// and of the stream. Memory: for key 0, and for the fits.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
-  /// Holds the positions of keys first to last, until the next hold. The functions below need the keys and segments
-  /// that they are called for to be held. Errors: from the stream.
+  /// Holds the positions of the keys from first to last, until the next call. The functions below may only be called
+  /// for keys and segments that are held. Errors: from the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
   /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; errors of
   /// the stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
-  /// Checks one key in the same way, from its deltas.
+  /// Checks the deltas of one key in the same way.
   [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
 
   /// Returns the positions of key 0: (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
   /// Returns the float32 deltas of a key from key 0, as a file stores them: (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
-  /// Writes them into existing memory.
+  /// Writes the float32 deltas of a key into existing memory.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
   /// Tells whether stored normals differ from the normals of the geometry.
   [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
-  /// Return n of every element at a key, and d of every element in a segment. O(corners), on all cores; or a copy.
+  /// Return the normals n of all elements at a key, and their bends d in a segment. O(corners), on all cores; with
+  /// fits, a copy.
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
 
@@ -60,18 +61,18 @@ class SequenceNormals {
   struct Rows {
     PointRows positions, displacements;
   };
-  /// Calls body(elements, n, d) for blocks of elements on all cores, with their normals at the second key of a segment,
-  /// and their bends in the segment.
+  /// Calls body(elements, n, d) for blocks of elements on all cores. n are their normals at the second key of a
+  /// segment, and d their bends in the segment.
   void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
-  /// Returns bounds of the error of the fits, in radians, for each segment and element; pi if nothing could be proven.
-  /// Empty for areas.
+  /// Returns error bounds of the fits for each segment and element, in radians; pi if no bound could be proven. Empty
+  /// if normals are weighted by area.
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  // Compute the normals of the geometry.
+  // Compute normals from the geometry, without offsets of stored normals.
   [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
   void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
@@ -135,7 +136,7 @@ template <class Body>
   return Success{};
 }
 
-/// Does the same for all segments.
+/// Calls body(segment, form) for all segments.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
   return each_segment(normals, normals.keys() - 1, body);

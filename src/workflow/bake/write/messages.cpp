@@ -15,10 +15,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The room for morphed attributes in viewers that keep them in vertex attributes (WebGL 1, the least that the
-// specification asks for).
+// The number of morphed attributes in viewers that keep them in vertex attributes. This is what WebGL 1 offers, and the
+// least that the glTF specification asks for.
 constexpr std::size_t kMorphedAttributes = 8;
-// A file that grows by this factor, or by a smaller one with more than a few correction targets, gets a warning.
+// A file that grows by the factor kLargeTimes gets a warning; if it has more than kFewExtras correction targets,
+// kLargeTimesOfMany is enough.
 constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
 constexpr std::size_t kFewExtras = 8;
 
@@ -66,7 +67,7 @@ std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings) {
   std::vector<std::string> texts;
   for (const MeshWarning& warning : warnings) {
     const auto meshes = meshes_of.extract(warning.sentence);
-    if (meshes.empty()) continue;  // said already
+    if (meshes.empty()) continue;  // this sentence has its text already
     const auto& [names, count] = meshes.mapped();
     const std::string more = count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "";
     texts.push_back(names + more + ": " + warning.sentence);
@@ -123,7 +124,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
-  // If nothing was asked for, the report states the remaining error.
+  // If no limit was requested, there is no warning, because the report states the remaining error.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
@@ -209,7 +210,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
         std::to_string(baked.without_base) +
         " vertices have faces without area in the base; their normals are wrong at weights near 0 and right otherwise");
   }
-  // All viewers that can be named have more room, but others have only this.
+  // The viewers that can be named support more targets, but other viewers support only this number.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) +
          " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "

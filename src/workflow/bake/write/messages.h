@@ -1,5 +1,5 @@
-/// The texts of a bake for people and viewers: warnings, and the drivers of its correction targets. Private to
-/// workflow.
+/// Texts that a bake writes: warnings for people, and a file that tells programs how to drive correction targets.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
 
@@ -18,16 +18,18 @@ namespace chronormal::inline internal {
 /// Writes how to drive the correction targets of all meshes, as the text of a file (docs/formats.md).
 [[nodiscard]] std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes);
 
-/// A sentence about a mesh.
+/// A warning about one mesh.
 struct MeshWarning {
   std::string mesh, sentence;
 };
-/// Returns warnings as text, "MESH: sentence"; a sentence that holds for several meshes appears once, for all of them.
+/// Returns warnings as text, "MESH: sentence". A sentence that applies to several meshes appears once, with all their
+/// names.
 [[nodiscard]] std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings);
 
 /// Adds a sentence for primitives that stay flat, if there are any.
 void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings);
-/// Adds a sentence if float32 cannot hold the drivers of a mesh's correction targets; `error` is that of its tracks.
+/// Adds a sentence if float32 cannot hold the weights of a mesh's correction targets. `error` is the error of its
+/// tracks.
 void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings);
 /// Adds a sentence if no candidate for a mesh is within the tolerance and the limits.
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,

@@ -50,7 +50,7 @@ MeshWriter::MeshWriter(const GltfDocument& document, const GltfShading& shading,
       has.tangents |= target.tangents;
     }
     has.normals |= is_shaded(p);
-    // A target may not be empty.
+    // A target must have at least one attribute.
     has.positions |= !has.normals && mesh_.primitives[p].vertex_count > 0;
   }
 }

@@ -1,5 +1,5 @@
-/// Writes one mesh as edits: arrays of normals and deltas go into the file, and everything that counts targets grows
-/// with them. Private to workflow.
+/// Writes one mesh as edits of the file: arrays of normals and deltas, and everything whose length is the number of
+/// targets, such as weights and names. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 
@@ -22,7 +22,7 @@ class ZeroVectors {
  public:
   ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
   [[nodiscard]] std::size_t of(std::size_t vertices);
-  /// Tells whether zeros are written as bytes too.
+  /// Returns true if zeros are stored as bytes, instead of as an accessor without a buffer view.
   [[nodiscard]] bool are_dense() const noexcept { return dense_; }
 
  private:
@@ -35,33 +35,34 @@ class ZeroVectors {
 /// the same attributes (section 3.7.2.2 of the specification): if one has an attribute, the others get zeros.
 class MeshWriter {
  public:
-  /// shading must have been read with this `smooth`. All arguments must outlive this.
+  /// Prepares a mesh for writing. `smooth` must be the value with which the shading was read. All arguments must
+  /// outlive this object.
   MeshWriter(const GltfDocument& document, const GltfShading& shading, bool smooth, ZeroVectors& zeros, GltfEdit& edit);
 
-  /// Tells whether the vertices of a primitive show normals of elements.
+  /// Returns true if the vertices of a primitive show normals of elements.
   [[nodiscard]] bool is_shaded(std::size_t primitive) const { return part_[primitive].has_value(); }
 
-  /// Replaces the base normals of some parts; normals has all parts, (V, 3). Errors: kInvalidInput if Draco compresses
-  /// them.
+  /// Replaces the base normals of some parts; `normals` has those of all parts, (V, 3). Errors: kInvalidInput if Draco
+  /// compresses a part that changes.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
-  /// Gives all targets tangents, in primitives that have some.
+  /// Makes all targets change tangents, in primitives that have tangents.
   void add_tangents();
-  /// Writes the deltas of normals and of tangents for a target of the mesh. Without deltas, the target only gets the
-  /// attributes that it lacks.
+  /// Writes the deltas of normals and tangents of one of the mesh's own targets. Without deltas, only adds attributes
+  /// that other targets have and this one lacks.
   void write_target(std::size_t target, const std::optional<TargetDeltas>& of_normals,
                     const std::optional<TargetDeltas>& of_tangents = {});
   /// Adds a target that moves no vertex.
   void append_target(const TargetDeltas& of_normals);
-  /// Gives weights and names to the appended targets. If no formula gives their weights, `rest` has them for each pose
-  /// that stands still, in the order of MeshWeights.
+  /// Sets weights and names of the appended targets. If no formula gives their weights, `rest` has these for each pose
+  /// that stands still (outside of animations), in the order of MeshWeights.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
-  /// Writes down what was done (docs/formats.md): in the mesh, where the next bake and an audit look for it, and where
-  /// there are extra targets, in the nodes that carry the mesh, for viewers that hand on the extras of nodes alone.
-  /// Returns the nodes whose extras are no object, which stay as they are.
+  /// Writes the mark of the bake (docs/formats.md): into the mesh, where the next bake and an audit look for it, and,
+  /// if there are correction targets, also into the nodes that carry the mesh, because some viewers pass on only the
+  /// extras of nodes. Returns the nodes whose extras are not an object; these stay as they are.
   [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
 
  private:
-  // The attributes that the targets of a primitive have in the end.
+  // The attributes that all targets of a primitive will have.
   struct Attributes {
     bool positions = false, normals = false, tangents = false;
   };
@@ -77,9 +78,9 @@ class MeshWriter {
   ZeroVectors& zeros_;
   GltfEdit& edit_;
   SharedParts parts_;
-  std::string pointer_;                           // of the mesh
-  std::vector<std::optional<std::size_t>> part_;  // of each primitive that is shaded
-  std::vector<Attributes> attributes_;            // of each primitive
+  std::string pointer_;                           // JSON pointer of the mesh
+  std::vector<std::optional<std::size_t>> part_;  // for each primitive, its part if it is shaded
+  std::vector<Attributes> attributes_;            // one for each primitive
 };
 
 }  // namespace chronormal::inline internal

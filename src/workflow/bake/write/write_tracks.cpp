@@ -1,5 +1,6 @@
-// A sampler may be shared by channels that drive other meshes, or something other than weights. It stays as it is if
-// one of these channels needs it; otherwise the first mesh takes it over. Every further mesh gets its own sampler.
+// A sampler may be shared by channels that drive other meshes, or something other than weights. If one of these
+// channels needs it, the sampler stays as it is; otherwise the first mesh changes it. Every further mesh gets a new
+// sampler.
 #include "workflow/bake/write/write_tracks.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ std::string item(const std::string& list, std::size_t index) {
 
 std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   const std::string text = edit.text(pointer);
-  double value = 0;  // 4.0 is an index too
+  double value = 0;  // a double, since 4.0 is an index too
   const bool is_number = from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
   return is_number ? static_cast<std::size_t>(value) : 0;
 }
@@ -49,14 +50,14 @@ std::string_view name_of(GltfInterpolation interpolation) {
   return interpolation == GltfInterpolation::kLinear ? "LINEAR" : "CUBICSPLINE";
 }
 
-// A sampler as it is written.
+// A sampler in the form in which it is written.
 struct Sampler {
-  std::string input, output;  // accessors
+  std::string input, output;  // indices of accessors
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   bool has_new_input = false, is_converted = false;
 };
 
-// Returns the mesh to whose weights, or one of them, a JSON pointer leads.
+// Returns the mesh that a JSON pointer names together with its weights, or with one of them.
 std::optional<std::size_t> mesh_of_weights(const GltfDocument& document, std::string_view rest) {
   const bool of_node = rest.starts_with("/nodes/");
   if (!of_node && !rest.starts_with("/meshes/")) return std::nullopt;
@@ -92,8 +93,8 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
 
 namespace {
 
-// Refuses files in which KHR_animation_pointer drives single weights, or weights of a mesh without a node: nothing
-// could drive the correction targets.
+// Refuses files in which KHR_animation_pointer drives single weights, or the weights of a mesh without a node, because
+// the weights of correction targets could not be animated there.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
@@ -168,7 +169,7 @@ class TrackWriter {
   [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
 
  private:
-  // Returns the mesh that a track drives, as an index into meshes_, or nullptr if it is none of them.
+  // Returns the mesh that a track drives, as an index into meshes_, or nullptr if it is not one of these meshes.
   [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
     const GltfNode& node = document_.nodes()[track.node];
     const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();
@@ -230,7 +231,7 @@ class TrackWriter {
   double tolerance_;
   GltfEdit& edit_;
   WrittenTracks written_;
-  std::map<std::size_t, std::size_t> place_of_mesh_;                               // in meshes_
+  std::map<std::size_t, std::size_t> place_of_mesh_;  // from the index of a mesh to its index in meshes_
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;  // by animation, keys, place of mesh
 };
 

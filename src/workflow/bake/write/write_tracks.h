@@ -1,5 +1,5 @@
-/// Writes the weight tracks of a file as edits: tracks that drive a mesh with correction targets get their weights too.
-/// Private to workflow.
+/// Writes the weight tracks of a file as edits. Tracks that drive a mesh with correction targets get the weights of
+/// these targets too. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_TRACKS_H_
 
@@ -22,8 +22,8 @@ struct GrownMesh {
   bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
 };
 
-/// Returns the JSON pointer of a channel in which KHR_animation_pointer drives weights of a mesh that no track drives:
-/// one weight, or those of a mesh without a node. Returns nothing if there is none.
+/// Finds a channel in which KHR_animation_pointer drives weights that no track can hold: a single weight of the mesh,
+/// or weights of a mesh without a node. Returns its JSON pointer, or nothing if there is none.
 [[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
                                                           const GltfEdit& edit);
 
@@ -33,8 +33,9 @@ struct WrittenTracks {
   std::size_t converted = 0;       ///< tracks that became cubic splines
 };
 
-/// Extends the tracks of all animations that drive these meshes. Cubic splines get keys until no normal has a larger
-/// error than tolerance (radians). Errors: see GltfDocument; kInvalidInput if an extension drives weights of any mesh.
+/// Extends all tracks that drive these meshes, in all animations. Cubic splines get more keys until the error of
+/// correction weights turns no normal by more than tolerance (radians). Errors: see GltfDocument; kInvalidInput if an
+/// extension drives weights of any of these meshes.
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
                                                  double tolerance, GltfEdit& edit);
 
