@@ -369,7 +369,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   if (!by_area && certified)
     return Error{ErrorCode::kUsage, "", "bounds can only be computed for normals weighted by area"};
 
-  // Errors are compared with the error of linear, so linear is computed even if it is not a row.
+  // Errors of all schemes are compared with those of linear, so linear is computed even if no row shows it.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
   std::vector<SchemeComparison> rows;
   for (const std::string& name : names) {
@@ -442,7 +442,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   const Status compared = run.over(
       stream, segment_keys(motion), run.rest(), std::max<std::size_t>(at_once / blocks, 1), [&](IndexRange segments) {
         all->enter(motion, segments.first, segments.end() - 1);
-        // Small segments are computed together, and large ones in several waves.
+        // Several small segments are computed together; a large segment takes several waves.
         const std::size_t wanted = segments.count * blocks;
         for (std::size_t first = 0; first < wanted; first += at_once) {
           const std::size_t count = std::min(at_once, wanted - first);

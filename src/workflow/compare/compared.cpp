@@ -9,10 +9,10 @@
 namespace chronormal {
 namespace {
 
-// Below this average, the error of linear is only rounding, and the errors of other schemes are not divided by it.
+// An average error of linear below this is only rounding, and errors of other schemes are not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
-// Finds the cheapest scheme within the tolerance. A scheme that was compared with no normal at all is never within it.
+// Finds the cheapest scheme within the tolerance. A scheme for which no normal could be compared does not count.
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
   std::optional<std::size_t> cheapest;
   for (std::size_t s = 0; s < schemes.size(); ++s) {

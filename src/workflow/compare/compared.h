@@ -28,22 +28,23 @@ struct ComparedSegment {
 using CompareRun = RecordedRun<ComparedSegment>;
 using ComparisonShard = ShardOf<Comparison, ComparedSegment>;
 
-/// Runs compare() on the share of the run. Known segments have no times. Errors: also kUsage for single errors or
-/// samples of a run that is divided, and for known segments of another comparison; errors of run.keep.
+/// Compares the run's share of the segments. Segments that are known from an earlier run have no times. Errors: also
+/// kUsage for single errors or samples of a run that is divided, and for known segments of another comparison; errors
+/// of run.keep.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options, CompareRun& run);
 
 /// Joins the shards of one comparison into the result of one run, without times. Errors: as join() returns them. There
 /// must be at least one shard.
 [[nodiscard]] Result<Comparison> merge(std::vector<ComparisonShard> shards);
 
-/// Merges the bounds of elements or of blocks. If two bounds are equal, the first is kept.
+/// Merges the bounds of elements or of blocks into `all`. If two bounds are equal, keeps the first.
 void add(CertifiedError& all, const CertifiedError& other);
 
-/// Adds the next results. Adding the same parts in the same order gives the same bits.
+/// Adds the results that follow. The same results added in the same order give the same bits.
 void add(SchemeTally& all, const SchemeTally& other);
 
-/// Derives the figures of a comparison from sums over this many segments. totals has the sums of each row, then the
-/// sums of linear if linear is not a row.
+/// Computes the figures of a comparison from sums over this many segments. `totals` has the sums of each row, and after
+/// these the sums of linear if no row is linear.
 void conclude(const std::vector<SchemeTally>& totals, std::size_t segments, bool certified, Comparison& comparison);
 
 }  // namespace chronormal::inline internal

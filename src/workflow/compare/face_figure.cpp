@@ -35,7 +35,7 @@ Vec3d sum_at(const FittedCurves& fitted, double t) {
   return sum;
 }
 
-// Appends the points of all levels of de Casteljau's algorithm at t below its nodes.
+// Appends the points of all levels of de Casteljau's algorithm at t. `level` has the nodes, which are not appended.
 void append_levels(std::vector<Vec3d> level, double t, std::vector<Vec3d>& points) {
   while (level.size() > 1) {
     for (std::size_t i = 0; i + 1 < level.size(); ++i)
@@ -45,7 +45,7 @@ void append_levels(std::vector<Vec3d> level, double t, std::vector<Vec3d>& point
   }
 }
 
-// Returns the frames that a quaternion scheme interpolates between, or nothing where it took its fallback.
+// Returns the two frames between which a quaternion scheme interpolates, or nothing if it used its fallback.
 std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion& element) {
   if (scheme == "quaternion:matrix") return matrix_frames(element);
   if (scheme == "quaternion:edge") return edge_frames(element);
@@ -58,8 +58,8 @@ std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion&
   return random_frames(element, seed);
 }
 
-// Returns the tangents of the frames at all times. The tangents of the best frames begin along the first edge, since
-// every other tangent turns with the same rotation and gives the same normals.
+// Returns the tangents of the frames at all times. For the best frames, any tangent may be chosen, because all turn
+// with the same rotation and give the same normals; these tangents begin along the first edge.
 std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& element, const FittedCurves* fitted,
                                std::span<const double> times) {
   Vec3d start;
@@ -83,7 +83,8 @@ std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& ele
   return tangents;
 }
 
-// Returns M, whose linear part is e1 e^0 + f1 f^0 + u1 u^0 with the dual basis e^0, f^0, u^0 of e0, f0, u0.
+// Returns the matrix M of the paper (eq. 8). Its linear part is e1 e^0 + f1 f^0 + u1 u^0, where e^0, f^0, u^0 is the
+// dual basis of e0, f0, u0.
 std::optional<std::array<std::array<double, 4>, 3>> matrix_of(const FaceFigure& figure, const ControlNormals& normals) {
   const auto edge = [&](std::size_t corner, std::size_t end) {
     return figure.corners[corner][end] - figure.corners[0][end];

@@ -52,14 +52,14 @@ struct FaceFigure {
   std::vector<double> times;                  ///< (S) t
   std::vector<Vec3d> normals;                 ///< (S) exact unit normals, with their limits; zero if there is none
   std::vector<double> lengths;                ///< (S) of n(t): twice the area
-  /// The paper's M (eq. 8): rows of the affine map that takes the first, the second and the last corner and the unit
-  /// normal from t = 0 to t = 1. Missing if the face has no area at t = 0 or at t = 1.
+  /// The paper's matrix M (eq. 8), by rows: the affine map from t = 0 to t = 1 of the first, the second and the last
+  /// corner and the unit normal. Missing if the face has no area at t = 0 or at t = 1.
   std::optional<std::array<std::array<double, 4>, 3>> matrix;
   std::vector<SchemeFigure> schemes;
 };
 
-/// Errors: kUsage for a face, segment or scheme that does not exist, and for fewer than 2 samples.
-/// Precondition: the motion is valid (validate() in motion/motion.h)
+/// Computes the figures of one face. Errors: kUsage for a face, segment or scheme that does not exist, and for fewer
+/// than 2 samples. Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<FaceFigure> face_figure(const Motion& motion, const FaceFigureOptions& options);
 
 }  // namespace chronormal::inline internal

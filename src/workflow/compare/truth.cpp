@@ -108,7 +108,7 @@ struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<std::vector<Motion::Keyframe>> curved;  // on each curved path, at the times of the keyframes between
+  std::vector<std::vector<Motion::Keyframe>> curved;  // for each path, poses at the times of `between`
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);

@@ -1,7 +1,7 @@
-// Examines every segment of a motion for causes of wrong normals, block by block and in waves of segments, and adds up
-// the findings in order. A wave examines vertices first, since the limit for small faces depends on the largest
+// Examines every segment of a motion for causes of wrong normals: block by block, in waves of segments, adding up the
+// findings in order. A wave examines vertices first, because the limit for small faces depends on the largest
 // coordinates of the keyframe. Then a quick test of sixteen faces at a time (analysis/signs/kernels/face_glance.h)
-// leaves only a few faces for the full test.
+// finds the few faces that need the full test.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
@@ -31,8 +31,8 @@
 namespace chronormal {
 namespace {
 
-// Half a unit in the last place of float32 moves an end of an edge by up to sqrt(3) such halves. The edge changes by up
-// to twice as much, and the cross product of two edges by twice as much again, times the longer edge.
+// The rounding error of a normal, relative to coordinate times edge. Rounding to float32 moves a point by up to sqrt(3)
+// times half a unit in the last place. An edge has two such ends, and a cross product two such edges.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
 // A block has this many faces or vertices, so that their control normals stay in the second-level cache. A wave has one
@@ -98,7 +98,7 @@ struct Box {
 
 // The vertices of one block of a segment, or of all of its blocks so far.
 struct VertexTally {
-  Box from, to;  // boxes of the keyframes judged in this segment
+  Box from, to;  // boxes of the keyframes that this segment judges
   Largest motion;
   std::size_t moved = 0;
 
@@ -125,7 +125,7 @@ void keep_larger(Largest& largest, const Largest& other) {
 
 // The findings in one block of faces of a segment, or in all of its blocks so far.
 struct SegmentTally {
-  KeyframeTally from, to;  // results of the keyframes judged in this segment
+  KeyframeTally from, to;  // results of the keyframes that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
   Largest turn;
   CurveCount curves;
@@ -171,7 +171,7 @@ std::size_t count_marked(const FaceMarks& marks, Mark mark) {
       std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
 }
 
-// Bounds the length of a normal that is only rounding error of its positions.
+// Bounds the length of a normal that consists only of the rounding error of its positions.
 double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
   double coordinate = 0, edge = 0;
   const Vec3d origin = to_double(positions[face[0]]);
@@ -183,7 +183,7 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges a face at one keyframe by its normal there. No coordinate of the keyframe is larger than `most`.
+// Judges a face at one keyframe by its normal there. `most` is the largest coordinate of the keyframe.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
   const double largest_rounding = kRounding * most * 2 * most;  // for a triangle
@@ -207,7 +207,7 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
   const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
-  double most_of_square = 0;  // squares up to this value belong to lengths that are not larger
+  double most_of_square = 0;  // a vector whose square is at most this is not longer than the longest so far
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;
@@ -220,13 +220,15 @@ void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& 
   }
 }
 
-// Returns the share s for which a.b > 0 and (a.b)^2 > s |a|^2 |b|^2 prove that a and b differ by less than the angle.
+// Returns a factor s: if a.b > 0 and (a.b)^2 > s |a|^2 |b|^2, then the angle between a and b is certainly smaller than
+// `angle`.
 double square_of_cosine_above(double angle) {
   const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
   return cosine * cosine * (1 + 1e-12);
 }
 
-// most_of_square must be square_of_cosine_above() of the largest angle so far.
+// Examines a face in a segment. most_of_square must be square_of_cosine_above() of the largest angle so far; a face
+// that turns by less needs no exact angle.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);
@@ -241,7 +243,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    return each.before != Vec3d{} && each.after != Vec3d{};  // and so not at an end
+    return each.before != Vec3d{} && each.after != Vec3d{};  // both sides have a normal, so it is not at an end
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
   if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
@@ -253,7 +255,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
 }
 
-// The largest coordinates at both ends of a segment, for the keyframes that it judges.
+// The largest coordinates at those ends of a segment whose keyframes it judges.
 struct JudgedEnds {
   std::optional<double> from, to;
 };
@@ -279,7 +281,7 @@ void inspect_faces(const Segment& segment, IndexRange faces, const JudgedEnds& j
   }
 }
 
-// Judges faces at a keyframe without a segment.
+// Judges faces at a keyframe that belongs to no segment.
 void inspect_still_faces(const Segment& segment, IndexRange faces, double most, FaceMarks& marks, SegmentTally& tally) {
   std::vector<ControlNormals> normals(faces.count);
   face_control_normals(segment, faces, normals);
@@ -288,7 +290,7 @@ void inspect_still_faces(const Segment& segment, IndexRange faces, double most, 
                         marks);
 }
 
-// Returns the block with this number, of `count` faces or vertices; empty past the last.
+// Returns the block with this number, of `count` faces or vertices in total; an empty range beyond the last block.
 IndexRange block_of(std::size_t number, std::size_t count) {
   const std::size_t first = std::min(number * kBlock, count);
   return {first, std::min(kBlock, count - first)};
@@ -329,7 +331,7 @@ Result<Inspection> inspect(MotionStream& stream,
     }
   }
 
-  // The first segment at a keyframe judges the keyframe. A keyframe without a segment is judged as a still mesh.
+  // Each keyframe is judged once: by the first segment that has it, or as a still mesh if no segment has it.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
   for (std::size_t s = segment_count; s > 0; --s) {

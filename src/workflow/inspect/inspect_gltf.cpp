@@ -14,7 +14,8 @@
 namespace chronormal {
 namespace {
 
-// Signed bytes round a component by up to 1 / 254, and so change a length by up to sqrt(3) times as much.
+// The tolerance for the length of a normal. Signed bytes round a component by up to 1 / 254, and so change the length
+// by up to sqrt(3) times as much.
 constexpr double kLengthTolerance = 1.7320508075688772 / 254;
 
 Status inspect_vertices(GltfGeometry geometry, GltfPrimitiveInspection& result) {
@@ -60,7 +61,7 @@ Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, 
   return result;
 }
 
-// Widens the range to the weights between two keys, if the tangents lead the spline past both keys.
+// Widens the range of weights if the spline between two keys goes beyond the weights at both keys.
 void add_spline(const Bernstein<double, 3>& weight, GltfTrackInspection& result) {
   const auto [lowest, highest] = std::minmax_element(weight.begin(), weight.end());
   if (result.lowest <= *lowest && *highest <= result.highest) return;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 40;
 
-// Exporters compute weights, and miss 0 and 1 slightly.
+// The distance from 0 or 1 at which a weight counts as 0 or 1, because exporters compute weights with rounding errors.
 constexpr double kRoundedWeight = 1e-3;
 
 std::string numbered(const char* what, std::size_t number) { return what + (' ' + std::to_string(number)); }
@@ -23,12 +23,13 @@ std::string faces(std::size_t count) { return counted(count, "face", "faces"); }
 std::string edges(std::size_t count) { return counted(count, "edge", "edges"); }
 std::string vertices(std::size_t count) { return counted(count, "vertex", "vertices"); }
 
-// Returns "12 faces have" or "1 face has".
+// Returns counted things with the right verb: "12 faces have" or "1 face has".
 std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns ", 30 times altogether" if some faces are reported more than once.
+// Returns the number of reports, ", 30 times in all", if some faces are reported more than once; otherwise an empty
+// text.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times altogether" : "";
 }
@@ -132,7 +133,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                "they separate later, so they must not be merged by their first positions");
 }
 
-// Returns "Head, primitive 1", and adds the node if several nodes have the mesh.
+// Returns the name of a part, "Head, primitive 1". Adds the node if several nodes have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
   std::string label = mesh_label(*gltf.document, part.mesh) + numbered(", primitive", part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)

@@ -23,14 +23,14 @@ struct Trouble {
 /// Lists all bad news, the worst first.
 [[nodiscard]] std::vector<Trouble> find_trouble(const Inspected& input);
 
-/// Return labels by which a person finds the place again: "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of
+/// Return labels by which a user finds a place in the file: "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of
 /// Head, primitive 1".
 [[nodiscard]] std::string keyframe_label(const Inspected& input, std::size_t keyframe);
 [[nodiscard]] std::string segment_label(const Inspected& input, std::size_t segment);
 [[nodiscard]] std::string face_label(const Inspected& input, std::size_t face);
 [[nodiscard]] std::string vertex_label(const Inspected& input, std::size_t vertex);
 
-/// Returns the name in glTF, such as "LINEAR".
+/// Returns the name of an interpolation in glTF, such as "LINEAR".
 [[nodiscard]] const char* interpolation_name(GltfInterpolation interpolation);
 
 /// Returns the name of a mesh, or "mesh 3" if it has none.

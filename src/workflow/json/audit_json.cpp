@@ -25,7 +25,7 @@ Json place_json(const AuditPlace& place, const char* moment) {
 
 const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
-// Adds the number of torn edges on average over samples, beyond 10, 20 and 40 degrees, and the largest at one sample.
+// Adds the average number of torn edges per sample, beyond 10, 20 and 40 degrees, and the largest number at one sample.
 void add_torn(const MotionError& error, Json& json) {
   if (error.samples == 0) return;
   Json average = Json::array();
@@ -165,7 +165,8 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
   return json;
 }
 
-// Returns the text of one input. Subjects are converted one by one, so that they are never all in memory as objects.
+// Returns the text for one input. Subjects are converted one by one, so that they are never all in memory as JSON
+// objects.
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));

@@ -33,11 +33,11 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// Keys for the kinds of poses: animations and static poses, single targets, and poses that a program sets.
+// Names of the kinds of poses in JSON: animations and static poses, single targets, and poses that a program sets.
 constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {
-  Json torn = Json::array();  // on average over poses, beyond 10, 20 and 40 degrees
+  Json torn = Json::array();  // average number over poses, beyond 10, 20 and 40 degrees
   for (const std::size_t tears : errors.tears)
     torn.push_back(errors.poses > 0 ? static_cast<double>(tears) / static_cast<double>(errors.poses) : 0);
   return {{"mean_degrees", errors.mean},

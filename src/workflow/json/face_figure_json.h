@@ -7,7 +7,8 @@
 
 namespace chronormal::inline internal {
 
-/// Vectors follow each other in flat arrays. Directions and degrees are rounded to 1e-7, as float32 has them.
+/// Returns the figures as an object, with vectors one after the other in flat arrays. Directions and degrees are
+/// rounded to 1e-7, the accuracy of float32.
 [[nodiscard]] Json face_figure_object(const FaceFigure& figure);
 
 }  // namespace chronormal::inline internal

@@ -8,14 +8,16 @@ Json json_of_command(const char* command, int schema) {
   return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", schema}};
 }
 
-// Returns the text, and escapes control characters from DEL on, which JSON need not escape; they stay the same strings.
+// Returns the object as text. Escapes control characters from DEL on, which JSON allows but terminals may interpret;
+// the strings stay the same.
 std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
 std::string with_items(std::string text, const std::string& name, std::size_t count,
                        const std::function<Json(std::size_t)>& item, bool is_indented) {
-  // Quotes inside strings are escaped, so only the list itself can match this text.
+  // The text of the empty list, name included, can only match the list itself, because quotes inside strings are
+  // escaped.
   const std::string list = '"' + name + (is_indented ? "\": []" : "\":[]"), margin(is_indented ? 4 : 0, ' ');
   const std::size_t at = text.find(list);
   if (at == std::string::npos || count == 0) return text;

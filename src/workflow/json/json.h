@@ -33,11 +33,11 @@ struct NamedComparison {
   TargetNames targets = {};  ///< if the motion is a set of targets
 };
 
-/// Returns the text of comparisons. `several` nests the inputs, even if there is only one. Without times the text is
-/// the same on every run. inputs must not be empty.
+/// Returns the text of comparisons. `several` writes a list of inputs, even if there is only one. Without times the
+/// text is the same on every run. inputs must not be empty.
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
 
-/// The text of input names the file that the face belongs to.
+/// Returns the text of the figures of a face. `input` is the name of the file of the face.
 [[nodiscard]] std::string face_figure_json(const std::string& input, const FaceFigure& figure);
 
 struct NamedBlendComparison {
@@ -73,10 +73,12 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors of each candidate for each mesh, as --encode smallest compares them.
+/// Returns the text that lists the targets, bytes and errors of each candidate for each mesh, as --encode smallest
+/// compares them.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
-/// Returns the text of an answer; input is the name of the queried file. Columns are arrays, named as in a .npz file.
+/// Returns the text of an answer; input is the name of the file. Columns are arrays with the same names as in a .npz
+/// file.
 [[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::inline internal

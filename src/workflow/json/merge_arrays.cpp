@@ -25,7 +25,7 @@ struct ShardRows {
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  // Tells whether the shapes agree. Matching checksums imply it, unless somebody forged the parts.
+  // Returns true if the shapes agree. If the checksums match, the shapes do too, unless somebody forged the parts.
   [[nodiscard]] bool is_like(const ShardRows& other) const {
     return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
@@ -56,7 +56,7 @@ Result<ShardRows> open_rows(const std::string& path) {
   return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
-// Checks that every row is in exactly one of the shards, which are in order.
+// Checks that every row is in exactly one of the shards. The shards must be in order.
 Status check_rows(const std::vector<ShardRows>& all) {
   const std::uint64_t count = all.front().place.total;
   std::uint64_t next = 0;
@@ -99,7 +99,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   for (const ShardRows& rows : all) {
     std::uint32_t sum = 0;
     std::uint64_t at = 0;
-    // Reads the bytes of a part up to a place, and copies them if is_copied.
+    // Reads the bytes of a part up to offset `end`, and copies them to the output if is_copied.
     const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
       while (at < end) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));

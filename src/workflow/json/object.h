@@ -20,12 +20,14 @@ using Json = nlohmann::ordered_json;  // fields stay in the order of the documen
 [[nodiscard]] std::string json_text(const Json& json);
 
 /// Inserts objects into a text in place of its empty list `name`, which must come before any other list of this name.
-/// The objects are created one by one, so that a million objects are never in memory together. is_indented formats them
-/// as json_text() does, for a list of the outermost object; otherwise all objects are on one line.
+/// Creates the objects one by one, so that a million objects are never in memory together. If is_indented is true, the
+/// list must be a member of the outermost object, and is formatted as by json_text(); otherwise all objects are on one
+/// line.
 [[nodiscard]] std::string with_items(std::string text, const std::string& name, std::size_t count,
                                      const std::function<Json(std::size_t)>& item, bool is_indented);
 
-/// Writes which curves were cut into which pieces, and how far they bend; writes nothing if no curve was cut.
+/// Writes which curves were cut into which pieces, and the largest angle by which they bend. Writes nothing if no curve
+/// was cut.
 void put_path(Json& json, const std::optional<CutPath>& cut);
 
 template <class T>

@@ -1,5 +1,5 @@
-// Writes and reads parts as JSON. Numbers are in lists, in the order of the members of their structs. Sums keep their
-// bits, since the shortest text of a double reads back as the same double.
+// Writes and reads parts as JSON. The members of a struct are a list of numbers, in their order. Sums keep their bits,
+// because the shortest text of a double is read back as the same double.
 #include "workflow/json/parts.h"
 
 #include <algorithm>
@@ -68,7 +68,7 @@ SchemeTally read_tally(Numbers numbers) {
   return tally;
 }
 
-// Writes an error. Most of the fine bins are empty, so each other bin is written with its number.
+// Writes an error. Most bins of the fine histogram are empty, so only the others are written, each with its number.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,
                error.sum,
@@ -327,7 +327,7 @@ AuditShard read_audit(const JsonView& part) {
   return shard;
 }
 
-// The parts that were read, and the fields that all of them share. One of the two lists is empty.
+// The parts that were read, and their common fields. One of the two lists is empty.
 struct ReadParts {
   std::string name;
   std::optional<double> tolerance;
@@ -335,7 +335,7 @@ struct ReadParts {
   std::vector<AuditShard> audits;
 };
 
-// Returns the checksums of a part, extended by its name of the input and its tolerance.
+// Returns the checksums of a part, together with checksums of its tolerance and of the name of its input.
 TaskChecksums checksums_of(const JsonView& part) {
   TaskChecksums checksums = read_task_checksums(part);
   NumberChecksum input, tolerance;

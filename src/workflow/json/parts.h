@@ -35,8 +35,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string audit_part(const std::string& input, const Audit& shard, const AuditRun& run,
                                      std::optional<double> tolerance);
 
-/// Convert one segment to its line of text in a part, and back; the argument name is for messages. Errors:
-/// kInvalidInput with the place in the text.
+/// Convert one segment to its line of text in a part, and back; `name` is for messages. Errors: kInvalidInput with the
+/// place in the text.
 [[nodiscard]] std::string segment_part(const ComparedSegment& segment);
 [[nodiscard]] std::string segment_part(const SegmentErrors& segment);
 [[nodiscard]] Result<ComparedSegment> read_compared_segment(std::string_view text, const std::string& name);
@@ -53,9 +53,9 @@ struct MergedParts {
   bool is_within = true;
 };
 
-/// Joins the parts of one comparison or one audit, which may come in any order. Errors: kInvalidInput for a text that
-/// is not a part, with the place in it, or that was damaged; kUsage for parts of two different tasks or inputs, with
-/// the names of both, or if some segment is not in exactly one part. There must be at least one part.
+/// Joins the parts of one comparison or one audit, which may come in any order; there must be at least one. Errors:
+/// kInvalidInput for a text that is not a part or was damaged, with the place in it; kUsage for parts of two different
+/// tasks or inputs, with the names of both, or if some segment is not in exactly one part.
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
 /// Joins parts of comparisons only, into the result of one run without times and names of targets.

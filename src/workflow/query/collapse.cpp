@@ -23,7 +23,7 @@ std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart&
   return found;
 }
 
-// Returns how many bytes these rows take in the answer.
+// Returns the number of bytes that these rows take in the answer.
 std::uint64_t bytes_of_collapses(const std::vector<FaceCollapses>& found) {
   constexpr std::uint64_t kBytesPerCollapse = 2 * sizeof(std::int64_t) + 9 * sizeof(double) + 1;
   constexpr std::uint64_t kBytesPerAlways = 2 * sizeof(std::int64_t);

@@ -1,5 +1,5 @@
-// Answers the question `cones`: the cone that contains every normal of a face, and bounds of meshlets that hold while
-// they deform.
+// Answers the query `cones`: a cone around every normal of a face, and bounds of meshlets that hold for the whole
+// deformation.
 
 #include "chronormal/analysis/cones.h"
 
@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kMostTriangles = 512;  // meshoptimizer's limit for a meshlet
 constexpr float kConeWeight = 0.5F;          // meshlets whose faces point in similar directions are culled more often
 
-// Returns the half angle in degrees, rounded up.
+// Returns the half angle of a cone in degrees, rounded up.
 double degrees_of(const NormalCone& cone) { return half_angle(cone) * kDegreesPerRadian * (1 + 0x1p-48); }
 
 struct Meshlets {
@@ -32,8 +32,8 @@ struct Meshlets {
   }
 };
 
-// Builds meshlets with meshoptimizer, and finds their faces, since meshoptimizer returns the corners of triangles and
-// may rotate them.
+// Builds meshlets with meshoptimizer and finds the faces in them. meshoptimizer returns only the corners of triangles,
+// and may rotate the corners.
 Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   const std::span<const std::uint32_t> corners = motion.topology.corners();
   const std::vector<float>& positions = motion.keyframes.front().positions;
@@ -62,7 +62,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
       const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
       const unsigned* const global = &vertices[meshlet.vertex_offset];
       const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
-      // Each of several duplicate faces is taken once, one after the other.
+      // If several faces have the same corners, each is taken once.
       auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
       while (taken[found->second] != 0) ++found;
       taken[found->second] = 1;

@@ -16,7 +16,7 @@ struct Passed {
   Crossing crossing;
 };
 
-// Finds the places of points at a time of the motion, relative to its origin, in float32 like its vertices.
+// Returns the positions of points at a time of the motion: relative to its origin and in float32, like its vertices.
 std::vector<float> places_at(const PointPaths& points, const std::array<double, 3>& origin, double share) {
   std::vector<float> places(points.from.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<float> places_at(const PointPaths& points, const std::array<double, 
   return places;
 }
 
-// Tells whether the faces of a closed mesh look inwards: its volume is then negative, far beyond rounding.
+// Returns true if the faces of a closed mesh face inwards. Its volume is then negative by much more than rounding.
 bool is_inside_out(const Topology& topology, const std::vector<float>& positions) {
   const auto place = [&](std::uint32_t vertex) {
     const auto coordinate = [&](std::size_t axis) {

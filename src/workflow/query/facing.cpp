@@ -13,12 +13,12 @@
 namespace chronormal {
 namespace {
 
-// The beginning and the end of an interval, each known to lie between two instants.
+// An interval of t. Its beginning and its end are each known to lie between two numbers.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-// Names a face, vertex or corner.
+// A face, vertex or corner that shows its front, and the interval in which it does.
 struct Front {
   std::size_t element = 0;
   Interval when;
@@ -45,7 +45,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
     if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
-    // At an instant where the face is only touched edge-on, one interval ends and the next begins.
+    // Where a face turns to its edge and back, without showing the other side, one interval ends and the next begins.
     if (is_front) {
       when.to = {change.lower, change.upper};
       close();
@@ -56,7 +56,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (is_front) close();
 }
 
-// Returns the view in one segment: an eye moves evenly over the time of the motion.
+// Returns the view in one segment. A moving eye moves at constant speed over the whole motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   if (view.from == view.to) return view;
   return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),
@@ -68,7 +68,8 @@ void add_facing(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
 }
 
-// Finds when outputs face the viewer. Vertices at one point have one normal, and see the viewer alike.
+// Finds when outputs face the viewer. Vertices at the same point with the same normal have the same result, computed
+// once.
 Found facing_of_outputs(const Segment& segment, const View& view, const AskedOutputs& outputs,
                         const SegmentPart& part) {
   std::vector<std::optional<Facing>> facings(outputs.element_count());
@@ -101,7 +102,7 @@ Found facing_of(const Segment& segment, const View& view, bool with_silhouettes,
   return found;
 }
 
-// Returns how many bytes these rows take in the answer.
+// Returns the number of bytes that these rows take in the answer.
 std::uint64_t bytes_of_fronts(const Found& found) {
   constexpr std::uint64_t kBytesPerFront = 2 * sizeof(std::int64_t) + 4 * sizeof(double);
   constexpr std::uint64_t kBytesPerSilhouette = 5 * sizeof(std::int64_t) + 4 * sizeof(double);
@@ -137,7 +138,7 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const bool are_faces = elements.kind == ElementKind::kFaces;
   if (silhouettes && !are_faces)
     return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes can only be listed for faces; leave --elements out"};
-  // The eye is relative to the origin of the motion, like vertices.
+  // Makes the eye relative to the origin of the motion, like the vertices.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
   if (view.is_eye) {

@@ -1,4 +1,4 @@
-/// The loop that all questions share, with one result for each part of a segment, and limits on the size of an answer.
+/// The loop that all queries share, with one result for each part of a segment, and limits on the size of an answer.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
@@ -23,8 +23,8 @@ namespace chronormal::inline internal {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
 
-/// Checks that an answer may have a row of so many bytes for every face, vertex or corner of every part. Errors: of
-/// Expansion::check().
+/// Checks that the limit allows an answer with rows of bytes_per_row bytes: one for every face, vertex or corner of
+/// every part. Errors: of Expansion::check().
 [[nodiscard]] inline Status check_rows(std::size_t rows_of_part, std::string_view what,
                                        std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
                                        const QuerySpan& span) {
@@ -33,10 +33,11 @@ namespace chronormal::inline internal {
                                   "the answer for every " + std::string(what) + " of every segment");
 }
 
-/// The vertices or corners whose normals are requested. Each has its vertex, and the faces whose sum is its normal.
+/// The vertices or corners whose normals are requested. Each has a vertex, and an element: the faces that determine its
+/// normal.
 class AskedOutputs {
  public:
-  /// Errors: of make_groups()
+  /// Groups the corners of a motion by the options. Errors: of make_groups()
   [[nodiscard]] static Result<AskedOutputs> make(const Motion& motion, const ElementOptions& options) {
     Result<NormalGroups> groups = make_groups(motion, options);
     if (!groups) return groups.error();
@@ -61,14 +62,14 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// A check that an answer stays within its span's limit while it grows, if the number of rows is not known before. The
-/// size of the written answer may be a little larger, and the writer checks it once more.
+/// Checks that an answer of unknown length stays within the limit of its span while it grows. The written answer may be
+/// slightly larger, so the writer checks it once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part, the `done`th of `total`. Errors: as Expansion::check() returns them, once the sum
-  /// so far is too large.
+  /// Adds the bytes of another part, number `done` of `total`. Errors: those of Expansion::check(), as soon as the sum
+  /// is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(bytes_,
@@ -81,8 +82,8 @@ class RowsInBounds {
 };
 
 /// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. Each round
-/// answers as many parts as there are threads, and after each round the total bytes_of(result) must be in bounds.
-/// Errors: as RowsInBounds::add() returns them.
+/// handles as many parts as there are threads, and then checks the sum of bytes_of(result) against the limit. Errors:
+/// those of RowsInBounds::add().
 template <class T, class Answer, class BytesOf>
 [[nodiscard]] Result<std::vector<T>> for_bounded_parts(std::span<const SegmentPart> parts, const QuerySpan& span,
                                                        const QueryProgress& progress, const Answer& answer,
@@ -104,8 +105,8 @@ template <class T, class Answer, class BytesOf>
   return results;
 }
 
-/// Calls answer(part) for every part, like for_parts_in_bounds(), if check_rows() has already limited the size of the
-/// answer.
+/// Calls answer(part) for every part, like for_bounded_parts(), but without its check of the size: check_rows() must
+/// have limited the answer already.
 template <class T, class Answer>
 [[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
                                        const Answer& answer) {

@@ -31,8 +31,8 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// Returns the t of a time. If t is not a double, returns the next double towards `end`, so that a part holds the whole
-// span.
+// Converts a time to t. If the result is not exactly a double, rounds it towards `end`, so that the part contains the
+// whole span.
 double t_towards(const Segment& segment, double time, double end) {
   const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
   return t.is_double() ? t.t : std::nextafter(t.t, end);

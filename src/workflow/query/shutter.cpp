@@ -1,5 +1,5 @@
-// Answers the question `shutter`: the normal that a renderer should use while the shutter is open, and the error of
-// interpolating between the ends.
+// Answers the query `shutter`: the normal that a renderer should use while the shutter is open, and the error of
+// interpolating between the normals at both ends instead.
 
 #include "chronormal/analysis/cones.h"
 
@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// The means of all faces, vertices or corners over a part of a segment, or over parts that follow each other.
+// The mean normals of all faces, vertices or corners over a part of a segment, or over consecutive parts.
 struct Means {
   std::vector<ShutterNormal> normals;
   std::vector<Vec3d> from, to;  // unit normals at both ends
@@ -38,7 +38,7 @@ Means means_of(const Motion& motion, const SegmentPart& part) {
   return means;
 }
 
-// Computes the means of outputs. Vertices at one point have one normal.
+// Computes the means of outputs, once for each element, because vertices at one point share a normal.
 Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   struct One {
@@ -67,7 +67,7 @@ Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const 
   return means;
 }
 
-// Averages the means of all parts. Each part has its duration as weight.
+// Averages the means of all parts, weighted by the durations of the parts.
 Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::span<const Means> found) {
   Means whole = found.front();
   whole.to = found.back().to;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kNone = kNoReportElement;
 
-// The faces of a part, each a run of triangles.
+// The faces of a part. Each is a range of triangles.
 struct Faces {
   explicit Faces(const ModelPart& part) {
     const std::size_t triangles = part.triangles.size() / 3;
@@ -29,12 +29,13 @@ struct Faces {
     return std::span(part.triangles).subspan(3 * first[face], 3 * (first[face + 1] - first[face]));
   }
 
-  std::vector<std::size_t> first;  // first triangle of each face, and the end
+  std::vector<std::size_t> first;  // first triangle of each face, then the number of triangles
 };
 
 // A list of numbers for each element, stored one after the other.
 struct ListsOfElements {
-  // each(use) must call use(element, number) for all entries, in order. Entries without an element are left out.
+  // Collects the lists. each(use) must call use(element, number) for all entries, in order. Entries whose element is
+  // kNone are left out.
   template <class Each>
   ListsOfElements(const ModelPart& part, const Each& each) : offsets(part.elements + 1) {
     each([&](std::uint32_t e, std::size_t) {
@@ -61,7 +62,7 @@ ListsOfElements faces_of_elements(const ModelPart& part, const Faces& faces) {
           }};
 }
 
-// Calls use(corner, element) for the terms of all sums over polygons.
+// Calls use(corner, element) for each corner that an element adds up.
 template <class Use>
 void for_terms(const ModelPart& part, const Use& use) {
   const ModelTruth& truth = part.truth;
@@ -78,7 +79,7 @@ std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   return result;
 }
 
-// Lists the vertices that the truth of each element needs, besides the vertices of its triangles.
+// Lists the vertices that the true normal of each element needs in addition to the vertices of its triangles.
 ListsOfElements vertices_of_truths(const ModelPart& part) {
   const ModelTruth& truth = part.truth;
   const std::vector<std::uint32_t> polygon_of = polygons_of_corners(truth);
@@ -97,8 +98,8 @@ struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
 
-// Keeps the elements around the worst places, ring after ring, until their faces have this many vertices; always keeps
-// the elements of the places themselves.
+// Keeps the elements around the worst places, one ring after the other, until their faces have most_vertices vertices.
+// The elements of the worst places themselves are always kept.
 Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
   const ModelPart& part = model.parts[number];
   const Faces faces(part);
@@ -133,7 +134,7 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Returns fewer triangles with the same vertices. The border of the triangles stays the same if possible.
+// Returns fewer triangles with vertices of the same mesh. Keeps the border of the triangles if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};
@@ -143,7 +144,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   std::vector<std::uint32_t> result(triangles.size());
   std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                        kStride, most, kAnyError, meshopt_SimplifyLockBorder);
-  // The topology or the borders of a mesh may prevent simplification. Then only its shape is kept.
+  // The topology or the borders of a mesh may prevent simplification. Then another method keeps only the rough shape.
   if (count > most + most / 2)
     count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                    kStride, most, kAnyError);
@@ -172,7 +173,8 @@ void keep_vectors(const std::vector<bool>& kept, const std::vector<std::uint32_t
   for (std::uint32_t& v : vectors.vertices) v = number[v];
 }
 
-// Keeps the truth of kept elements, and renumbers its vertices and elements. The part must still have the old numbers.
+// Keeps the truth of kept elements, and renumbers its vertices and elements. The other members of the part must still
+// have the old numbers.
 void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, const std::vector<std::uint32_t>& element,
                 ModelPart& part) {
   ModelTruth& truth = part.truth;
@@ -216,7 +218,7 @@ void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, cons
   }
 }
 
-// Stores the number of each vertex in the file, or in its primitive if there are several.
+// Stores the number of each vertex: in the file, or in its primitive if there are several primitives.
 void label(ModelPart& part) {
   if (!part.labels.empty()) return;
   for (const ModelPrimitive& primitive : part.primitives)

@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Reduces a part to about this many vertices: half of them around its worst places, with all triangles there, and half
-/// for the other places, which become coarse. The worst places keep their neighbourhoods even if these need more
-/// vertices. Numbers in the model are updated. The part must have no coarse triangles yet.
+/// Reduces a part to about this many vertices. Half of them are around its worst places, where all triangles stay; the
+/// other half is for all other places, which become coarse. The neighbourhoods of worst places are kept even if they
+/// need more vertices. Updates numbers in the model. The part must have no coarse triangles yet.
 void make_coarse(ReportModel& model, std::size_t part, std::size_t most_vertices);
 
 }  // namespace chronormal::inline internal

@@ -41,11 +41,11 @@ class Arrays {
   Json add_or_null(const std::vector<T>& values) {
     return values.empty() ? Json() : add(values);
   }
-  // Returns {"indices", name}; the indices are null if all vertices have a value.
+  // Adds vectors as {"indices", name}. The indices are null if all vertices have a vector.
   Json add(const ModelVectors& vectors, const char* name) {
     return {{"indices", vectors.is_dense ? Json() : add(vectors.vertices)}, {name, add(vectors.values)}};
   }
-  // Returns a plain array if all vertices have a value.
+  // Adds vectors as a plain array if all vertices have a vector, and otherwise with their indices.
   Json add_keyframe(const ModelVectors& vectors) {
     return vectors.is_dense ? add(vectors.values) : add(vectors, "values");
   }
@@ -221,7 +221,7 @@ std::string gzipped(std::string_view bytes) {
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
   std::string result;
-  // zlib stores lengths in 32 bits.
+  // zlib counts bytes in 32 bits, so the text is compressed in blocks.
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;
   std::string block(kAtOnce, '\0');
   int state = Z_OK;

@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the container. head is the beginning of the JSON: the fields that do not belong to the model, as text, each
-/// with a comma behind it.
+/// Writes the container. `head` is the beginning of the JSON: the fields that do not belong to the model, as text, each
+/// followed by a comma.
 [[nodiscard]] std::string write_container(const std::string& head, const ReportModel& model);
 
 /// Compresses the bytes with gzip.

@@ -21,7 +21,7 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// Returns the normals and deltas as one viewer keeps them. The specification keeps all of them.
+// Returns the normals and deltas as one viewer stores them; for the specification, these are all of the file.
 ModelShown shown_by(const GltfShading& shading, const Viewer& viewer) {
   ModelShown shown;
   shown.keeps_halves = viewer.keeps_halves();
@@ -46,8 +46,8 @@ bool show_alike(const Viewer& a, const Viewer& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// Returns the normals that viewers keep. The first entry is the specification, with the names of all viewers that show
-// the same; the others are the remaining `viewers`.
+// Returns the normals as viewers store them, once for all viewers that store the same. The first entry is the
+// specification, with the names of all viewers that show the same; the others are for the other `viewers`.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Viewer> viewers) {
   const Viewer specification{.name = "specification", .title = ""};
   std::vector<Viewer> firsts = {specification};
@@ -69,7 +69,8 @@ std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Vie
   return result;
 }
 
-// Adds the polygons that are summed up, and the corners that each element sums up if it uses more than its own.
+// Adds the polygons whose normals are summed up and, if elements sum up other corners than their own, the corners of
+// each element.
 void add_sums(const AuthorTruth& truth, const GltfShading& shading, ModelTruth& result) {
   const AuthorSums& sums = truth.sums();
   result.first = {0};

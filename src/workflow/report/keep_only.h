@@ -9,7 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps the i-th `width` values if kept[i], in their order. There may be fewer values than kept has entries.
+/// Keeps group i of `width` consecutive values if kept[i] is true, and removes all others. Order is preserved. There
+/// may be fewer groups than entries of `kept`.
 template <class T>
 void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
   std::size_t count = 0;

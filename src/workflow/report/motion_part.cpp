@@ -17,7 +17,8 @@ const float* stored_at(const StoredNormals& normals, std::size_t keyframe, std::
   return normals.of_keyframes[keyframe].data() + 3 * corner;
 }
 
-// Tells whether two corners have the same stored normals at every keyframe, if every keyframe has stored normals.
+// Returns true if two corners have the same stored normals at every keyframe. Returns true too if some keyframe has no
+// stored normals.
 bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_t a, std::size_t b) {
   if (normals.of_keyframes.size() != motion.keyframes.size()) return true;
   for (std::size_t k = 0; k < normals.of_keyframes.size(); ++k) {
@@ -27,7 +28,7 @@ bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_
   return true;
 }
 
-// Stores only the vectors that differ from keyframe 0, if they are few.
+// Returns the vectors that differ from those of keyframe 0, or all vectors if that takes fewer bytes.
 ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
   ModelVectors result;
   const std::size_t vertices = now.size() / 3;
@@ -36,7 +37,7 @@ ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &now[3 * v], &now[3 * v] + 3);
   }
-  // A vertex with its number takes 16 bytes, and a vertex without a number takes 12 bytes.
+  // A vector with the number of its vertex takes 16 bytes, and a vector alone takes 12 bytes.
   result.is_dense = 4 * result.vertices.size() > 3 * vertices;
   if (result.is_dense) result = {true, {}, std::move(now)};
   return result;
@@ -80,7 +81,7 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
     ModelMotion::Scheme& scheme = motion.schemes.emplace_back();
     scheme.name = row.scheme;
     for (std::size_t i = 0; i < motion.at.size(); ++i) {
-      // The samples of an audit go from segment to segment, with the same number in each.
+      // Sample i of an audit is sample i % samples of its segment; the segments follow each other.
       const Quality& quality = row.samples[motion.segments[i] * samples + i % samples];
       scheme.worst.push_back(static_cast<float>(quality.max * kDegreesPerRadian));
       scheme.mean.push_back(static_cast<float>(quality.mean() * kDegreesPerRadian));
@@ -100,7 +101,7 @@ Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals
     std::uint32_t vertex = 0, element = 0, corner = 0;
   };
   std::vector<Shown> shown;
-  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the corner that represents its output
+  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the first corner with the same normal
   for (std::uint32_t e = 0; e < groups.value().size(); ++e) {
     const std::size_t first = shown.size();
     for (const std::uint32_t c : groups.value().corners(e)) {

@@ -19,7 +19,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A page that is still too large is thinned out again by this factor, until hardly anything is left.
+// If a page is still too large, its size is reduced again by the factor kShare, down to kLeastShare of the first
+// attempt.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
@@ -60,7 +61,7 @@ AuditOptions audit_options(const ReportOptions& options) {
 Status read_gltf(const GltfDocument& document, const ReportOptions& options, Report& report, ReportModel& model) {
   AuditOptions how = audit_options(options);
   how.viewers = {kViewers.begin(), kViewers.end()};
-  how.skins = false;  // the page has no joints
+  how.skins = false;  // a page has no joints
   WatchedMotions watched(how.viewers, options.viewers);
   Result<Audit> found = watched_audit(document, how, [&](const AuditSample& sample) { watched.add(sample); });
   if (!found) return found.error();
@@ -113,7 +114,7 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
     report.plan_message = planned.error().text();
 }
 
-// Returns the fields of a container that are the JSON of commands, each with a comma behind it.
+// Returns the fields of a container that hold the JSON of commands, each followed by a comma.
 std::string head_of(const Report& report) {
   const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
   const auto in_one_line = [&](const std::string& text) { return line(Json::parse(text)); };
@@ -136,10 +137,10 @@ std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
   return options.template_bytes + kElement + (packed + 2) / 3 * 4;
 }
 
-// Writes the container, and first thins out the model if the page would be too large.
+// Writes the container. If the page would be too large, thins out the model first.
 std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
-  // This run tells how well the arrays compress; a part of them may compress worse.
+  // This first run shows how well the arrays compress. A part of the arrays may compress worse.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
   if (packed <= options.most_bytes) return container;
   const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());
@@ -149,7 +150,7 @@ std::string write_within(const std::string& head, ReportModel& model, const Repo
   for (double share = kShare;; share *= kShare) {
     model = whole;
     const double most = share * static_cast<double>(room) / per_byte;
-    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));  // the JSON
+    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));  // bytes of the JSON
     thin_out(model, static_cast<std::size_t>(std::max(0.0, most - static_cast<double>(beside))));
     std::string thinned = write_container(head, model);
     if (share < kLeastShare || page_bytes(gzipped(thinned).size(), options) <= options.most_bytes) return thinned;

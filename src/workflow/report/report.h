@@ -88,15 +88,15 @@ struct Report {
 /// The mark that a template contains exactly once, and that the report replaces.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
-/// Checks that a template contains the mark exactly once. Errors: kInvalidInput.
+/// Checks that a template contains the mark exactly once. Errors: kInvalidInput if not.
 [[nodiscard]] Status check_report_template(std::string_view page_template);
 
-/// Fills a template: the container, packed and as base64, becomes a script element in place of the mark, from which no
-/// name in a file can break out. Errors: as check_report_template() returns them.
+/// Fills a template. The container, compressed and in base64, becomes a script element in place of the mark. In base64,
+/// no name from a file can end the element. Errors: those of check_report_template().
 [[nodiscard]] Result<std::string> report_page(const Report& report, std::string_view page_template);
 
-/// Returns the contents of the report as JSON for programs. output and bytes are the name and the size of the written
-/// file.
+/// Returns the contents of the report as JSON for programs. `output` is the name of the written file, and `bytes` its
+/// size.
 [[nodiscard]] std::string report_json(const Report& report, const std::string& output, std::size_t bytes);
 
 }  // namespace chronormal::inline internal

@@ -37,7 +37,7 @@ struct ModelVectors {
   }
 };
 
-/// The normals and deltas of a glTF mesh as some viewers keep them.
+/// The normals and deltas of a glTF mesh as some viewers store them.
 struct ModelShown {
   std::vector<std::string> viewers;
   bool keeps_halves = false;
@@ -58,15 +58,15 @@ struct ModelOffset {
 
 /// The true normals of a glTF mesh if they are more than sums over its triangles (truth/author_truth.h).
 struct ModelTruth {
-  /// The changes that a target makes to the offsets `offsets` at weight 1.
+  /// The changes of offsets by a target at weight 1: indices into the list of offsets, and a vector for each.
   struct Changes {
     std::vector<std::uint32_t> offsets;
     std::vector<float> values;  ///< (n, 2)
   };
 
   std::vector<std::uint32_t> first, corners;  ///< corners of polygons; empty if triangles are added up
-  /// (n, 2) corners of polygons, ascending, and the elements that add them up; empty if each corner counts for its
-  /// vertex.
+  /// (n, 2): pairs of a corner of a polygon, ascending, and the element that adds it up. Empty if each corner counts
+  /// for its own vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
   std::vector<Changes> changes;  ///< changes of each target; empty without offsets
@@ -126,7 +126,8 @@ struct ModelPart {
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // The next members are for motions other than glTF. Vectors are values; missing vectors are as in keyframe 0.
+  // The next members are for motions that are not glTF. Each keyframe has values, not deltas; vertices that are left
+  // out are as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;

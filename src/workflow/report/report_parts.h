@@ -20,13 +20,14 @@
 
 namespace chronormal::inline internal {
 
-/// Builds the part of a glTF mesh, with its normals as `viewers` keep them. The true normals are the author's, or sums
-/// by the requested weighting. Errors: as GltfDocument returns them.
+/// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are those that the author
+/// intended, or sums by the requested weighting. Errors: those of GltfDocument.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);
 
-/// The vertices of a motion in a report: a vertex of the file occurs once for each normal that it shows.
+/// The vertices of a motion in a report. If a vertex of the file shows several normals, the report has a vertex for
+/// each.
 struct MotionVertices {
   std::vector<std::uint32_t> labels;             ///< their vertices in the file, ascending
   std::vector<std::uint32_t> elements, corners;  ///< the element of each vertex, and a corner that shows it
@@ -37,8 +38,8 @@ struct MotionVertices {
 /// Finds the vertices. Errors: as NormalGroups returns them.
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// Makes the part of a motion that is not a glTF file. comparison has the results of schemes on it, made with
-/// keep_samples at the samples of the audit.
+/// Builds the part of a motion that is not a glTF file. `comparison` has the results of schemes for this motion, made
+/// with keep_samples at the samples of the audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
                                     const Comparison& comparison, WatchedPart watched);
 

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kNumber = 4;  // bytes
+constexpr std::size_t kNumber = 4;  // bytes of a float or an index
 
 std::size_t bytes_of(const ModelVectors& vectors) {
   return kNumber * vectors.vertices.size() + kNumber * vectors.values.size();
@@ -24,7 +24,7 @@ std::size_t bytes_of_keyframes(const ModelPart& part) {
   return bytes;
 }
 
-// Returns the bytes of the weights of all samples. Everything else in a sample is small in comparison.
+// Returns the bytes of the weights in all samples. All other data of a sample are small in comparison.
 std::size_t bytes_of_samples(const ModelPart& part) {
   std::size_t bytes = 0;
   for (const ModelMotion& motion : part.motions)
@@ -65,10 +65,10 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
   return result;
 }
 
-// Returns the part of `most` that is left after `taken`.
+// Returns the bytes that remain of `most` after `taken` are used.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
-// Lists the samples of a motion that are worst places.
+// Lists the samples of a motion that belong to worst places.
 std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t part, std::size_t motion) {
   std::vector<std::size_t> samples;
   for (const ReportPlace& place : model.worst)
@@ -96,7 +96,7 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     if (s > 0) keep(s - 1);
   }
   const std::size_t have = static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
-  // A separate segment takes two keyframes; the segments of targets share the base.
+  // A separate segment needs two keyframes. In targets, all segments share the base, so each needs only one more.
   const std::size_t room = left(most, have) / (model.kind == "sequence" ? 2 : 1);
   for (std::size_t n = 0; n < room; ++n) keep(n * segments / room);
 
@@ -152,8 +152,8 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
   const auto note = [&](const std::string& sentence) { model.thinned.push_back(sentence); };
   if (const std::size_t all = bytes_of(model); model.kind != "gltf" && all > most_bytes) {
     const std::size_t of_keyframes = sum(model, bytes_of_keyframes), before = model.parts[0].times.size();
-    // At least half of the page is for keyframes. If the page is still too large after this step, it has too many
-    // vertices.
+    // Reserves at least half of the page for keyframes. If the page is still too large after this step, the mesh has
+    // too many vertices.
     const std::size_t after = thin_keyframes(model, std::max(left(most_bytes, all - of_keyframes), most_bytes / 2));
     const bool is_sequence = model.kind == "sequence";
     if (after < before)

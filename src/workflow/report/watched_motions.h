@@ -1,5 +1,5 @@
-/// Keeps the samples of an audit for a report: the data that place each sample, its errors, and the largest error of
-/// each vertex. Private to workflow.
+/// Collects the samples of an audit for a report: the data that locate each sample, its errors, and the largest error
+/// of each vertex. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 
@@ -23,24 +23,24 @@ struct WatchedPart {
 
 class WatchedMotions {
  public:
-  /// audited lists the viewers of the audit; only the weights of the viewers in `kept` are kept. vertex_of_corner,
-  /// which must outlive the object, has the vertex of the report for each corner; if it is empty, vertices are as in
-  /// the audit.
+  /// Starts with no motion. `audited` lists the viewers of the audit, and `kept` those whose weights the report
+  /// contains. vertex_of_corner has the report's vertex for each corner and must outlive this object; if it is empty,
+  /// the report has the vertices of the audit.
   WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 
   void add(const AuditSample& sample);
 
-  /// Moves out the parts by mesh; an input that is not glTF has one part, without a mesh.
+  /// Moves out the parts, keyed by mesh. An input that is not glTF has one part, with the key nullopt.
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
-  // The weights of a motion, sample after sample, without zeros: a file with many targets has a motion for each, in
-  // which the other targets rest.
+  // The weights of a motion, sample after sample, without zeros. A file with many targets has a motion for each target,
+  // in which all other weights are 0.
   class Weights {
    public:
     void add(std::span<const double> of_sample);
-    // Moves out the weights and leaves this empty.
+    // Moves out the weights, and leaves this object empty.
     [[nodiscard]] ModelWeights take();
 
    private:
@@ -53,7 +53,7 @@ class WatchedMotions {
     std::size_t samples_ = 0;
   };
 
-  // The weights that one viewer plays in the motion that the audit reports.
+  // The weights that one viewer plays in the motion that the audit reports at present.
   struct Played {
     const Viewer* viewer = nullptr;
     bool is_kept = false, is_specified = true;

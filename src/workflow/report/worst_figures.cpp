@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The triangles of part.triangles that form one face; the triangles of a polygon are consecutive and form a fan.
+// A face as a range of consecutive triangles in part.triangles. The triangles of a polygon form a fan.
 struct ReportFace {
   std::size_t first = 0, end = 0;
 
@@ -57,7 +57,7 @@ std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex
   return value_at(vectors.values, static_cast<std::size_t>(found - vectors.vertices.begin()));
 }
 
-// Returns the places of a vertex at both ends of the straight path that contains a worst place.
+// Returns the positions of a vertex at both ends of the straight path on which a worst place lies.
 std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample,
                              std::uint32_t vertex) {
   if (motion.weights.empty()) {
@@ -80,7 +80,7 @@ std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, s
   return {from, to};
 }
 
-// The face alone, as a motion.
+// Returns a motion that consists of one face alone.
 Motion motion_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample, const ReportFace& face) {
   const std::vector<std::uint32_t> corners = face.corners(part);
   const auto count = static_cast<std::uint32_t>(corners.size());
@@ -105,7 +105,7 @@ Motion motion_of(const ModelPart& part, const ModelMotion& motion, std::size_t s
 
 Json worst_figures(const ReportModel& model) {
   Json figures = Json::array();
-  std::vector<std::pair<std::size_t, std::size_t>> taken;  // (part, first triangle)
+  std::vector<std::pair<std::size_t, std::size_t>> taken;  // part and first triangle of each face that has a figure
   for (std::size_t i = 0; i < model.worst.size() && figures.size() < kMostFigures; ++i) {
     const ReportPlace& place = model.worst[i];
     const ModelPart& part = model.parts[place.part];

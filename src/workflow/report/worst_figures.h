@@ -11,15 +11,16 @@
 
 namespace chronormal::inline internal {
 
-/// A page without the program inside shows only these figures; eight figures take about 40 kB of the page.
+/// Limits for figures. A page without the program inside shows no other figures; eight of them take about 40 kB of the
+/// page.
 inline constexpr std::size_t kMostFigures = 8, kFigureSamples = 21;
 inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
     "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};
 
-/// Returns an array of figures, with that of the worst place first. The figure of a place shows the face around the
-/// place for which `linear` has the largest error, unless another place already shows this face. The face moves in the
-/// segment of the place; in a glTF file it moves from the base to the moment of the place, or to weight 1 if the place
-/// is given by a weight.
+/// Returns an array of figures, in the order of the worst places. Each shows one of the faces around its place: the
+/// face for which `linear` has the largest error. A face that an earlier figure shows is left out. The face moves in
+/// the segment of the place; in a glTF file it moves from the base to the moment of the place, or to weight 1 if the
+/// place is given by a weight.
 [[nodiscard]] Json worst_figures(const ReportModel& model);
 
 }  // namespace chronormal::inline internal

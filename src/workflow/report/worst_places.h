@@ -8,8 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// Finds at most kMostWorstPlaces places, worst first: vertices in the order of their largest errors, without vertices
-/// within kPlaceDistance of an earlier place. Parts and vertices are numbered as before thinning.
+/// Finds at most kMostWorstPlaces places, worst first. Goes through all vertices from the largest error down, and skips
+/// vertices within kPlaceDistance of an earlier place. Numbers of parts and vertices are those before thinning.
 [[nodiscard]] std::vector<ReportPlace> find_worst_places(const std::vector<ModelPart>& parts);
 
 }  // namespace chronormal::inline internal

@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Reads "CHECKSUM ZEROS".
+// Reads a record of the journal: a checksum, and the number of normals that are zero.
 std::optional<WrittenRow> read_row(std::string_view text) {
   WrittenRow row;
   const char* const last = text.data() + text.size();
@@ -24,7 +24,7 @@ std::optional<WrittenRow> read_row(std::string_view text) {
   return zeros.ec == std::errc{} && zeros.ptr == last ? std::optional(row) : std::nullopt;
 }
 
-// Tells whether the file has this row.
+// Returns true if the file has the bytes of this row from offset `at` on.
 Result<bool> has_row(const PositionedFile& file, std::uint64_t at, std::size_t row_bytes, const WrittenRow& row,
                      std::string& block) {
   if (file.size() < at + row_bytes) return false;

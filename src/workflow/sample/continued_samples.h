@@ -1,5 +1,5 @@
-/// Writes samples that a process computes together with others, as a share, or after the rows that an interrupted run
-/// already wrote. Private to workflow and the program.
+/// Writes samples together with other processes, as a share of the work, or after rows that an interrupted run has
+/// written. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_CONTINUED_SAMPLES_H_
 
@@ -17,8 +17,9 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the files to write for `count` moments, and checks that they may be written. If there are several shards,
-/// files of other shards may exist. Errors: also kUsage for a shard of .npz, and for peers and a stream.
+/// Returns the names of the files to write for `count` moments, and checks that they may be written. In a shard, files
+/// of other shards may exist already. Errors: also kUsage for a shard of .npz, and for a stream that several processes
+/// share.
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count, const SegmentRun& run);
 
@@ -48,16 +49,16 @@ struct WrittenRow {
   [[nodiscard]] std::string text() const;
 };
 
-/// The rows that earlier runs left.
+/// The rows that earlier runs have written.
 struct WrittenRows {
   std::vector<WrittenRow> rows;
-  /// The bytes after the last row in the output itself, if it already has all rows. If they are the right end of the
-  /// output, only the journal remains to be removed.
+  /// Set if the output itself already has all rows: the bytes after the last row. If these bytes are right, the output
+  /// is complete and only the journal remains to be removed.
   std::optional<std::string> end = {};
 };
 
-/// Finds the rows of the journal that are in the file, each of row_bytes bytes after the header, and drops the other
-/// records. `count` is the number of rows of the whole output.
+/// Finds the rows of the journal that are in the file, and drops all other records. Each row has row_bytes bytes, and
+/// the first follows the header. `count` is the number of rows of the whole output.
 [[nodiscard]] Result<WrittenRows> find_written_rows(const std::string& output, std::string_view header,
                                                     std::size_t row_bytes, std::size_t count, Journal& journal);
 

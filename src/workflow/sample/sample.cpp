@@ -1,4 +1,4 @@
-// Computes the normals of a motion, one moment after the other.
+// Computes the normals of a motion at one moment after the other.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-// A local t counts as a step if it is this near to one. The command line allows at most a million steps, so steps are
-// 1e-6 apart or more.
+// The largest distance between a local t and a step that counts as equal. The command line allows at most a million
+// steps, so neighbouring steps are at least 1e-6 apart.
 constexpr double kLargestStepError = 1e-7;
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
@@ -178,7 +178,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  // The writer counts normals without a direction.
+  // Normals without a direction are counted by the code that writes them.
   curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
@@ -203,7 +203,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // Drift is never negative, so the first element is the worst until an element with more drift follows.
+  // Drift is never negative, so the first element counts as the worst until another one has more drift.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;
@@ -268,8 +268,8 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   const Result<TargetWeight> own = options_.scheme.empty() ? TargetWeight{} : one_target_of(weights);
   if (!own) return own.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
-  // Computes base + sum of w (target - base) in an order that loses nothing if base and targets are far apart: the base
-  // gets the factor 1 - sum of w, which is zero for a single target of weight 1.
+  // Computes base + sum of w (target - base) without loss of digits if base and targets are far apart: the base gets
+  // the factor 1 - sum of w, which is exactly zero for a single target of weight 1.
   Twofold rest{1, 0};
   for (const double weight : weights) rest = rest + Twofold{-weight, 0};
   LongSums positions(3 * motion_->topology.vertex_count());

@@ -44,8 +44,8 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
   if (!moments.times.empty()) {
-    // A run of moments starts at the same moment for all shards, so that the prepared segment does not depend on the
-    // share.
+    // Consecutive moments form a run, and its first moment determines how the segment is prepared. All shards look for
+    // that first moment, so the result does not depend on the share.
     std::size_t first = i;
     while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
     return sampler.at_time(moments.times[i], in_a_row[first]);
@@ -89,8 +89,8 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  // Begins with the row at the first moment of a share: in its own file or, with peers, in the shared file. header is
-  // the header of a .npy file.
+  // Begins the file, so that the row of the share's first moment comes next. With peers, this is the shared file.
+  // `header` is the header of a .npy file.
   [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SegmentRun& run, std::size_t outputs,
                              std::string_view header) {
     const IndexRange share = run.share();
@@ -138,14 +138,15 @@ class ArrayFile {
                     : npz_->append(positions_, bytes_of(pose.positions));
   }
 
-  // Continues after bytes of a .npy file that have this checksum.
+  // Continues a .npy file whose bytes so far have this checksum.
   void go_on(std::uint32_t checksum) { checksum_ = checksum; }
   // Returns the checksum of all bytes of a .npy file so far.
   [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
   // Writes the text of a part after the last row.
   [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
 
-  // Returns the checksums of the rows that this process wrote; the first process adds the checksums of all others.
+  // Returns the checksums of the rows that this process wrote. The first process uses those of all others to end the
+  // file.
   [[nodiscard]] std::array<std::uint32_t, 2> checksums() const {
     if (!npz_) return {};
     return {npz_->checksum(normals_), npz_->checksum(positions_)};
@@ -156,7 +157,7 @@ class ArrayFile {
     npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
-  // Ends the file in a process that is not the first.
+  // Ends the file in all processes except the first.
   [[nodiscard]] Status seal() { return file_->seal(); }
   [[nodiscard]] Status finish_joined() { return file_->finish(); }
 
@@ -180,7 +181,7 @@ class ArrayFile {
   std::string storage_;
 };
 
-// Removes a partial output at the end if no row was written to it, since there is nothing to continue.
+// Removes a partial output at the end of its life if it has no row, because there is nothing to continue.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;
@@ -214,7 +215,7 @@ std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const 
   return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner, origin);
 }
 
-// Begins a file. With peers, the first process creates it, and the others open it.
+// Begins the output file. With peers, the first process creates it, and all others open it.
 Result<OutputFile> begin_file(const SampleOutput& output, const SegmentRun& run) {
   if (run.peers != nullptr && !is_first_process(run)) return OutputFile::join(output.path, run.peers->broadcast(""));
   Result<OutputFile> file = OutputFile::create(output.path, output.force);
@@ -255,7 +256,8 @@ struct Written {
   }
 };
 
-// Renames files once all peers have written theirs, and returns in the first process once all have renamed theirs.
+// Waits until all processes have written their files, and then gives the files their names. In the first process,
+// returns after all processes have done so.
 Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, ArrayFile* arrays,
                                         std::vector<OutputFile>& meshes) {
   const bool is_first = is_first_process(run);
@@ -283,7 +285,7 @@ Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, Arra
   return own.summary;
 }
 
-// Returns the text that ends the part of a share. array is the checksum of the bytes before it.
+// Returns the text at the end of a shard's part. `array` is the checksum of all bytes before it.
 Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                 const SegmentRun& run, const NormalSampler& sampler, std::uint32_t array,
                                 KeyframeChecksums& seen) {
@@ -308,7 +310,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
   SampleOutput checked = output;
-  if (journal != nullptr) checked.force = true;  // an interrupted run may have written it just before its end
+  if (journal != nullptr) checked.force = true;  // an interrupted run may have written OUT just before its end
   const Result<std::vector<std::string>> names = sample_files(checked, kind, count, run);
   if (!names) return names.error();
   if (Status status = check_moments(motion, options, moments); !status) return status.error();
@@ -326,8 +328,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   EmptyPartial partial;
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
-  std::size_t written = 0;        // rows, by an earlier run
-  std::uint32_t written_sum = 0;  // the checksum of the header and these rows
+  std::size_t written = 0;        // number of rows that an earlier run wrote
+  std::uint32_t written_sum = 0;  // checksum of the header and of these rows
   const auto end = [&](std::uint32_t array) {
     return is_part ? end_of_part(motion, options, moments, run, sampler, array, seen) : std::string();
   };
@@ -428,7 +430,7 @@ Result<SampleFormat> make_sample_format(std::string_view name) {
 
 Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times) {
   std::vector<double> counts(times.size(), 1);
-  std::size_t later = 0;  // the segment of the time after
+  std::size_t later = 0;  // segment of the next time
   for (std::size_t i = times.size(); i-- > 0;) {
     const Result<Instant> instant = find_instant(motion, times[i]);
     if (!instant) return instant.error();
@@ -472,7 +474,7 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
                  "the result is " + std::to_string(count) +
                      " meshes, but the standard output can only take one; name a file with %d"};
   }
-  // Files of the other shards may exist.
+  // Files of other shards may exist, so only the files of this shard are checked.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();

@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// A limit above the end of any part: keyframes take less than 40 bytes each.
+/// A limit for the length of this text in bytes: a keyframe takes less than 40 bytes.
 inline constexpr std::uint64_t kLongestEndOfPart = std::uint64_t{1} << 28;
 
 struct SamplePart {
@@ -28,7 +28,7 @@ struct SamplePart {
   TaskChecksums checksums = {};
 
   [[nodiscard]] std::string text() const;
-  /// Reads the text at the end of the file with this name. Errors: kInvalidInput.
+  /// Reads the text at the end of a file; `name` is the name of the file. Errors: kInvalidInput.
   [[nodiscard]] static Result<SamplePart> read(std::string_view text, const std::string& name);
 };
 

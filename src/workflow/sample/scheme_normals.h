@@ -1,4 +1,4 @@
-/// Normals by a scheme for all elements of a segment, at random access or played step by step. Private to workflow.
+/// Normals by a scheme, for all elements of a segment: at any t, or played step by step. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 
@@ -16,10 +16,11 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the scheme. Errors: kUsage if it does not exist, or if it needs edges and elements are not faces.
+/// Returns the scheme with this name. Errors: kUsage if there is none, or if it needs edges and the elements are not
+/// faces.
 [[nodiscard]] Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind kind);
 
-/// The target that a scheme moves to, and its weight.
+/// The target of a segment, and the weight at which it is evaluated.
 struct TargetWeight {
   std::size_t target = 0;
   double weight = 0;
@@ -40,9 +41,9 @@ class SchemeNormals {
   /// Writes the unit normals at t in [0, 1]. result must have as many elements as the segment.
   void unit_normals(double t, VectorView<float> result) const;
 
-  /// Writes the unit normals at t = index / steps as they result from `index` steps from t = 0. Every
-  /// anchor_interval-th step is recomputed from t (0: no step is). The scheme must have a sequential form. Going back
-  /// starts again at t = 0.
+  /// Writes the unit normals at t = index / steps, reached by `index` steps of playback from t = 0. Every
+  /// anchor_interval-th step is recomputed from t; if it is 0, no step is. The scheme must have a sequential form. A
+  /// smaller index than before starts again at t = 0.
   void played_normals(std::size_t index, std::size_t steps, std::size_t anchor_interval, VectorView<float> result);
 
  private:

@@ -50,9 +50,9 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work. Without a shard, the run does all work and writes no part for merge.
+  /// The share of the work. Without a value, the run does all work, and does not write a part for merge.
   std::optional<Shard> shard = {};
-  /// The processes that have the other shares, or nullptr if none are known.
+  /// The processes that have the other shares, or nullptr if this process does not communicate with others.
   const Peers* peers = nullptr;
   /// The limit on the memory of results, taken from the files of the motion.
   Expansion expansion = Expansion::unlimited();
@@ -74,16 +74,17 @@ struct SegmentRun {
   [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
   /// Returns the range of this process among `total` items.
   [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
-  /// Returns the items to examine for facts about all items: only this process's own items if peers examine the others.
+  /// Returns the items to examine for facts about all items. If peers examine the others, these are only the items of
+  /// this process.
   [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
     return peers != nullptr ? share_of(total) : IndexRange{0, total};
   }
-  /// Replaces each number by the largest that any peer has in its place.
+  /// Replaces each number by the largest number that any peer has at the same index.
   void maximize(std::span<double> numbers) const {
     if (peers != nullptr) peers->maximize(numbers);
   }
 
-  /// Reports that this many more segments, and this many steps of the next one, are done.
+  /// Reports progress: this many more segments are done, and this many steps of the next segment.
   void tell(std::size_t segments, std::size_t steps = 0) {
     done_ += segments;
     if (progress) progress(done_ * steps_ + steps, share().count * steps_);
@@ -99,8 +100,8 @@ struct SegmentRun {
       return status;
     });
   }
-  /// Processes the segments of a stream, in the same way. For each wave, keeps the keyframes from the first to the last
-  /// that keys(segment) names in memory. Errors: also those of the stream.
+  /// Processes the segments of a stream in the same way. For each wave, holds all keyframes from the first to the last
+  /// that keys(segment) names for its segments. Errors: also those of the stream.
   template <class Keys, class Work>
   [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
                             const Work& work) {
@@ -109,7 +110,8 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// Processes segments in the same way before the run, to find facts about all segments, without reports of progress.
+  /// Processes segments in the same way, but reports no progress. It is called before the run, to find facts about all
+  /// segments.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
                                         std::size_t at_once, const Work& work) {
@@ -137,22 +139,23 @@ struct SegmentRun {
   std::size_t total_ = 0, steps_ = 1, done_ = 0;
 };
 
-/// A run that keeps a result for each segment. Found must have a member `segment` with the segment's number.
+/// A run that keeps a result for each segment. The type Found must have a member `segment`, the index of its segment.
 template <class Found>
 struct RecordedRun : SegmentRun {
   /// The results of the first segments of the share, if an earlier run has them.
   std::vector<Found> known = {};
-  /// Called for each computed segment, in order, so that a later run can have its result among `known`; may be empty.
-  /// An error that it returns ends the run.
+  /// Called for each computed segment, in order; may be empty. It stores the result, so that a later run can have it
+  /// among `known`. An error that it returns ends the run.
   std::function<Status(const Found&)> keep = {};
   /// The result of each segment of a shard, including the known ones.
   std::vector<Found> found = {};
 
-  /// Tells whether only sums over segments are kept, so that options that need all segments at once are refused.
+  /// Returns true if this run cannot keep data of all segments at once. Options that need such data are then refused.
   [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
 
-  /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage unless these are the first
-  /// segments of the share and fits(result) is true for each; the message names `task`, such as "audit".
+  /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage if the known segments are
+  /// not the first of the share, or if fits(result) is false for one of them; the message names `task`, such as
+  /// "audit".
   template <class Fits, class Add>
   [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
                              const Add& add) {
@@ -177,7 +180,7 @@ struct RecordedRun : SegmentRun {
     return {own.first + known.size(), own.count - known.size()};
   }
 
-  /// Takes the result of the next segment, and calls add(result). Errors: as keep returns them.
+  /// Takes the result of the next segment: passes it to keep and to add(). Errors: those of keep.
   template <class Add>
   [[nodiscard]] Status take(Found result, const Add& add) {
     if (Status kept = keep ? keep(result) : Success{}; !kept) return kept;
@@ -195,9 +198,9 @@ struct ShardOf {
   TaskChecksums checksums;
 };
 
-/// Puts the segments of shards, which may come in any order, in the order of the motion, which has total(whole)
-/// segments. Errors: kUsage unless are_of_one(whole, whole) is true for all shards, which then belong to one task,
-/// named by `tasks`, and each segment is in exactly one shard.
+/// Sorts the segments of shards, which may come in any order, into the order of the motion, which has total(whole)
+/// segments. Errors: kUsage if are_of_one(a, b) is false for two shards, which then do not belong to one task; kUsage
+/// if a segment is not in exactly one shard. Messages call the task by `tasks`.
 template <class Whole, class Found, class AreOfOne>
 [[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
                                               const AreOfOne& are_of_one, const char* tasks) {

@@ -1,6 +1,6 @@
-/// Shares of a task, for many machines that divide one motion. Each machine computes its share, and merge joins the
-/// results (workflow/json/parts.h) into the result of one machine, to the last bit. Also declares how processes that
-/// compute together communicate. Private to workflow and the program.
+/// Shares of a task, for many machines that divide one motion. Each machine computes its share, and merge
+/// (workflow/json/parts.h) joins the results. The joined result has the same bits as that of a single machine. Also
+/// declares how processes that compute together communicate. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_SHARDS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_SHARDS_H_
 
@@ -21,7 +21,7 @@ namespace chronormal::inline internal {
 struct Shard {
   std::size_t index = 0, count = 1;
 
-  /// Returns the range of this shard among `total` items. All shards together have each item once and in order, and
+  /// Returns the range of this shard among `total` items. The ranges of all shards follow each other without gaps, and
   /// their sizes differ by at most one.
   [[nodiscard]] IndexRange of(std::size_t total) const noexcept {
     assert(index < count);
@@ -35,20 +35,22 @@ struct Shard {
 /// for example by MPI. Every process makes the same calls in the same order. A process that fails makes no more calls,
 /// and its program must end the other processes.
 struct Peers {
-  /// Returns the texts of all shards, in their order, in the process of the first shard, once all have called this;
-  /// returns nothing in the others.
+  /// Waits until every process has called this. Returns the texts of all shards, in order, in the process of the first
+  /// shard, and nothing in all others.
   std::function<std::vector<std::string>(const std::string& own)> gather;
   /// Returns the text of the first process in every process.
   std::function<std::string(const std::string& of_first)> broadcast;
-  /// Replaces each number by the largest that any process has in its place. All processes must pass the same count.
+  /// Replaces each number by the largest number that any process has at the same index. All processes must pass the
+  /// same count.
   std::function<void(std::span<double> numbers)> maximize = {};
 };
 
-/// Checksums of all data that the result of a shard depends on, by name ("the faces", "the options", "keyframe 3").
-/// Shards of one task have the same checksum for every name that they share. A keyframe is listed if the shard has read
-/// it. A shard reads the keyframes that it needs, and, to connect shards that have no other keyframe in common, the
-/// first and the last keyframe and the one with which the next shard begins; or all keyframes if they are few
-/// (MotionStream::keeps_all()).
+/// Checksums of all data on which the result of a shard depends, by name ("the faces", "the options", "keyframe 3"). If
+/// two shards of one task have a checksum of the same name, it is equal.
+///
+/// A shard lists the keyframes that it has read. If they are few (MotionStream::keeps_all()), these are all keyframes.
+/// Otherwise they are those that its segments need, the first and the last keyframe, and the keyframe with which the
+/// next shard begins: so each two neighbouring shards have a keyframe in common.
 using TaskChecksums = std::map<std::string, std::uint32_t, std::less<>>;
 
 }  // namespace chronormal::inline internal

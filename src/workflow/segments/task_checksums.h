@@ -1,5 +1,5 @@
-/// The checksums that tell parts of one task from parts of another. They are computed while a shard reads keyframes.
-/// Private to workflow.
+/// Checksums by which parts of one task are told from parts of another. They are computed while a shard reads
+/// keyframes. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 
@@ -21,12 +21,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the keyframes that a shard of segments depends on, and the one with which the next shard begins.
+/// Returns the keyframes that the segments of a shard need, and the keyframe with which the next shard begins.
 [[nodiscard]] std::set<std::size_t> keyframes_of_shard(const Motion& motion, const Shard& shard);
 
 class KeyframeChecksums {
  public:
-  /// Watches the stream, which must outlive this object.
+  /// Registers with the stream, which must outlive this object.
   explicit KeyframeChecksums(MotionStream& stream) : stream_(stream) {}
   KeyframeChecksums(const KeyframeChecksums&) = delete;
   KeyframeChecksums& operator=(const KeyframeChecksums&) = delete;
@@ -68,7 +68,8 @@ class KnownParts {
 
  private:
   std::vector<std::string> parts_;
-  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;  // the first checksum of each name, and its part
+  std::map<std::string, std::pair<std::uint32_t, std::size_t>>
+      first_;  // by name: a checksum, and the first part with it
 };
 
 }  // namespace chronormal::inline internal

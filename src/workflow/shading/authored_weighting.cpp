@@ -12,14 +12,14 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;                // elements in one block
-constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians, and small enough to be its own sine
+constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; so small that the sine is the angle
 constexpr double kClear = 2.0 / 3;
 constexpr double kFollows = 1;  // degrees
 
 using Stored = std::span<const StoredNormal>;  // sorted by element
 
-// Some elements as a small mesh, so that memory stays that of one block. Each element has its own copy of its faces:
-// the element is one vertex of these faces, and no other element uses their other vertices.
+// Copies some elements to a small mesh, so that memory does not grow with the whole mesh. Each element has its own copy
+// of its faces: the element is one vertex of these faces, and no other element uses their other vertices.
 class Block {
  public:
   Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {
@@ -51,7 +51,8 @@ class Block {
     groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
 
-  // Returns the normals of the elements by a weighting, one for each stored normal, and zero if an element has none.
+  // Returns the normals of the elements by a weighting, one for each stored normal; (0, 0, 0) if an element has no
+  // normal.
   [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
     const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
     const std::vector<Vec3d> all = all_weighted_normals_at({&topology_, view, view, 0, 1, 0}, groups_, weighting, 0);
@@ -78,7 +79,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
 // The distances that are added up over blocks.
 struct Distances {
   std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
-  std::array<std::vector<float>, kWeightings.size()> told;  // degrees, of the normals that tell
+  std::array<std::vector<float>, kWeightings.size()> told;  // in degrees, only of normals that tell
   std::size_t telling = 0;
 
   void add(std::size_t w, const StoredNormal& stored, double degrees) {
@@ -145,7 +146,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   Distances all;
   const Stored sorted(stored);
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
-  // Works on some blocks at a time, to limit the memory of their results.
+  // Handles a limited number of blocks at once, because their results need memory.
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < blocks; first += kAtOnce) {
     std::vector<Distances> found(std::min(kAtOnce, blocks - first));

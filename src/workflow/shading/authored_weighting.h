@@ -1,18 +1,18 @@
 /// Finds which weighting an author's normals follow. Private to workflow.
 ///
-/// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h), which its
-/// stored normals show. The true normals follow the same weighting, so a difference from another weighting is no error
-/// of the file.
+/// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h), and the stored
+/// normals show how. The true normals follow the same weighting, so a difference from another weighting is no error of
+/// the file.
 ///
 ///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees: elsewhere all agree
 ///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored normal
 ///     detected   the weighting at the smallest distance, if that is at most a degree, and at most two thirds of the
-///                distance of area; else area, which is exact at every time
+///                distance of area; otherwise area, which is exact at every time
 ///
-/// The distance is a median because normals that an author bent by hand then have no influence, as long as most normals
-/// are as they were computed. Normals in 8 bits, and quads that were cut into triangles afterwards, leave the distance
-/// well within the two thirds if weightings differ by more than a degree. If no weighting comes close, all have about
-/// the same distance.
+/// The distance is a median, so normals that an author bent by hand have no influence as long as most normals are as
+/// they were computed. Normals in 8 bits, and quads that were cut into triangles later, hardly change the distance
+/// compared with the limit of two thirds, if weightings differ by more than a degree. If no weighting fits, all have
+/// about the same distance.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 
@@ -36,8 +36,8 @@ struct StoredNormal {
   Vec3d normal;
 };
 
-/// The distances between the stored normals and the normals of one weighting, in degrees. Normals of the opposite side
-/// count as equal.
+/// The angles between the stored normals and the normals of one weighting, in degrees. The side of the surface does not
+/// count: opposite normals have the distance 0.
 struct WeightingDistance {
   std::size_t count = 0;  ///< how many stored normals have an element with a normal
   double sum = 0, worst = 0;
@@ -57,14 +57,14 @@ struct AuthoredWeighting {
   Weighting detected = Weighting::kArea;  ///< one of kWeightings
 };
 
-/// Compares stored normals with all weightings of the geometry. groups must belong to the topology, and have corners.
-/// O(corners), seven times; uses all cores, and little memory besides the stored normals. The result has the same bits
-/// on any number of threads.
+/// Compares stored normals with all weightings. `groups` must belong to the topology, and have corners. O(corners),
+/// seven times; uses all cores, and little memory besides the stored normals. The result has the same bits on any
+/// number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// Compares the base normals of a mesh in the same way, and detects area if the mesh has none. The groups of the mesh
-/// must have their corners. If there are more normals than `most`, compares that many of them, evenly spread.
+/// Compares the base normals of a mesh in the same way; without base normals, the result is area. The groups of the
+/// mesh must have their corners. If there are more than `most` normals, compares only `most` of them, at even steps.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
                                                         std::size_t most = static_cast<std::size_t>(-1));
 

@@ -1,7 +1,8 @@
 /// Computes the terms that corners of polygons add to the normals of elements, by a weighting. Private to workflow.
 ///
-/// Many corners are computed at once: the normal of a polygon once for corners that are close together in the list, and
-/// lengths and angles in SIMD lanes. The result has the same bits as calls of corner_term() for each corner.
+/// Many corners are computed at once. The normal of a polygon is computed once for corners that are close together in
+/// the list, and lengths and angles are computed in SIMD lanes. The result has the same bits as a call of corner_term()
+/// for each corner.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 
@@ -26,10 +27,12 @@ inline constexpr std::size_t kElementsOfBlock = 128;
 
 class CornerTerms {
  public:
-  /// Returns an empty object of this thread, which reuses its memory. It is valid until the next call in this thread.
+  /// Returns an empty object that belongs to this thread and reuses its memory. It is valid until the next call in this
+  /// thread.
   [[nodiscard]] static CornerTerms& emptied(Weighting weighting);
 
-  /// Appends a corner of a polygon whose vertices are `loop`. The same number must always mean the same polygon.
+  /// Appends a corner of a polygon whose vertices are `loop`. A polygon must always have the same number, and no other
+  /// polygon may have it.
   template <class PositionOf>
   void add(std::uint32_t polygon, std::span<const std::uint32_t> loop, std::size_t corner, const PositionOf& position) {
     face_of_corner_.push_back(face_of(polygon, loop, position));
@@ -50,7 +53,7 @@ class CornerTerms {
 
  private:
   struct Known {
-    std::uint64_t use = 0;  // the use of the object in which this entry was made
+    std::uint64_t use = 0;  // the use of the object that made this entry
     std::uint32_t polygon = 0, face = 0;
   };
   static constexpr std::size_t kKnown = 512;
@@ -69,7 +72,7 @@ class CornerTerms {
   bool needs_edges_ = false;
   std::uint64_t use_ = 0;
   std::array<Known, kKnown> known_;
-  std::vector<Vec3d> faces_;  // normals of polygons; then what the weights of corners multiply
+  std::vector<Vec3d> faces_;  // normals of polygons, later the vectors that the weights of corners multiply
   std::vector<double> areas_;
   std::vector<std::uint32_t> face_of_corner_;
   std::vector<Vec3d> terms_, next_, previous_;

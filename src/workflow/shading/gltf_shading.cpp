@@ -26,7 +26,8 @@ std::string mesh_place(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// Appends `count` vertices of `width` numbers each to the vertices of earlier primitives; zeros if `values` is empty.
+// Appends an array of a primitive, with `width` numbers for each of `count` vertices, to the array of all primitives.
+// If the primitive has no values, appends zeros.
 void append(std::vector<float> values, std::size_t first_vertex, std::size_t count, std::size_t width,
             std::vector<float>& all) {
   if (values.empty()) {
@@ -117,7 +118,8 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
   return Success{};
 }
 
-// Renumbers classes of vertices in the order of their first vertices. class_of_vertex may number them in any way.
+// Renumbers classes of vertices in the order of their first vertices. The numbers in class_of_vertex may be in any
+// order.
 Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t class_count) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   std::vector<std::uint32_t> number(class_count, kNone);
@@ -130,7 +132,7 @@ Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t 
   return points;
 }
 
-// Splits points of the base whose vertices move differently in any target.
+// Splits points whose vertices coincide in the base, but move differently in some target.
 Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) {
   for (const BlendTarget& target : targets) {
     const std::size_t count = target.vertices.size();
@@ -142,7 +144,7 @@ Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) 
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     std::vector<std::uint32_t> classes = points.point_of_vertex;
-    std::size_t class_count = points.count;  // vertices of a class that move alike get a new class together
+    std::size_t class_count = points.count;  // vertices of a class that move alike go to the same new class
     for (std::size_t n = 0; n < count; ++n) {
       if (n == 0 || key(order[n - 1]) < key(order[n])) ++class_count;
       classes[target.vertices[order[n]]] = static_cast<std::uint32_t>(class_count - 1);
@@ -152,7 +154,7 @@ Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) 
   return points;
 }
 
-// Gives each vertex in `alone` its own point.
+// Makes each vertex that is set in `alone` a point of its own.
 Points set_apart(const Points& points, const std::vector<bool>& alone) {
   std::vector<std::uint32_t> classes = points.point_of_vertex;
   std::size_t class_count = points.count;
@@ -162,7 +164,7 @@ Points set_apart(const Points& points, const std::vector<bool>& alone) {
 }
 
 // Groups vertices without stored normals by the crease angle: each class shares a normal. All other vertices stay
-// alone.
+// alone. `split` counts the vertices that a crease would split.
 Result<Points> smooth_points(const Motion& base, const Points& points, const std::vector<bool>& has_normal,
                              double crease_angle, std::size_t& split) {
   const Result<NormalGroups> groups = NormalGroups::by_crease_angle(base, set_apart(points, has_normal), crease_angle);
@@ -205,10 +207,10 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
   return to_points(classes, stored.count + smooth.count);
 }
 
-// Returns points whose vertices may share a normal.
+// Groups vertices into points whose vertices may share a normal.
 Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
                               GltfShading& shading) {
-  Motion base;  // borrows the arrays for a while
+  Motion base;  // gets the arrays of `shading` temporarily
   base.topology = std::move(shading.set.topology);
   base.keyframes.push_back({std::move(shading.set.base), 0, ""});
   Points points = separate_points(has_normal.size());
@@ -230,7 +232,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
     has_none.flip();
     Result<Points> smooth = set_apart(points, has_none);
     if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
-    // Vertices with and without stored normals stay apart, even at the same place.
+    // Vertices with stored normals and vertices without never share a point, even at the same place.
     if (smooth)
       all = joined(set_apart(points, has_none), smooth.value(), has_normal);
     else
@@ -241,8 +243,9 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   return all;
 }
 
-// Splits points by the stored normals of their vertices. NormalGroups splits by the normals of face corners, so each
-// vertex that shares its point, and has a face, gets a made-up face with all corners at that vertex.
+// Splits points by the stored normals of their vertices. This uses the code of NormalGroups, which splits by the
+// normals of face corners: each vertex that shares its point, and has a face, gets a made-up face with all corners at
+// that vertex.
 Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
   std::vector<bool> has_face(points.point_of_vertex.size()), is_shared(points.count), is_taken(points.count);
   for (const std::uint32_t v : topology.corners()) has_face[v] = true;
@@ -295,10 +298,11 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
-// The polygons that are back to back: single triangles, or two consecutive triangles that were cut from a quad.
+// Polygons that are back to back, with equal vertices and opposite sides: single triangles, or two consecutive
+// triangles that were cut from a quad.
 struct Backs {
   std::vector<std::uint32_t> polygon;  // the polygon of each triangle, named by its first triangle
-  std::vector<std::uint32_t> back;     // for each triangle, the polygon behind its own, or kNoFace
+  std::vector<std::uint32_t> back;     // for each triangle, the polygon on its back, or kNoFace
 
   [[nodiscard]] bool are_apart(std::uint32_t a, std::uint32_t b) const {
     return back[a] != kNoFace && back[a] == polygon[b];
@@ -334,8 +338,8 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   return backs;
 }
 
-// Finds the corners at which a vertex shows the side of a sheet that its stored normal does not face. Returns one value
-// per corner, or an empty vector if there are no such corners.
+// Finds the corners at which a vertex shows one side of a sheet although its stored normal faces the other side.
+// Returns one value for each corner, or an empty list if there are no such corners.
 std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& points) {
   const Topology& topology = shading.set.topology;
   const auto corners = topology.corners();
@@ -343,7 +347,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
   std::vector<bool> result;
   if (!found) return result;
   const Backs& backs = *found;
-  // Collects the corners of each class that has corners on both sides.
+  // Collects the corners of each class of vertices that has corners on both sides of a sheet.
   std::vector<bool> may_be(points.count);
   for (std::uint32_t c = 0; c < corners.size(); ++c)
     if (backs.back[c / 3] != kNoFace) may_be[points.point_of_vertex[corners[c]]] = true;
@@ -369,7 +373,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
     if (apart.empty()) continue;
     const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
     const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
-    // Finds the side that the stored normals face.
+    // Finds which side the stored normals of the class face.
     std::vector<double> along(sides);
     for (std::size_t n = 0; n < here.size(); ++n) {
       const std::uint32_t c = here[n].second;
@@ -428,8 +432,8 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
   return Success{};
 }
 
-// Removes a mark that is no longer true. Programs that compute new normals for every target keep the names of
-// correction targets but not their deltas; a bake never writes a target without any.
+// Removes the mark of a bake if it is no longer true. Programs that compute new normals for every target keep the names
+// of correction targets, but not their deltas; a bake never writes a correction target without deltas.
 void drop_mark_of_emptied_targets(GltfShading& shading) {
   if (!shading.mark || shading.mark->extras.empty()) return;
   for (const GltfExtraTarget& extra : shading.mark->extras)

@@ -35,7 +35,7 @@ namespace chronormal::inline internal {
 struct GltfShadingOptions {
   bool smooth = false;        ///< give vertex normals to primitives without NORMAL, which are flat otherwise
   double crease_angle = 180;  ///< degrees, for smooth: edges sharper than this in the base are hard
-  /// Keeps normal_deltas, tangents and tangent_deltas; otherwise they are only checked.
+  /// Keeps normal_deltas, tangents and tangent_deltas; if false, they are only checked.
   bool keep_deltas = true;
   bool weld = true;  ///< join vertices at the same point in every pose
 };
@@ -49,13 +49,14 @@ struct GltfShading {
   NormalGroups groups;          ///< groups of set.topology; outputs are vertices, also those of flat primitives
   /// (V) The element of each vertex; kNoElement if it has no face, or its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
-  /// (V) The point of each vertex, a number below V. Vertices are one point if they share a place in the base, and the
-  /// deltas of all targets, but the two sides of a sheet are two points. Only the author's truth needs it.
+  /// (V) The point of each vertex, a number below V. Vertices belong to one point if they have the same place in the
+  /// base and the same deltas in all targets. The two sides of a sheet are two points, however. Only the author's truth
+  /// needs this.
   std::vector<std::uint32_t> point_of_vertex;
-  /// (V) Numbers points again, with both sides of a sheet as one; empty if there are no such sides.
+  /// (V) Numbers points in another way: both sides of a sheet are one point. Empty if the mesh has no such sides.
   std::vector<std::uint32_t> place_of_vertex;
-  /// Marks corners of faces on the back of the side whose normal their vertex shows; elements leave these corners out.
-  /// Empty if there are none.
+  /// For each corner, true if its face is on the back of the side whose normal the vertex shows. Elements leave these
+  /// corners out. Empty if there are none.
   std::vector<bool> at_the_back;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) if the primitive has no normals
   /// The stored deltas of each target, (V, 3); empty if no primitive stores deltas for the target.
@@ -64,8 +65,8 @@ struct GltfShading {
   std::vector<float> tangents;  ///< (V, 4), or empty if no primitive has tangents
   std::vector<std::vector<float>> tangent_deltas;  ///< has the form of normal_deltas
   std::optional<GltfBakeMark> mark;
-  /// The number of correction targets of an earlier bake that lost their deltas because another program made new
-  /// normals; `mark` is empty then.
+  /// The number of correction targets of an earlier bake that have lost their deltas, because another program has made
+  /// new normals. In this case `mark` is empty.
   std::size_t emptied = 0;
   std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
 
@@ -78,11 +79,13 @@ struct GltfShading {
   }
 };
 
-/// Reads one mesh. Vertices that share a place in the base and the deltas of all targets are one point, also across
-/// primitives, and share a normal if their stored base normals agree. Vertices of primitives without NORMAL have no
-/// element, and their faces do not count; with options.smooth they get normals by the crease angle, shared among such
-/// primitives only. A vertex of the file has one normal, so that a crease cannot split it: the parts on both sides of
-/// the crease are joined there, and split_by_crease counts the vertex.
+/// Reads one mesh. Vertices with the same place in the base and the same deltas in all targets are one point, also
+/// across primitives, and share a normal if their stored base normals agree.
+///
+/// Vertices of primitives without NORMAL have no element, and their faces do not count. With options.smooth they get
+/// normals by the crease angle, shared only among such primitives. A vertex of the file has a single normal, so a
+/// crease cannot split it: the elements on both sides of the crease are joined there, and split_by_crease counts the
+/// vertex.
 ///
 /// Errors: see GltfDocument; kUsage for a crease angle outside [0, 180]; kInvalidInput, with the JSON pointer, if the
 /// mesh has no primitive with faces, or extras.chronormal was not written by a bake.
@@ -93,8 +96,8 @@ struct GltfShading {
 [[nodiscard]] Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
                                           std::size_t element) noexcept;
 
-/// Computes n(w) of all elements from the blended positions by cross products in double. The function uses only eq. 1,
-/// and treats no result as rounding error. weights must have one value per target. O(corners); uses all cores.
+/// Computes n(w) of all elements from the blended positions, by cross products in double (eq. 1 of docs/theory.md), and
+/// drops no result as rounding error. weights must have one value per target. O(corners); uses all cores.
 [[nodiscard]] std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights);
 
 /// Returns the true direction at a vertex: n(w) of its element, rotated as the author rotated the base. base_normal and
@@ -102,7 +105,8 @@ struct GltfShading {
 /// N is zero. If N faces away from n(0), -n(0) and -n(w) take their places.
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
-/// A map with the effect of shown_direction() for one vertex and many normals. The map is linear and keeps lengths.
+/// A map with the same effect as shown_direction() for one vertex, to be applied to many normals. The map is linear and
+/// keeps lengths.
 class ShownTurn {
  public:
   ShownTurn() = default;

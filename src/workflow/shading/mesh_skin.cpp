@@ -1,4 +1,4 @@
-// Blending of the joint matrices of vertices.
+// Blends the joint matrices of vertices.
 #include "workflow/shading/mesh_skin.h"
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kEvenBlock = 1024;
-// Tolerance relative to the square of the scale: rounding of matrices in files may make axes this much less
-// perpendicular and equally long. An angle changes by at most half of this part of itself.
+// The tolerance for axes of a matrix that should be perpendicular and equally long, relative to the square of the
+// scale. Matrices in files are rounded. Within this tolerance, an angle changes by at most half of this part of itself.
 constexpr double kEven = 1e-4;
 
 bool keeps_angles(const std::array<Vec3d, 3>& columns) {
@@ -76,7 +76,7 @@ Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform
   Vec3d sum;
   for (std::size_t i = shares_->first[vertex]; i < shares_->first[vertex + 1]; ++i) {
     const NormalMatrix of_joint = normal_matrix(matrices_[shares_->all[i].joint]);
-    // The cofactors of a joint that mirrors point to the other side.
+    // The cofactors of a joint that mirrors point to the wrong side, so their sign changes.
     sum = sum + (of_joint.mirrored ? -shares_->all[i].share : shares_->all[i].share) * unit(of_joint(normal));
   }
   return unit(sum);

@@ -37,8 +37,8 @@ class MeshSkin {
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
 
-  /// Poses the joints as they are at a time; if they jump there, uses the pose just after the jump or just before it.
-  /// Returns true if the pose may have changed.
+  /// Poses the joints as they are at a time. If they jump at that time, uses the pose just after the jump, or the pose
+  /// just before it if just_before is true. Returns true if the pose may have changed.
   bool pose(double time, bool just_before);
 
   /// Tells whether the joints move in the animation.
@@ -54,8 +54,8 @@ class MeshSkin {
   /// Returns the blended matrix of a vertex in this pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
-  /// Returns the rendered direction of a vertex's normal (of any length) in this pose: a unit vector, or zero or not
-  /// finite if it has no direction. matrix must be of_vertex(vertex).
+  /// Returns the direction in which a viewer renders a vertex's normal (of any length) in this pose: a unit vector;
+  /// zero, infinite or NaN if it has no direction. matrix must be of_vertex(vertex).
   [[nodiscard]] Vec3d carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
                               const Vec3d& normal) const noexcept;
 

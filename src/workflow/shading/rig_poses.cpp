@@ -103,7 +103,7 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
   for (std::size_t p = 0; p < count && (n > 0 || !given_.empty()); ++p) {
     std::vector<double>& pose = poses.emplace_back(target_count_, 0.0);
     if (!given_.empty()) {
-      // Index given_.size() is the rest pose.
+      // The index given_.size() means the rest pose.
       const std::size_t from = random_below(random, given_.size()), to = random_below(random, given_.size() + 1);
       const double part = random_part(random);
       for (std::size_t i = 0; i < target_count_; ++i)
@@ -124,7 +124,7 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
         if (left < 0) break;
       }
       pose[targets_[drawn]] = 1 - random_part(random);
-      // The chance of a target is the sum over all active targets.
+      // The chance of the next target is the sum of its togetherness with all targets that are active already.
       for (std::size_t a = 0; a < n; ++a) {
         if (pose[targets_[a]] != 0)
           chances[a] = 0;

@@ -1,8 +1,8 @@
-/// Random poses for files without animations, such as sliders, a captured face or an avatar program may set. Private to
-/// workflow.
+/// Random poses for files without animations: poses that sliders, the capture of a face, or an avatar program may set.
+/// Private to workflow.
 ///
-///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each next target is
-///                      drawn by how often its name goes together with the names drawn before
+///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each next target is drawn with a
+///                      probability that depends on how well its name goes together with the names drawn before
 ///     poses given      a pose between two given poses, or between a given pose and rest
 ///
 /// Names go together if they are the left and the right of the same feature (8 times as often as any two), share a
@@ -24,13 +24,13 @@
 
 namespace chronormal::inline internal {
 
-/// Returns how much more likely two targets are active together than any two, judged by their names.
+/// Returns the factor by which two targets are more likely to be active together than any two, judged by their names.
 [[nodiscard]] double togetherness(const std::string& a, const std::string& b);
 
 class RigPoses {
  public:
-  /// The argument targets lists the targets that may be active, out of target_count. names has target_count names, or
-  /// is empty. given holds poses of target_count weights each.
+  /// Prepares to draw poses. Of target_count targets, only those in `targets` may be active. `names` has target_count
+  /// names, or is empty. `given` holds poses of target_count weights each.
   RigPoses(std::span<const std::string> names, std::vector<std::size_t> targets, std::size_t target_count,
            PoseList given);
 

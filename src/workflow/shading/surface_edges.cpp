@@ -18,7 +18,7 @@ std::vector<SurfaceEdge> surface_edges(const GltfShading& shading) {
     const auto corners = topology.face(f);
     for (std::size_t c = 0; c < corners.size(); ++c) add(corners[c], corners[(c + 1) % corners.size()]);
   }
-  // The vertices of an element are linked in a chain.
+  // Links the vertices of each element in a chain, so that each pair of neighbours in the chain is an edge.
   std::vector<std::uint32_t> last(shading.groups.size(), GltfShading::kNoElement);
   for (std::uint32_t v = 0; v < elements.size(); ++v) {
     if (elements[v] == GltfShading::kNoElement) continue;

@@ -1,8 +1,8 @@
-/// The pairs of vertices between which a jump of the error is visible. Private to workflow.
+/// Lists the pairs of vertices between which a jump of the error is visible. Private to workflow.
 ///
-/// Normals are interpolated over faces: two neighbours with the same error look right, while two neighbours with
-/// different errors show a fold that does not exist. The *tear* of a pair is the angle that belongs to the length of
-/// the difference of their errors:
+/// Normals are interpolated over faces. So two neighbours with the same error look right, while two neighbours with
+/// different errors show a fold that does not exist. The *tear* of a pair measures this jump as an angle, from the
+/// length of the difference of the two errors:
 ///
 ///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s rendered and u true, both unit vectors
 #ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
@@ -21,8 +21,8 @@ namespace chronormal::inline internal {
 /// A pair of vertices, the lower number first.
 using SurfaceEdge = std::array<std::uint32_t, 2>;
 
-/// Lists the edges of all faces, and pairs of copies of a point that share a normal (texture seams), each once and
-/// ascending. Vertices without a normal of their own are in no pair. O(corners log corners)
+/// Lists the edges of all faces, and the pairs of vertices at one point that share a normal (texture seams): each pair
+/// once, ascending. Vertices without a normal of their own are in no pair. O(corners log corners)
 [[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
 
 /// Counts the tears beyond 10, 20 and 40 degrees.
@@ -37,8 +37,8 @@ struct TearCounts {
   void add(const TearCounts& other) noexcept {
     for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += other.beyond[k];
   }
-  /// Adds the tears between two vertices in some poses. a and b are planes (3, poses) of their errors s - u; NaN adds
-  /// nothing.
+  /// Adds the tears between two vertices in some poses. a and b are planes (3, poses) of their errors s - u. A pose in
+  /// which an error is NaN adds no tear.
   void add(const float* a, const float* b, std::size_t poses) noexcept {
     std::array<std::uint32_t, 3> counts{};
     for (std::size_t p = 0; p < poses; ++p) {

@@ -21,16 +21,16 @@ struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   GltfKeys keys;
   std::size_t targets = 0;
-  /// The number of pieces into which curves of correction weights cut each gap of a LINEAR track: one if the corrected
-  /// motion is quadratic between keys.
+  /// The number of pieces into which the curves of correction weights cut each gap of a LINEAR track. One piece is
+  /// enough if the corrected normals are quadratic between keys.
   std::size_t pieces_of_line = 1;
 
   [[nodiscard]] std::size_t size() const noexcept { return keys.times.size(); }
   [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;
   /// Returns a tangent of a cubic spline, per second.
   [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
-  /// Returns a weight between two keys as a cubic in Bernstein form. In a step track, the weight stays constant. key +
-  /// 1 < size()
+  /// Returns a weight between two keys as a cubic in Bernstein form; in a STEP track the cubic is constant. key + 1
+  /// must be less than size()
   [[nodiscard]] std::array<double, 4> piece(std::size_t key, std::size_t target) const noexcept;
 };
 
@@ -43,12 +43,12 @@ class WeightUse {
   void add_track(const WeightTrack& track);
   void add_pose(std::vector<double> weights);
 
-  /// Tells whether both weights are nonzero at some instant. (Between keys of a cubic spline, a weight counts as
+  /// Returns true if both weights are nonzero at some instant. (Between keys of a cubic spline, a weight counts as
   /// nonzero if any of its four coefficients is.) O(moments).
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const noexcept;
   /// Returns a bound of |w_i|.
   [[nodiscard]] double largest(std::size_t i) const { return std::fmax(-lowest_[i], highest_[i]); }
-  /// Return bounds of w_i: at most 0, and at least 0.
+  /// Return bounds of w_i: a lower bound of at most 0, and an upper bound of at least 0.
   [[nodiscard]] double lowest(std::size_t i) const { return lowest_[i]; }
   [[nodiscard]] double highest(std::size_t i) const { return highest_[i]; }
   [[nodiscard]] std::size_t targets() const noexcept { return moments_.size(); }
@@ -56,10 +56,10 @@ class WeightUse {
   /// Returns the largest number of poses that samples() can return.
   [[nodiscard]] std::size_t sample_count() const noexcept;
   /// Returns poses that the weights pass through: all keys, and fifteen poses between any two keys. If there are more
-  /// than `most` poses, returns that many of them, evenly spread.
+  /// than `most`, returns `most` of them, at even steps.
   [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
-  /// Returns poses like samples(), but keeps all keys as long as possible, with seven, three, one or no poses between
-  /// two keys.
+  /// Returns poses like samples(), but keeps all keys as long as possible: it reduces the number of poses between two
+  /// keys to seven, three, one, and none.
   [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:
@@ -71,7 +71,7 @@ class WeightUse {
   std::vector<double> lowest_, highest_;
   std::vector<std::vector<std::size_t>> moments_;  // for each target, the moments when it is active, ascending
   std::size_t moment_count_ = 0;
-  std::vector<std::size_t> last_;  // the last argument of add_active()
+  std::vector<std::size_t> last_;  // the argument of the last add_active()
   std::vector<std::vector<double>> poses_;
   std::vector<const WeightTrack*> tracks_;
 };

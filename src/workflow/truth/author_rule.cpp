@@ -14,16 +14,17 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
-constexpr double kOff = 0.001;                                      // degrees: above, a normal does not follow the rule
-constexpr double kNothingLeft = 180;                                // degrees, where both sides of a sheet add up to 0
+constexpr double kOff = 0.001;        // degrees: beyond, a normal does not follow the rule
+constexpr double kNothingLeft = 180;  // degrees, if both sides of a sheet add up to zero
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
-// Candidates are sums over own corners or whole points, over triangles or quads, by each weighting.
+// The candidates are sums over the element's own corners or over the whole point, and over triangles or quads, each by
+// every weighting.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
 
 double degrees_between(const Vec3d& a, const Vec3d& b) { return angle_between(a, b) * kDegreesPerRadian; }
 
-// Returns the base and some of the targets that store normals, evenly spread.
+// Returns the base (nullopt), and up to most - 1 of the targets that store normals, at even steps.
 std::vector<std::optional<std::size_t>> keys_to_ask(const GltfShading& shading, std::size_t most) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   std::vector<std::optional<std::size_t>> keys = {std::nullopt};
@@ -36,7 +37,7 @@ StoredKey key_of(const GltfShading& shading, std::optional<std::size_t> target) 
   return target ? StoredKey(shading, *target) : StoredKey(shading);
 }
 
-// Turns normals to the side that the author shows, on which the stored base normal is.
+// Flips normals to the side of the surface that the author shows, which is the side of the stored base normal.
 class Sides {
  public:
   Sides(const GltfShading& shading, std::span<const std::uint32_t> vertex_of) : other_(vertex_of.size()) {
@@ -85,7 +86,7 @@ struct Distances {
   }
 };
 
-// Returns the value that this share of the values is below.
+// Returns the value below which this share of the values lies.
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -93,7 +94,7 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// Mends a rule around the normals that do not follow it.
+// Changes a rule around normals that do not follow it, so that they do.
 class Mending {
  public:
   Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)
@@ -114,7 +115,7 @@ class Mending {
                   [&](std::size_t e) { off_[e] = off(static_cast<std::uint32_t>(e), false); });
   }
 
-  // Lets an element add up its whole point if its normals follow that sum, but not the sum of its own corners.
+  // Lets an element add up all corners at its point, if its normals follow that sum but not the sum of its own corners.
   void choose_whole_points() {
     parallel_each(off_.size(), kAskedAtOnce, [&](std::size_t i) {
       if (whole_[i] != 0 || !(off_[i] > kOff)) return;
@@ -189,11 +190,11 @@ class Mending {
     return unit(sum);
   }
 
-  // Returns the worst distance of an element from its sums, in degrees: at keys, the distance that the base does not
-  // explain; if no key turns the element, the distance in the base.
+  // Returns the largest angle between the stored normals of an element and its sums, in degrees. At keys, only the part
+  // counts that the offset in the base does not explain. If no key turns the element, returns the angle in the base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
-    // Each corner of a polygon counts once, however many triangles have a part in it.
+    // Counts each corner of a polygon once, even if several triangles of the polygon meet there.
     std::vector<Part> parts;
     const auto corners = shading_.set.topology.corners();
     for (const std::uint32_t c : corners_of(element, whole)) {
@@ -208,7 +209,7 @@ class Mending {
     Vec3d z0 = unit_sum(parts, base_);
     if (z0 == Vec3d{} && whole) return kNothingLeft;
     if (z0 == Vec3d{} || s0 == Vec3d{}) return 0;
-    const double side = dot(z0, s0) < 0 ? -1 : 1;  // that the author shows
+    const double side = dot(z0, s0) < 0 ? -1 : 1;  // the side that the author shows
     z0 = side * z0;
     double worst = 0;
     bool any = false;
@@ -242,7 +243,8 @@ class Mending {
     return false;
   }
 
-  // Makes the best polygon that begins with this triangle. Returns whether any is better than the present ones.
+  // Makes the best polygon that begins with this triangle, if it is better than the present polygons. Returns true if
+  // it is.
   bool mend_at(std::size_t t, std::size_t end) {
     constexpr std::size_t kLongest = 130;
     std::size_t best = 0, most = 0;
@@ -262,10 +264,10 @@ class Mending {
     return best > 0;
   }
 
-  // Counts how many more elements nearby follow their sums if a run of triangles is one polygon. Elements that only
-  // come nearer do not count: that may be chance.
+  // Returns by how many more elements nearby would follow their sums if a run of triangles were one polygon. Elements
+  // that only come nearer to their sums do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> before;  // polygons that the run takes apart
+    std::vector<std::pair<std::size_t, std::size_t>> before;  // the polygons that the run dissolves
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
     if (!polygons_.join(first, count)) return 0;
@@ -295,7 +297,7 @@ class Mending {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<StoredKey> keys_;
-  std::vector<char> whole_;  // of each element
+  std::vector<char> whole_;  // one for each element
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
   std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
@@ -336,7 +338,7 @@ class Candidates {
     std::size_t paired = 0;
     for (std::size_t t = 0; t < shading.set.topology.face_count(); t += quads.triangle_count(t))
       paired += quads.triangle_count(t) == 2 ? 2U : 0U;
-    constexpr double kMostly = 0.75;  // the rest are caps and poles
+    constexpr double kMostly = 0.75;  // the rest are caps and poles, where quads are rare
     is_of_quads_ = static_cast<double>(paired) > kMostly * static_cast<double>(shading.set.topology.face_count());
   }
 
@@ -345,9 +347,9 @@ class Candidates {
   [[nodiscard]] static Weighting weighting_of(std::size_t c) { return kWeightings[c % kWeightings.size()].weighting; }
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
-  // Returns the candidate at the smallest distance, by keys or, if no key tells, by the base. The distance of a
-  // candidate is the angle that this share of the normals is within. Returns nothing if it is beyond `follows`, or more
-  // than `clear` times the distance of area; or_area accepts area in the second case.
+  // Returns the candidate at the smallest distance: by keys, or else by the base. The distance of a candidate is the
+  // angle that this share of the normals does not exceed. A distance beyond `clear` times that of area is not accepted;
+  // area is taken instead if or_area is true. Returns nothing if no distance of at most `follows` is accepted.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -362,8 +364,8 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // Among candidates that are equally near, takes the one that most normals follow exactly. If several do, it
-      // prefers quads if the file was cut from them and has keys, and otherwise triangles and own corners.
+      // If several candidates are equally near, chooses the one that most normals follow exactly. If that is not
+      // decisive, prefers quads if the file was cut from quads and has keys, and otherwise triangles and own corners.
       constexpr double kAlike = 0.003, kAsMany = 0.005, kMostOfAll = 0.75;
       std::size_t found = best;
       double most = -1;
@@ -385,12 +387,13 @@ class Candidates {
     return std::nullopt;
   }
 
-  // Returns whether keys agree with all candidates: then nothing contradicts the quads that the file was cut from.
+  // Returns true if the keys do not tell candidates apart, so that nothing contradicts the quads from which the file
+  // was cut.
   [[nodiscard]] bool are_quads_as_good() const {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns whether all elements that are asked follow a candidate exactly, so that there is nothing to mend.
+  // Returns true if all examined elements follow a candidate exactly, so that no rule needs to change.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
     const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
@@ -411,7 +414,7 @@ class Candidates {
   [[nodiscard]] double spread() const { return spread_; }
 
  private:
-  // Returns whether several elements show parts of one point.
+  // Returns true if some point has several elements, each with a part of the faces around it.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
     for (const std::uint32_t v : shading_.set.topology.corners()) {
@@ -423,7 +426,8 @@ class Candidates {
     return false;
   }
 
-  // Tells at which places the two sides of a sheet meet, whose normals would cancel; empty if there are none.
+  // Returns for each place whether the two sides of a sheet meet there, whose normals would cancel; empty if there is
+  // no such place.
   [[nodiscard]] std::vector<bool> places_with_sides() const {
     std::vector<bool> result;
     if (shading_.place_of_vertex.empty()) return result;
@@ -437,7 +441,7 @@ class Candidates {
     return result;
   }
 
-  // Returns up to about `most` elements whose normals a key turns, evenly spread.
+  // Returns about `most` elements whose normals a key turns, at even steps.
   [[nodiscard]] std::vector<std::uint32_t> elements_to_ask(std::optional<std::size_t> target, std::size_t most) const {
     const StoredKey key = key_of(shading_, target);
     std::vector<std::uint32_t> elements;
@@ -461,8 +465,8 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
-  // Returns the angle between the stored normal of an element and the normal by one candidate, in degrees; 0 if there
-  // is none.
+  // Returns the angle in degrees between the stored normal of an element and its normal by one candidate; 0 if one of
+  // them does not exist.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
@@ -518,7 +522,7 @@ class Candidates {
   std::vector<std::size_t> sums_of_kind_;  // whole points are the same as own corners if no point has several elements
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
-  std::vector<std::vector<std::uint32_t>> followers_;  // of each key: the elements that must all follow a rule
+  std::vector<std::vector<std::uint32_t>> followers_;  // for each key, the elements that must all follow a rule
   Distances of_base_, keys_;
   bool is_of_quads_ = false;
   double distance_ = 0, spread_ = 0;
@@ -559,8 +563,8 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    // A rule that a tenth of the normals follow exactly is the rule of the mesh, even if most of it was cut or bent
-    // later.
+    // If a tenth of the normals follow a rule exactly, it is the rule of the mesh, even if most of the mesh was cut or
+    // bent later.
     constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
     std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {

@@ -7,7 +7,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the outline of triangles that fill it without a vertex inside; empty if they do not.
+// Returns the outline of some consecutive triangles; empty unless they fill an outline without a vertex inside.
 std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first, std::size_t count) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Edge> edges;
@@ -21,7 +21,7 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
   for (const auto& [from, to] : edges)
     if (!std::binary_search(edges.begin(), edges.end(), Edge(to, from))) border.emplace_back(from, to);
   if (border.size() != count + 2) return {};
-  // The outline begins at the first corner of the first triangle, if that is on it.
+  // The outline begins at the first corner of the first triangle, if that corner is on it.
   const std::uint32_t start = triangles.face(first)[0];
   const auto leaves = [&border](std::uint32_t from) {
     return std::lower_bound(border.begin(), border.end(), Edge(from, 0));

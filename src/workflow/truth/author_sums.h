@@ -40,8 +40,9 @@ struct AuthorSum {
   double terms = 0;  ///< the sum of the lengths of its terms
   double areas = 0;  ///< the sum of the lengths of its face normals, each twice the area of the face
 
-  /// Returns the same direction, with the length that a sum by area would have if its faces had one direction. The
-  /// length is smaller if the terms cancel to less than a twentieth, so that it goes to zero as the direction is lost.
+  /// Returns the sum with its direction unchanged. Its length becomes that of a sum by area whose faces all have the
+  /// same direction. If the terms cancel to less than a twentieth, the length is smaller: it goes to zero as the
+  /// direction is lost.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -54,9 +55,9 @@ class Polygons {
  public:
   explicit Polygons(const Topology& triangles);
 
-  /// Joins `count` triangles from `first` on to one polygon, and makes single triangles of what remains of the polygons
-  /// that this dissolves. Returns false, and changes nothing, if the outline of the triangles is no polygon around all
-  /// of their vertices.
+  /// Joins `count` triangles from `first` on to one polygon. Other polygons that contain some of these triangles are
+  /// dissolved, and their other triangles become single. Returns false, and changes nothing, if the outline of the
+  /// triangles is not a polygon around all of their vertices.
   bool join(std::size_t first, std::size_t count);
   /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns their number.
   std::size_t join_quads(std::span<const GltfPart> parts);
@@ -91,15 +92,14 @@ class Polygons {
 class AuthorSums {
  public:
   AuthorSums() = default;
-  /// Prepares sums of the corners that show each element's normal or, if `whole_point` is set for an element, all
-  /// corners at its point. If `wanted` is not empty, only the elements set in it have corners.
+  /// Prepares sums over the corners that show an element's normal. If `whole_point` is set for an element, prepares the
+  /// sum over all corners at its point. If `wanted` is not empty, elements that are not set in it get no corners.
   AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
              const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
 
   [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
 
-  /// Returns the sum of an element, from positions that position(vertex) gives. The sum is zero if it is only rounding
-  /// error.
+  /// Returns the sum of an element; position(vertex) gives the positions. The sum is zero if it is only rounding error.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
     return at(element, position, weighting_);
@@ -112,8 +112,8 @@ class AuthorSums {
     return result;
   }
 
-  /// Calls visit(i, sum) for the i-th of some elements, one after the other; visit() must not compute sums itself. A
-  /// call for about kElementsOfBlock elements takes a fraction of the time of one call for each element.
+  /// Calls visit(i, sum) for the i-th of some elements, in order; visit() must not compute sums itself. One call for
+  /// about kElementsOfBlock elements takes a fraction of the time of a call for each element.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
     for_each(elements, position, visit, weighting_);
@@ -150,8 +150,8 @@ class AuthorSums {
     });
   }
 
-  /// Return the number of polygons that have a corner in some sum, in the order of their triangles, and the vertices
-  /// around one of these polygons.
+  /// Return the number of polygons that have a corner in some sum, and the vertices around one of these polygons.
+  /// Polygons are in the order of their triangles.
   [[nodiscard]] std::size_t polygon_count() const noexcept { return loop_offsets_.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> polygon(std::size_t p) const noexcept {
     return {loops_.data() + loop_offsets_[p], loops_.data() + loop_offsets_[p + 1]};
@@ -163,7 +163,7 @@ class AuthorSums {
     for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) visit(sums_[i].polygon, sums_[i].corner);
   }
 
-  /// Calls visit(from, to) for the two edges at each corner that an element adds up, as vertices.
+  /// Calls visit(from, to) for the two edges at each corner that an element adds up. Edges are pairs of vertices.
   template <class Visit>
   void for_edges(std::uint32_t element, const Visit& visit) const {
     for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i) {

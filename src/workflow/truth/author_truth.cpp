@@ -10,7 +10,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFramesOfBlock = 256;
-constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a normal nearer to the sum has no offset
+constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a smaller angle to the sum is no offset
 
 // Returns the angle by which rounding may turn a stored normal, in radians: some exporters store bytes.
 double rounding_of_stored(const GltfShading& shading) {
@@ -28,7 +28,7 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// Finds which elements have offsets, the edges from which their azimuths are measured, and stale keys.
+// Finds the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)
@@ -43,7 +43,8 @@ class AuthorTruth::Finder {
         stale_(shading_) {}
 
   void find() {
-    // A key that follows the rule found is right, even if plain sums of triangles call it stale.
+    // If a key follows the rule that was found, it is right, even if it looks stale compared with plain sums of
+    // triangles.
     if (!stale_.list().empty()) stale_.keep_common(StaleKeys(shading_, &truth_.sums_));
     parallel_each(z0_.size(), kFramesOfBlock, [&](std::size_t i) {
       const auto e = static_cast<std::uint32_t>(i);
@@ -122,7 +123,8 @@ class AuthorTruth::Finder {
     });
   }
 
-  // Returns the offset of a stored normal, measured from an edge; nothing if the edge gives no azimuth.
+  // Returns the offset of a stored normal, with its azimuth measured from an edge; nothing if no azimuth can be
+  // measured from that edge.
   [[nodiscard]] std::optional<PlaneOffset> by_edge(const StoredKey& key, std::size_t n, std::uint32_t edge,
                                                    const Vec3d& z) const {
     const auto position = [&](std::uint32_t v) { return key.position(v); };
@@ -141,7 +143,7 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Returns whether the stored normal of a frame at a key can be used. Writes the unit sum there to z.
+  // Returns true if the stored normal of a frame at a key can be used, and writes the unit sum there to z.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;
@@ -205,12 +207,12 @@ class AuthorTruth::Finder {
   std::vector<std::uint32_t> vertex_of_;
   double tolerance_;
   StoredKey base_;
-  std::vector<Vec3d> z0_;  // sum of each element, on the author's side
+  std::vector<Vec3d> z0_;  // sum of each element, flipped to the author's side
   std::vector<double> side_;
   std::vector<char> off_;
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // element of each frame
-  std::vector<PlaneOffset> base_offsets_;  // by each edge
+  std::vector<PlaneOffset> base_offsets_;  // offsets in the base, one for each edge
   std::vector<double> differences_;        // between offsets by each edge and the base's; -1 if the edge cannot be used
 };
 

@@ -1,16 +1,18 @@
 /// The normals that the author of a mesh would see, at any weights. Private to workflow.
 ///
 /// The truth is what the authoring tool renders. The tool adds up the normals of polygons by a rule (author_rule.h),
-/// r(w), and the author may have changed the result, by hand or by a modifier. This change is the *offset*, which moves
-/// along with the surface (offset_frame.h). Let o_0 be the offset of the base, and o_i the offset of target i at weight
-/// 1, as the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0), at most a
-/// right angle from the sum. So the truth passes through all stored normals, and equals r(w) if there is no offset.
-/// Azimuths are measured from the edge for which the offsets of an element differ least; if no edge can be used at
-/// every key, from a direction that the smallest rotation turns along with the sum.
+/// with the result r(w). The author may have changed the result, by hand or by a modifier. This change is the *offset*,
+/// which moves along with the surface (offset_frame.h). Let o_0 be the offset of the base, and o_i the offset of target
+/// i at weight 1, as the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0),
+/// limited to a right angle from the sum. So the truth equals all stored normals at their weights, and equals r(w) if
+/// there is no offset.
+///
+/// Azimuths are measured from the edge for which the offsets of an element differ least. If no edge can be used at
+/// every key, they are measured from a direction that turns along with the sum by the smallest rotation.
 ///
 /// Unknown    If no target stores normals that tell, the motion of an offset is unknown. Its rotation in the base then
 ///            stays constant, so that the truth by area is exact.
-/// Stale      If the stored normals of a target are stale (stale_keys.h), r counts, with the offset of the base.
+/// Stale      If the stored normals of a target are stale (stale_keys.h), its truth is r with the offset of the base.
 /// Degenerate If r(w) is zero, the truth is zero. If r is zero at a key, the offset there is that of the base.
 /// Threads    const functions may run at once
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_TRUTH_H_
@@ -37,12 +39,12 @@ namespace chronormal::inline internal {
 
 class AuthorTruth {
  public:
-  /// The offsets in a pose, of all elements that have any.
+  /// The offsets of all elements that have one, in a pose.
   using Pose = std::vector<PlaneOffset>;
 
   static constexpr std::uint32_t kNone = GltfShading::kNoElement;
 
-  /// The frame in which the offsets of one element are placed.
+  /// The frame in which the offsets of one element are measured.
   struct Frame {
     std::uint32_t first_edge = 0, edge_count = 0;  ///< all edges around the element, in edges()
     std::uint32_t edge = kNone;                    ///< the edge from which azimuths are measured, in edges()
@@ -56,17 +58,17 @@ class AuthorTruth {
     PlaneOffset by;
   };
 
-  /// Finds what the author would see. The shading must outlive this, and keep its deltas of normals; its groups need
-  /// their corners only until this returns. any_split is the result of split_by_keys().
+  /// Finds the truth from all stored normals. The shading must outlive this object and keep its deltas of normals; its
+  /// groups need their corners only during this call. any_split is the result of split_by_keys().
   explicit AuthorTruth(const GltfShading& shading, bool any_split = false);
-  /// Uses sums of triangles by a weighting, and no stored normals except in the base.
+  /// Defines the truth as sums of triangles by a weighting, and uses stored normals only in the base.
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
   /// Returns the sums, which are empty if the truth is plain.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
-  /// Returns whether the truth is n(w), by area, with the offset of the base unchanged, so that the
-  /// truth can be exact.
+  /// Returns true if the truth is n(w), weighted by area, with the offset of the base unchanged. Then it can be
+  /// computed exactly.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
   /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
   /// that keeps the truth records this in its mark.
@@ -79,14 +81,15 @@ class AuthorTruth {
   [[nodiscard]] std::span<const Frame> frames() const noexcept { return frames_; }
   [[nodiscard]] std::span<const std::uint32_t> frame_of_element() const noexcept { return frame_of_element_; }
   [[nodiscard]] std::span<const OffsetEdge> edges() const noexcept { return edges_; }
-  /// Returns the changes of each target, by frames; empty lists if no element has an offset.
+  /// Returns the changes that each target makes to offsets, in the order of frames. The lists are empty if no element
+  /// has an offset.
   [[nodiscard]] std::span<const std::vector<Change>> changes() const noexcept { return changes_; }
 
   /// Return the offsets at the weights of all targets, and of one target alone.
   [[nodiscard]] Pose pose(std::span<const double> weights) const;
   [[nodiscard]] Pose pose_alone(std::size_t target, double weight) const;
 
-  /// Returns the truth of an element in a pose, as long as r(w). position(vertex) gives the positions.
+  /// Returns the truth of an element in a pose, with the length of r(w). position(vertex) gives the positions.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, const Pose& pose) const {
     return turned_sum(element, sums_.at(element, position), position, pose);
@@ -103,7 +106,7 @@ class AuthorTruth {
     const Vec3d x = frame.edge == kNone ? turned_with(frame, z) : zero_azimuth(edges_[frame.edge], z, position);
     return size * internal::with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
   }
-  /// Call visit(i, truth) for the i-th of some elements, and visit(element, truth) for all elements; on all cores.
+  /// Call visit(i, truth) for the i-th of some elements, or visit(element, truth) for all elements, on all cores.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Pose& pose,
                 const Visit& visit) const {
@@ -144,14 +147,14 @@ class AuthorTruth {
   std::vector<OffsetEdge> edges_;
   std::vector<Frame> frames_;
   std::vector<std::uint32_t> frame_of_element_;  // empty if no element has an offset
-  std::vector<std::vector<Change>> changes_;     // changes of each target, by frames
+  std::vector<std::vector<Change>> changes_;     // for each target, in the order of frames
   std::vector<StaleKey> stale_;
   bool any_split_ = false;
 };
 
-/// Finds the normals that the author of a mesh would see, or uses sums by a weighting if one is requested. In the first
-/// case, copies of a point whose normals differ at a key become separate elements. The shading must satisfy the
-/// preconditions of the constructor that takes it.
+/// Finds the normals that the author of a mesh would see. If a weighting is requested, uses sums by this weighting
+/// instead. In the first case, vertices at one point whose normals differ at a key become separate elements. The
+/// shading must satisfy the preconditions of the constructor that takes it.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

@@ -45,15 +45,16 @@ template <class PositionOf>
   return count > 0 && sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-/// Returns the direction perpendicular to z in which an edge leaves its point; zero if it has none.
+/// Returns the direction of azimuth 0: perpendicular to z, on the side to which the edge leaves its point. Returns zero
+/// if the edge has no such direction.
 template <class PositionOf>
 [[nodiscard]] Vec3d zero_azimuth(const OffsetEdge& edge, const Vec3d& z, const PositionOf& position) {
   const Vec3d along = unit(position(edge.to) - position(edge.from));
   return unit(along - dot(along, z) * z);
 }
 
-/// Returns true if azimuths can be measured from an edge, which must be longer than 1e-6 of the longest edge, and more
-/// than a degree from z.
+/// Returns true if azimuths can be measured from an edge. The edge must be longer than 1e-6 of the longest edge, and
+/// more than a degree from z.
 template <class PositionOf>
 [[nodiscard]] bool gives_azimuth(std::span<const OffsetEdge> edges, const OffsetEdge& edge, const Vec3d& z,
                                  const PositionOf& position) {
@@ -82,9 +83,9 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// Returns the angle in radians between a stored normal at a key and the base normal with its offset moved there,
-/// measured from the edge that gives the smallest angle. base and at_key give positions, z0 and z are the unit sums, s0
-/// and s the stored normals.
+/// Returns the angle in radians between a stored normal at a key and the base normal with its offset moved to that key.
+/// It tries all edges and returns the smallest angle. base and at_key give positions, z0 and z are the unit sums, s0
+/// and s the stored normals (in the base and at the key).
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: a vertex that turns less tells little of a key
+constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: a vertex that turns less says little about a key
 
 double median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -21,7 +21,7 @@ double median_of(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-// Numbers the connected parts of the surface. Returns the part of each vertex.
+// Finds the connected parts of the surface. Returns the number of the part for each vertex.
 std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size_t& count) {
   std::vector<std::uint32_t> parent(shading.point_of_vertex.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -69,9 +69,9 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// Gathers the vertices of a connected part of the mesh that a key turns.
+// The vertices that a key turns, in one connected part of the mesh.
 struct PartOfKey {
-  std::vector<float> turned, off;  // radians, of the vertices that turn
+  std::vector<float> turned, off;  // angles in radians, of the vertices that turn
   double together = 0, of_surface = 0, of_stored = 0;
 
   [[nodiscard]] bool is_stale() {
@@ -144,7 +144,7 @@ bool split_by_keys(GltfShading& shading) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   if (targets.empty() || shading.groups.size() == 0) return false;
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
-  // Only vertices that share an element with other vertices can be split.
+  // Only vertices that share an element with other vertices can get an element of their own.
   std::vector<std::uint32_t> sharing;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
     const std::uint32_t e = shading.element_of_vertex[v];
@@ -156,7 +156,7 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  std::vector<std::uint32_t> first_of = vertex_of;  // for each class, the vertex that others are compared with
+  std::vector<std::uint32_t> first_of = vertex_of;  // for each class, the vertex with which others are compared
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
     // Lists, for each class that this key splits, the first vertex of each new class.

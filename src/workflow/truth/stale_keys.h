@@ -1,12 +1,13 @@
 /// Finds stored normals of targets that do not show what their author saw. Private to workflow.
 ///
 /// Another program may have moved vertices after the normals of a target were computed, or may have stored no normals.
-/// A target is *stale* on a connected part of the mesh if its normals
+/// A target is *stale* on a connected part of the mesh if both conditions hold:
 ///
-///     are no nearer to the turned surface than the base normals: if the base normals turn like the faces around their
-///     vertices, the median angle to the results is at least three quarters of the median turn; and
-///     do not turn like the surface: over the part, the turns of normals and surface, as axes times sines, have a
-///     correlation below a half.
+///     Its normals are no nearer to the true ones than the base normals. If the base normals are turned like the faces
+///     around their vertices, the median angle from these to the stored normals is at least three quarters of the
+///     median turn.
+///     Its normals do not turn like the surface. Over the part, the turns of normals and surface, as axes times sines,
+///     have a correlation below a half.
 ///
 /// The first condition alone would also find targets whose author weights faces differently. Vertices around which the
 /// surface turns by less than a degree do not count. Connected parts are judged as a whole, since exporters drop small
@@ -32,10 +33,10 @@ struct StaleKey {
 class StaleKeys {
  public:
   StaleKeys() = default;
-  /// Judges all targets that store normals, by the sums of elements if given, and otherwise by area around each vertex.
-  /// O(corners) for each target, on all cores.
+  /// Judges all targets that store normals, compared with the given sums of elements, or with sums by area around each
+  /// vertex if `sums` is nullptr. O(corners) for each target, on all cores.
   explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
-  /// Keeps the parts of targets that `others` find stale too.
+  /// Keeps only those parts of targets that `others` find stale as well.
   void keep_common(const StaleKeys& others);
 
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {
@@ -47,13 +48,13 @@ class StaleKeys {
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  std::vector<std::vector<bool>> stale_;  // for each target, whether each part is stale; empty if no part is
+  std::vector<std::vector<bool>> stale_;  // for each target and each part, whether it is stale; empty if no part is
   std::vector<bool> is_all_stale_;        // for each target
   std::vector<StaleKey> list_;
 };
 
-/// Splits the elements of copies of a point whose base normals agree but whose normals at a key differ, unless the key
-/// is stale, since an edge may be hard in a single target. The groups must have their corners. Returns true if any
+/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ, because
+/// an edge may be hard in a single target. Ignores stale keys. The groups must have their corners. Returns true if any
 /// element was split.
 bool split_by_keys(GltfShading& shading);
 

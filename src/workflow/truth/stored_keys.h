@@ -1,7 +1,8 @@
 /// The author's normals that a file stores, for the base and for each target at weight 1. Private to workflow.
 ///
-/// A bake spreads the normals of a target over its own deltas and the deltas of correction targets that follow its
-/// weight. If the mark of the bake states that the sums are still the author's normals, this code adds them up again.
+/// A bake distributes the normals of a target over the deltas of the target and the deltas of correction targets that
+/// follow its weight. If the mark of the bake states that their sums are still the author's normals, this code adds
+/// them up again.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 
@@ -36,7 +37,7 @@ class StoredKey {
  private:
   [[nodiscard]] Vec3d delta(std::uint32_t vertex) const noexcept;
 
-  // The deltas of a target, times its weight.
+  // The deltas of one target, and the weight by which they are multiplied.
   struct Part {
     const std::vector<float>* deltas = nullptr;
     double weight = 1;
@@ -46,7 +47,7 @@ class StoredKey {
   std::vector<Part> parts_;   // the target and the correction targets that follow it
 };
 
-/// Lists the targets that have their author's normals, in ascending order. The list is empty if an earlier bake
+/// Lists the targets whose stored normals are the author's, ascending. The list is empty if an earlier bake has
 /// replaced these normals.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 

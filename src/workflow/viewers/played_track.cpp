@@ -20,13 +20,14 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Returns the weights of Hermite interpolation: of the value before, its tangent, the value after and its tangent.
+// Returns the factors of Hermite interpolation for the value before, its tangent, the value after, and its tangent.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
 }
 
-// gltfpack rounds the number of samples, with a bias towards one more.
+// Returns the index of the last sample, as gltfpack does: it rounds the number of samples, with a bias towards one
+// more.
 double index_of_last_sample(const TimeRange& animation) noexcept {
   constexpr double kBias = 0.8;
   return std::floor((animation.last - animation.first) * kViewerSampleRate + kBias);
@@ -62,7 +63,7 @@ PlayedTrack::PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation 
 
 void PlayedTrack::sample(double index, std::span<double> weights) const {
   double time = first_ + index / kViewerSampleRate;
-  // The last sample of a spline is its last key, which need not be at a multiple of the step.
+  // The last sample of a spline is its last key, whose time need not be a multiple of the step.
   if (viewer_.tracks == TrackRule::kSplinesResampled) time = std::min(time, last_);
   curve_.at(time, false, weights);
   if (viewer_.weight_bits == 32) return;
@@ -88,8 +89,9 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // This viewer misreads the values of one target as a spline with three values per key, and uses the first third,
-    // which are in-tangents, as the keys. Past the end of the array there are no values, so that the weight is 0.
+    // This viewer misreads the values of a single target as a spline with three values per key. It uses the first third
+    // of the array, which are in-tangents, as the keys. Beyond the end of the array there are no values, so the weight
+    // is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

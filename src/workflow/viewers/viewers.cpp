@@ -1,4 +1,4 @@
-// Rounding of normals and deltas as viewers store them.
+// Rounds normals and deltas as viewers do when they store them.
 #include "chronormal/workflow/viewers.h"
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 namespace chronormal {
 namespace {
 
-// Returns the nearest 16-bit float, halves away from zero. It has a sign, 5 bits of exponent and 10 of fraction; a
-// float32 has 23 bits of fraction.
+// Returns the nearest 16-bit float; ties are rounded away from zero. A 16-bit float has a sign, 5 bits of exponent and
+// 10 bits of fraction; a float32 has 23 bits of fraction.
 float half(float value) noexcept {
   constexpr std::uint32_t kInfinity = 0x7f800000, kLeastNormal = 0x38800000, kHalfOfLast = 1U << 12;
-  constexpr float kLargest = 65504, kStep = 0x1p-24F;  // the step below 2^-14
+  constexpr float kLargest = 65504, kStep = 0x1p-24F;  // kStep: the step between numbers below 2^-14
   const float size = std::fabs(value);
   const auto bits = bit_cast<std::uint32_t>(size);
   if (bits >= kInfinity) return value;
@@ -29,8 +29,8 @@ float half(float value) noexcept {
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
 
-// Rounds to a signed integer that represents [-1, 1], with halves away from zero. Integers of 9 to 15 bits are stored
-// in 16 bits: their upper bits are repeated in the unused lower bits, so that 1 stays 1.
+// Rounds to a signed integer that represents [-1, 1]; ties are rounded away from zero. Integers of 9 to 15 bits are
+// stored in 16 bits: their upper bits are repeated in the unused lower bits, so that 1 stays 1.
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
@@ -79,8 +79,8 @@ Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
 }
 
-// Returns the first axis of Frisvad's frame of a unit vector, here with y up. Like the viewer, it applies the formula
-// to vectors of any length.
+// Returns the first axis of Frisvad's frame of a unit vector, here with y up. The viewer applies the formula also to
+// vectors of other lengths, so this function does the same.
 Vec3d first_axis(const Vec3d& n) noexcept {
   constexpr double kDown = -1 + 1.0 / (1 << 23);
   if (n.y < kDown) return {-1, 0, 0};
@@ -88,8 +88,8 @@ Vec3d first_axis(const Vec3d& n) noexcept {
   return {-n.z * n.x * a, -n.z, 1 - n.z * n.z * a};
 }
 
-// Returns the third axis of the rotation that the viewer reads from the frame of a vector, after the rotation was
-// stored as a quaternion of signed integers. The conversion expects an orthonormal frame, but is applied to any.
+// Returns the third axis of a vector's frame after the viewer has stored it as a quaternion of signed integers. The
+// viewer converts any frame as if it were orthonormal, so this function does the same.
 Vec3d through_frame(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const Vec3d x = first_axis(v), y = cross(v, x);
@@ -115,8 +115,8 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
       Vec3d{2 * (q[0] * q[2] + q[3] * q[1]), 2 * (q[1] * q[2] - q[3] * q[0]), 1 - 2 * (q[0] * q[0] + q[1] * q[1])});
 }
 
-// Returns the unit normal that a viewer stores for a vector of any length. A viewer with 32 bits only rounds it to
-// float32. A viewer that stores frames also turns vectors whose length is not 1.
+// Returns the unit normal that a viewer stores for a vector of any length. A viewer with 32 bits only rounds the vector
+// to float32. A viewer that stores frames also turns vectors whose length is not 1.
 Vec3f kept_direction(const Viewer& viewer, const Vec3f& v) noexcept {
   constexpr int kAllBits = 32;
   const Vec3d vector = to_double(v);
