@@ -34,10 +34,10 @@ class Expansion {
   [[nodiscard]] static Expansion unlimited() noexcept { return Expansion(static_cast<std::size_t>(-1), kAlways); }
 
   void add_read(std::uint64_t bytes) noexcept { read_ += bytes; }
-  /// Returns how many bytes were read.
+  /// Returns the number of bytes that were read.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return read_; }
 
-  /// Returns the most bytes that may be asked for.
+  /// Returns the largest number of bytes that a file may ask for.
   [[nodiscard]] std::uint64_t most() const noexcept;
   /// Checks that the file may ask for this number of bytes; pass 2^64 - 1 for a number that overflowed. Errors:
   /// kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow it.

@@ -93,7 +93,7 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   return NumberFault::kNone;
 }
 
-// Takes a fast path without loss: if w is an integer of at most 53 bits and p is at most 22, w / 10^p and w 10^p are
+// The fast path for plain numbers. If w is an integer of at most 53 bits and p is at most 22, w / 10^p and w 10^p are
 // correctly rounded doubles (Clinger 1990). Rounding such a double to float gives the right result, unless the double
 // lies exactly in the middle between two floats, because the first rounding may have moved it there.
 bool take_plain_float(std::string_view& line, float& value) noexcept {

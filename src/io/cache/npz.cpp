@@ -291,8 +291,8 @@ class Archive {
     return nullptr;
   }
 
-  // Checks that the limit of expansion allows the memory of an array, as bytes and as numbers, in addition to
-  // everything that was read before.
+  // Checks that the limit of expansion allows the memory of an array, once for its bytes and once for its numbers, in
+  // addition to everything that was read before.
   [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
     constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
     const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;

@@ -12,7 +12,7 @@ struct Row {
 
 double number(std::span<const float> numbers, std::size_t i) { return static_cast<double>(numbers[i]); }
 
-// Returns the key with this index, as in the file.
+// Returns key k as the file stores it. The tangents are 0 unless the channel is a cubic spline.
 Row key_at(const LoneKeys& keys, std::size_t k) {
   if (keys.interpolation != GltfInterpolation::kCubicSpline) return {0, number(keys.values, k), 0};
   return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};

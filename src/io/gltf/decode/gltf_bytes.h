@@ -49,7 +49,7 @@ struct Origin {
 
 class Bytes {
  public:
-  /// The model must outlive this, and so must the BIN chunk.
+  /// Creates a reader of an asset's bytes. The model and the BIN chunk must outlive it.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
   /// Returns the bytes of a buffer, at least as many as it declares. Errors: the buffer has no bytes or too few; the

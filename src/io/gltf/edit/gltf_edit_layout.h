@@ -54,9 +54,9 @@ class EditLayout {
   /// Return the results of run().
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
-  /// Returns how many bytes of the source are left out.
+  /// Returns the number of bytes of the source that are left out.
   [[nodiscard]] std::size_t unused_bytes() const noexcept { return unused_.bytes(); }
-  /// Returns the file, in pieces that live as long as this.
+  /// Returns the file, in pieces that are valid as long as this object.
   [[nodiscard]] Result<GlbPieces> file() const;
 
  private:

@@ -31,7 +31,7 @@ struct UnusedArrays {
 
   std::vector<std::vector<Range>> ranges;  ///< ranges of each buffer, ascending and apart; empty if nothing is left out
   std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty if no view moves
-  /// Changes to the JSON after these bytes are left out: JSON pointers and new values.
+  /// Changes to the JSON that follow from leaving out bytes: JSON pointers and new values.
   std::vector<std::pair<std::string, std::string>> changes;
 
   [[nodiscard]] bool any() const noexcept { return !ranges.empty(); }
