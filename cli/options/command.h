@@ -33,8 +33,8 @@ struct CommonOptions {
   [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
-/// Returns the options that choose the input, as in io/input.h, except those that the command refuses. The table refers
-/// to `input`.
+/// Returns the table of options that choose the input, as in io/input.h, except those that the command refuses. The
+/// options set the members of `input`.
 [[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
 /// Opens the input that the options name, with a progress bar. Prints, in the name of the command, notes on how it was

@@ -24,7 +24,7 @@
 
 namespace chronormal::cli {
 
-/// The arguments as they were written.
+/// The arguments of --times, --weights and --step, as text.
 struct MomentArguments {
   std::string times;                 ///< empty: none
   std::vector<std::string> weights;  ///< a list for each pose

@@ -16,7 +16,7 @@
 
 namespace chronormal::cli {
 
-/// Returns the problem with the value of an option as it was written, or an empty text if there is none.
+/// A check of an option's value as text. It returns the problem, or an empty text if the value is valid.
 using Check = std::function<std::string(const std::string& value)>;
 
 /// One row of the table: an option, or the arguments without a name.

@@ -126,7 +126,7 @@ std::string latex_text(const std::string& text) {
   return result;
 }
 
-// Returns the name of the scheme in the paper's tables, or else its own name.
+// Returns the name that the paper's tables use for a scheme, or the scheme's own name if it is not in the paper.
 std::string latex_scheme(const std::string& scheme) {
   struct Row {
     std::string_view scheme, name;

@@ -12,7 +12,8 @@ namespace chronormal::cli {
 /// Counts the lines of faults, including lines that are cut.
 [[nodiscard]] std::size_t count_fault_lines(const Audit& audit);
 
-/// Return the lines with their title, the worst faults first, or an empty text if there are none. Long lists are cut.
+/// Return the lines of faults (the worst first) or of notes, with a title, or an empty text if there are none. Long
+/// lists are cut.
 [[nodiscard]] std::string fault_lines(const Audited& input);
 [[nodiscard]] std::string note_lines(const Audited& input);
 
