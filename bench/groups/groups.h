@@ -18,10 +18,10 @@ void run_meshes(Suite& suite);
 /// Measures every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Measures bounds of the largest errors of schemes, beside dense sampling.
+/// Measures bounds of the largest errors of schemes, and dense sampling for comparison.
 void run_certificates(Suite& suite, const Size& size);
 
-/// Measures cones, bounds of clusters and means over a segment, beside sampling.
+/// Measures cones, bounds of clusters and means over a segment, and sampling for comparison.
 void run_cones(Suite& suite, const Size& size);
 
 /// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.

@@ -34,7 +34,7 @@ vtkNew<vtkPolyData> make_mesh(const TriangleMesh& from) {
 
 struct KeptMesh : LibraryMesh {
   explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {
-    // Does what vtkSMPTools::Initialize() does. Its header does not compile as C++20.
+    // Does the work of vtkSMPTools::Initialize(), whose header does not compile as C++20.
     vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(1);
     for (vtkPolyDataNormals* const filter : {of_faces.Get(), of_vertices.Get()}) {
       filter->SetInputData(mesh);
