@@ -60,7 +60,7 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   return result;
 }
 
-// Tells whether a target changes what is rendered: by vertices that it moves, or by normals alone.
+// Returns true if a target changes the image: it moves vertices, or changes only normals.
 bool changes(const GltfShading& shading, std::size_t target) { return moves(shading, target) || shading.turns[target]; }
 
 bool any_changes(const GltfShading& shading) {
@@ -105,7 +105,7 @@ void cut_gaps(MeshWeights& weights) {
     track.pieces_of_line = std::clamp<std::size_t>(kNodes / std::max<std::size_t>(1, track.size()), 1, kMostPieces);
 }
 
-// Fills in what the report takes from the plan.
+// Copies facts about the plan to the report.
 void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.encoding = plan.encoding;
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));

@@ -31,8 +31,9 @@
 namespace chronormal {
 namespace {
 
-// The rounding error of a normal, relative to coordinate times edge. Rounding to float32 moves a point by up to sqrt(3)
-// times half a unit in the last place. An edge has two such ends, and a cross product two such edges.
+// The rounding error of a normal, relative to the largest coordinate times the longer edge. Rounding to float32 moves a
+// point by up to sqrt(3) times half a unit in the last place. An edge has two such ends, and a normal is the cross
+// product of two such edges.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
 // A block has this many faces or vertices, so that their control normals stay in the second-level cache. A wave has one

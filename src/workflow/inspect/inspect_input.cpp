@@ -8,7 +8,7 @@ namespace {
 
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 
-// Inspects the motion or the mesh, both of which are keyframes.
+// Inspects a motion, or a mesh at rest, which is a single keyframe.
 Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
   const Result<MotionStream*> read = result.opened.stream();
   if (!read) return read.error();

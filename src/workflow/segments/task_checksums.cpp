@@ -1,4 +1,4 @@
-// Computes checksums of keyframes while a stream reads them, and of the outline of a motion.
+// Computes checksums of keyframes while a stream reads them, and of all data of a motion except its positions.
 #include "workflow/segments/task_checksums.h"
 
 #include <limits>

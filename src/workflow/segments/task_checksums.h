@@ -68,8 +68,7 @@ class KnownParts {
 
  private:
   std::vector<std::string> parts_;
-  std::map<std::string, std::pair<std::uint32_t, std::size_t>>
-      first_;  // by name: a checksum, and the first part with it
+  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;  // the first checksum of each name, and its part
 };
 
 }  // namespace chronormal::inline internal

@@ -127,7 +127,7 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
       whole_at[list].push_back(e);
     }
   }
-  // Calls add(element, corner) for the corners of a polygon, and returns whether any element adds one up.
+  // Calls add(element, corner) for each corner of a polygon that an element adds up. Returns true if there is one.
   const auto for_corners = [&](std::size_t t, const auto& add) {
     const auto loop = polygons.corners(t);
     bool any = false;

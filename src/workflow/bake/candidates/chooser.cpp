@@ -214,8 +214,8 @@ class Chooser {
     return least;
   }
 
-  // Returns the changes of all viewers. Measures them anew for a viewer whose files compressors round, and takes the
-  // known changes for the others.
+  // Returns the changes of all viewers: measured again for viewers whose files are rounded by compressors, and the
+  // known changes for all other viewers.
   [[nodiscard]] std::vector<ViewerChange> changes(const std::vector<ErrorsOfKinds>& before,
                                                   const std::vector<ErrorsOfKinds>& after,
                                                   std::vector<ViewerChange> known) const {

@@ -53,7 +53,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
   // Calls visit(p, openness) with the angle between two normals of a vertex in pose p, as an openness (a monotonic
-  // function of the angle): the rendered one, and the same one plus what the straight line lacks.
+  // function of the angle): the rendered one, and the same one plus the missing part of the correction weights.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
     thread_local std::vector<float> shown, off;

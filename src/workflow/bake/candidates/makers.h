@@ -24,8 +24,8 @@ namespace chronormal::inline internal {
 
 /// The lengths that N + D and the deltas E of correction targets may have.
 enum class Lengths {
-  kUnit,   ///< N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1:
-           ///< right in any viewer, after any compressor
+  kUnit,   ///< N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1.
+           ///< Every viewer then renders them right, after any compressor
   kShort,  ///< N + D has the length of N, and E is much shorter than N, with larger weights in return: a viewer that
            ///< keeps only the direction of N + E loses the part of E along N, and almost nothing else
   kFree    ///< any length, if all viewers add the deltas as stored

@@ -36,7 +36,7 @@ struct Candidate {
 /// Returns the nonzero deltas that the file stores, of vertices that show a normal.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
-/// Returns the arrays that were computed for one target as a column.
+/// Converts the arrays of deltas of one target to a column.
 [[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
 
 /// Returns the vertices whose normal a target may turn, by its faces or by its stored deltas.
@@ -53,7 +53,7 @@ struct Candidate {
                                                      std::size_t target);
 /// Returns the deltas of a correction target.
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
-/// Tells whether anything changes from what is stored.
+/// Returns true if a candidate has other deltas than the file, or has correction targets.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
 /// Estimates the bytes that a candidate takes: its arrays of deltas, the drivers of its correction targets, and the
 /// growth of the tracks that drive them.

@@ -116,7 +116,7 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
-  /// Returns the largest remaining angle.
+  /// Returns the largest remaining angle in radians.
   [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:
@@ -209,7 +209,7 @@ class Together {
     }
   }
 
-  // Returns these elements with the best deltas of each target alone.
+  // Returns the elements that were found, with the best deltas of each target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {

@@ -40,9 +40,10 @@ class RightNormals {
   /// Returns the right normal of a vertex, given the normal of its element.
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
-  /// Calls visit(n, first, right) for each vertex, where n is its index in the list. `right` has its unit normals in a
-  /// batch of poses, from pose number `first` on. Calls for different n may run at the same time; the batches follow
-  /// each other. Cost: for each pose all positions, and the normals of these vertices.
+  /// Calls visit(n, first, right) for each vertex and each batch of poses. n is the index of the vertex in the list,
+  /// and `right` has the unit normals of this vertex in the poses from number `first` on. Calls for different n may run
+  /// at the same time; the batches follow each other. Cost: for each pose all positions, and the normals of these
+  /// vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kTogether = 8, kVertices = 64;
@@ -83,7 +84,7 @@ class RightNormals {
   // Returns n(w) of some elements.
   [[nodiscard]] std::vector<Vec3d> normals_of(std::span<const double> pose,
                                               std::span<const std::uint32_t> elements) const;
-  // Returns the unit vectors of of_elements().
+  // Returns the unit normals of some elements; (0, 0, 0) where there is no direction.
   [[nodiscard]] std::vector<Vec3d> directions_of(std::span<const double> pose,
                                                  std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_judged(std::uint32_t element, const Vec3d& normal) const noexcept;

@@ -27,7 +27,7 @@ namespace chronormal::inline internal {
 /// have its deltas. O(corners) for each target that moves something.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
-/// Returns what a target adds to the tangents: (vertices, 3) of each part, empty for parts without tangents.
+/// Returns the deltas of a target for tangents: (vertices, 3) for each part, empty for parts without tangents.
 [[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target);
 
 }  // namespace chronormal::inline internal

@@ -63,16 +63,16 @@ struct ExtraCurves {
   [[nodiscard]] std::span<const double> of(std::size_t node) const {
     return std::span(values).subspan(node * extras, extras);
   }
-  /// Writes the weights of the correction targets at a part of the gap after a key.
+  /// Writes the weights of the correction targets in the gap after a key, at the position `part` from 0 to 1.
   void at(const CurveNodes& nodes, std::size_t key, double part, std::span<double> weights) const;
 };
 
 using TrackCurves = std::map<TrackName, ExtraCurves>;
 
 /// Extends a track by curves. A LINEAR track stays LINEAR, with the given pieces of each gap (straight_track), or
-/// becomes a cubic spline if there are none. A cubic spline is split at the ends of the curves' pieces, where it plays
-/// as before, and holds the curves exactly. If that takes more than most_keys, the result has no values, but the number
-/// of keys that it would have.
+/// becomes a cubic spline if `pieces` is empty. A cubic spline gets more keys at the ends of the curves' pieces; it plays
+/// as before, and holds the curves exactly. If that takes more than most_keys keys, the result has no values, but the
+/// number of keys that it would have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());

@@ -154,7 +154,7 @@ PlayedPose pose_at(const PlayedTrack& played, std::size_t targets, std::size_t t
   return pose;
 }
 
-// Returns the keys of a track and of a skin, and the instants between.
+// Returns the times of all keys of a track and of a skin, and some times between neighbouring keys.
 std::vector<double> skinned_instants(const WeightTrack& track, const MeshSkin& skin) {
   const std::vector<double> keys = keys_of_both(track, skin);
   std::vector<double> times;

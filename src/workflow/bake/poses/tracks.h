@@ -62,8 +62,8 @@ inline constexpr std::size_t kBytesPerWeight = 48;
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Writes the weights of correction targets at a part of the gap after a key, from the weights of the mesh's own
-/// targets.
+/// Writes the weights of correction targets in the gap after a key, at the position `part` from 0 to 1. `own` has the
+/// weights of the mesh's own targets there.
 using ExtrasAt =
     std::function<void(std::size_t key, double part, std::span<const double> own, std::span<double> extras)>;
 
