@@ -127,7 +127,7 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// Adds up the unit normals of the base and the sparse deltas of each target, as engines do.
+// The sum of the unit normals of the base and the sparse deltas of each target, as engines compute it.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {

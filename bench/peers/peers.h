@@ -49,7 +49,7 @@ struct Call {
   std::string note = {};              ///< the input, if it is not only positions
   bool slow_in_random_order = false;  ///< true if 10 M elements take minutes
   void (*compute)(LibraryMesh&) = nullptr;
-  /// Returns a unit normal of the last call of compute()
+  /// Returns the unit normal of an element from the last call of compute()
   Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;
 };
 
@@ -59,7 +59,7 @@ struct Library {
   std::unique_ptr<LibraryMesh> (*make_mesh)(const TriangleMesh&) = nullptr;
 };
 
-/// Tells which points, (P, 3), are inside a closed mesh, by vtkSelectEnclosedPoints.
+/// Returns for each point of (P, 3) whether it is inside a closed mesh, by vtkSelectEnclosedPoints.
 [[nodiscard]] std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points);
 
 [[nodiscard]] Library openmesh_library();

@@ -149,7 +149,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
-  // Tells a user who interrupts the audit that the file is complete.
+  // A guard: while it lives, a user who interrupts the audit is told that the file is complete.
   struct Stands {
     Stands() {
       say_at_end(
@@ -351,8 +351,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Finds the output file. If -o is not given and several files are, the last one is the output, as in IN OUT, if its
-// extension allows that.
+// Finds the output file. Without -o, the last of several files is the output, as in IN OUT, if its extension allows
+// that.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {

@@ -22,9 +22,9 @@ namespace chronormal::inline internal {
 /// The most bytes that are read from a pipe, a terminal, or a file without a size. They are all held in memory.
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
-/// Holds the bytes of a file as long as the object lives. A regular file is mapped: if another program shortens it
-/// meanwhile, or its disk fails, reading the lost part raises SIGBUS, and the program ends (cli/terminal/process.h).
-/// Pipes and terminals are read to their end.
+/// The bytes of a file, which are valid as long as the object lives. A regular file is mapped: if another program
+/// shortens it meanwhile, or its disk fails, reading the lost part raises SIGBUS, and the program ends
+/// (cli/terminal/process.h). Pipes and terminals are read to their end.
 class FileBytes {
  public:
   /// Opens a file; "-" is the standard input.

@@ -24,7 +24,7 @@ namespace chronormal::inline internal::scan {
 /// the place "NAME, byte N"
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
-/// Hands out the lines of a text without their ends, counted from 1.
+/// An iterator over the lines of a text, without their ends. Lines are counted from 1.
 class Lines {
  public:
   /// separator ends a line: '\n' (which includes CRLF) or '\r'.

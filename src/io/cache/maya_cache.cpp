@@ -113,7 +113,7 @@ bool take_number_after(std::string_view& text, std::string_view word, std::int32
   return true;
 }
 
-// Returns whether a file name is STEM "Frame" N EXTENSION or STEM "Frame" N "Tick" M EXTENSION.
+// Returns true if a file name has the form STEM "Frame" N EXTENSION or STEM "Frame" N "Tick" M EXTENSION.
 bool is_frame_file(std::string_view file, std::string_view stem, std::string_view extension) {
   if (!file.starts_with(stem) || !file.ends_with(extension) || file.size() < stem.size() + extension.size())
     return false;

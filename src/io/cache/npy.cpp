@@ -13,7 +13,7 @@
 namespace chronormal::inline internal::npy {
 namespace {
 
-// Reads the few forms of Python that occur in a header.
+// A reader of the few forms of Python that occur in a header.
 class Python {
  public:
   explicit Python(std::string_view text) noexcept : text_(text) {}
@@ -74,7 +74,8 @@ class Python {
   std::string_view text_;
 };
 
-// Reads "<f4", or if text is allowed "<U7". Returns false for a type that is not supported.
+// Reads the type of an array, such as "<f4" or, if allow_text is true, "<U7". Returns false for a type that is not
+// supported.
 bool read_type(std::string_view type, bool allow_text, Array& array) {
   if (allow_text && type.size() > 2 && (type[1] == 'U' || type[1] == 'S')) {
     std::uint32_t length = 0;

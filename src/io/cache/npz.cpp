@@ -217,7 +217,7 @@ Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
   return invalid_input(place, "kind must be sequence, targets or animation, but is " + scan::quoted(text.value()));
 }
 
-// Reads the arrays of an archive, one at a time.
+// A reader of the arrays of an archive, one at a time.
 class Archive {
  public:
   Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members, std::size_t max_expansion)

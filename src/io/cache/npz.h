@@ -73,7 +73,7 @@ namespace chronormal::inline internal {
 /// array cannot represent; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
-/// Builds the bytes of a .npy file: an array in C order, little endian, whose elements are appended in order.
+/// A builder of the bytes of a .npy file: an array in C order, little endian, whose elements are appended in order.
 class NpyBytes {
  public:
   /// Begins an array of float32.
@@ -109,7 +109,7 @@ struct NpzMember {
 /// Returns the bytes of positions (V, 3) as float64, with the origin added.
 [[nodiscard]] std::string placed_bytes(std::span<const float> positions, const Origin& origin);
 
-/// Writes a .npz file of uncompressed arrays, several of which may grow at the same time.
+/// A writer of a .npz file of uncompressed arrays, several of which may grow at the same time.
 ///
 ///     NpzOutput npz(file);
 ///     const std::size_t normals = npz.add_growing("normals", {moments, outputs, 3});

@@ -24,7 +24,7 @@ using gltf::WeightCurve;
 // An animation of a face that speaks for 15 minutes needs some 200,000 pieces at the default tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
-// Collects the primitives of a motion in order, with the targets and tracks that move them.
+// A collector of the primitives of a motion in order, with the targets and tracks that move them.
 class Assembly {
  public:
   Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
@@ -228,7 +228,7 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   return assembly.finish();
 }
 
-// Reads one animation: the curves of the nodes that it drives, and the pieces of time between their keys.
+// A reader of one animation: the curves of the nodes that it drives, and the pieces of time between their keys.
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)

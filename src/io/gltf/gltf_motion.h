@@ -48,7 +48,7 @@ struct GltfMotion {
   std::vector<double> key_times = {};
 };
 
-/// Returns whether a target moves the positions of a primitive with faces.
+/// Returns true if some target of the document moves a primitive with faces.
 [[nodiscard]] bool has_moving_targets(const GltfDocument& document) noexcept;
 
 /// Reads the motion that the options name. Only parts that can move are included: primitives with faces and targets,

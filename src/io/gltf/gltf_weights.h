@@ -18,7 +18,7 @@ class WeightCurve {
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
 
-  /// Returns whether weights just before a key may differ from the weights at the key.
+  /// Returns true if weights just before a key may differ from the weights at the key.
   [[nodiscard]] bool jumps() const noexcept { return interpolation_ == GltfInterpolation::kStep; }
 
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }

@@ -33,7 +33,7 @@ struct ReadMotion {
 /// A function that returns the files of a folder that belong to the input, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
-/// Returns whether path a comes before b. Runs of digits count as numbers of any size; plain order breaks ties.
+/// Returns true if path a comes before path b. Runs of digits count as numbers of any size; plain order breaks ties.
 [[nodiscard]] bool stands_before(const std::string& a, const std::string& b);
 
 /// Sorts the files of the folder or pattern `input`.
@@ -59,8 +59,8 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// Returns which of `count` keyframes the options select. In a loop, the first of them is repeated at the end. Errors:
-/// kUsage with the option as the place, if there are fewer than two.
+/// Returns the indices of the keyframes, out of `count`, that the options select. In a loop, the first of them is
+/// repeated at the end. Errors: kUsage with the option as the place, if there are fewer than two.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
 /// Returns the time at which a loop comes back to its first keyframe. `frames` are the chosen keyframes, of which the

@@ -97,8 +97,8 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// Builds the tree while the parser goes through the text, without the items that JsonItems takes. (The library's own
-// parser with a callback is slow: at the end of every object it goes through all siblings.)
+// A builder of the tree while the parser goes through the text, without the items that JsonItems takes. (The library's
+// own parser with a callback is slow: at the end of every object it goes through all siblings.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` are these

@@ -23,8 +23,8 @@ namespace chronormal::inline internal {
 /// The deepest allowed nesting of arrays and objects; glTF itself needs about ten levels.
 inline constexpr std::size_t kDeepestJson = 256;
 
-/// Removes the objects of a long list while it is parsed, so that they need no memory: every object in the array `key`
-/// of the root is passed to `take` with its index, and dropped. Other items stay in the array.
+/// A way to remove the objects of a long list while it is parsed, so that they need no memory: every object in the
+/// array `key` of the root is passed to `take` with its index, and dropped. Other items stay in the array.
 struct JsonItems {
   std::string_view key;
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
@@ -64,7 +64,7 @@ class JsonView {
   JsonView(const nlohmann::json& value, std::string pointer, JsonComplaint& complaint)
       : value_(&value), pointer_(std::move(pointer)), complaint_(&complaint) {}
 
-  /// Returns whether the object has this member. Values that are not objects have none.
+  /// Returns true if the object has this member. Values that are not objects have none.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
   /// Return a member as a view if it is a non-empty object (or array). Return nothing if it is missing, or after a

@@ -22,7 +22,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string json_number(float value);
 [[nodiscard]] std::string json_number(double value);
 
-/// Builds an object, member by member.
+/// A builder of an object, member by member.
 class JsonObject {
  public:
   /// Adds a member whose value is already JSON.

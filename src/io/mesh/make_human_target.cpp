@@ -18,7 +18,7 @@ namespace {
 
 using scan::NumberFault;
 
-// Calls inflateInit2(), and inflateEnd() in the destructor.
+// A stream of zlib, which is initialised by inflateInit2() and ended by inflateEnd() in the destructor.
 struct Inflater {
   z_stream stream{};
   bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 means gzip only

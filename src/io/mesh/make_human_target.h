@@ -35,7 +35,7 @@ struct MakeHumanTarget {
   return std::size_t{65536} + 256 * vertex_count;
 }
 
-/// Returns whether a file name ends in .target or .target.gz, in upper or lower case.
+/// Returns true if a file name ends in .target or .target.gz, in upper or lower case.
 [[nodiscard]] bool is_make_human_target(std::string_view file_name);
 
 /// Reads a target over a base with these positions, which must be finite; `name` is for messages.

@@ -388,7 +388,7 @@ Result<MeshFrame> read_body(std::string_view bytes, const std::string& name, con
   return BodyReader<BinarySource>(bytes, name, header, has_velocities, origin).read();
 }
 
-// Writes the numbers of a file in order, in one of the encodings.
+// A writer of the numbers of a file in order, in one of the encodings.
 class RowWriter {
  public:
   RowWriter(std::string& bytes, PlyEncoding encoding)

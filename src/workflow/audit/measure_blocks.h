@@ -18,8 +18,8 @@
 
 namespace chronormal::inline internal {
 
-/// Tells whether measure_blocks() applies: it needs triangles with area weights, a rule that interpolates linearly or
-/// not at all, and few enough samples that the memory of a segment stays small.
+/// Returns true if measure_blocks() can be used: it needs triangles with area weights, a rule that interpolates
+/// linearly or not at all, and few enough samples that the memory of a segment stays small.
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
 

@@ -168,7 +168,7 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// Reports progress: each target of a mesh counts once when its candidate is chosen, and once when it is written.
+// The progress of a bake: each target of a mesh counts once when its candidate is chosen, and once when it is written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;

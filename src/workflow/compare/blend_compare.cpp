@@ -132,7 +132,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// Measures the errors at rows of weights, one after the other.
+// A measurement of the errors at rows of weights, one row after the other.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)

@@ -53,7 +53,7 @@ enum Mark : std::uint8_t {
 
 using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
 
-// Counts faces at one keyframe, or faces of one kind in one segment.
+// A count of faces at one keyframe, or faces of one kind in one segment.
 struct FaceTally {
   std::size_t count = 0, first_face = 0;
   double first_t = 0;

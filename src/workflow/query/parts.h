@@ -62,8 +62,8 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// Checks that an answer of unknown length stays within the limit of its span while it grows. The written answer may be
-/// slightly larger, so the writer checks it once more.
+/// A check that an answer of unknown length stays within the limit of its span while it grows. The written answer may
+/// be slightly larger, so the writer checks it once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}

@@ -181,7 +181,7 @@ class ArrayFile {
   std::string storage_;
 };
 
-// Removes a partial output at the end of its life if it has no row, because there is nothing to continue.
+// A guard that finally removes a partial output without rows, because there is nothing to continue.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;

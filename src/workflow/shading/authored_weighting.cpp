@@ -18,8 +18,8 @@ constexpr double kFollows = 1;  // degrees
 
 using Stored = std::span<const StoredNormal>;  // sorted by element
 
-// Copies some elements to a small mesh, so that memory does not grow with the whole mesh. Each element has its own copy
-// of its faces: the element is one vertex of these faces, and no other element uses their other vertices.
+// A small mesh to which some elements are copied, so that memory does not grow with the whole mesh. Each element has
+// its own copy of its faces: the element is one vertex of these faces, and no other element uses their other vertices.
 class Block {
  public:
   Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {

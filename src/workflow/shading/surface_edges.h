@@ -25,7 +25,7 @@ using SurfaceEdge = std::array<std::uint32_t, 2>;
 /// once, ascending. Vertices without a normal of their own are in no pair. O(corners log corners)
 [[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
 
-/// Counts the tears beyond 10, 20 and 40 degrees.
+/// The numbers of tears beyond 10, 20 and 40 degrees.
 struct TearCounts {
   static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
 

@@ -37,7 +37,7 @@ StoredKey key_of(const GltfShading& shading, std::optional<std::size_t> target) 
   return target ? StoredKey(shading, *target) : StoredKey(shading);
 }
 
-// Flips normals to the side of the surface that the author shows, which is the side of the stored base normal.
+// The side of the surface that the author shows at each element: the side of the stored base normal.
 class Sides {
  public:
   Sides(const GltfShading& shading, std::span<const std::uint32_t> vertex_of) : other_(vertex_of.size()) {
@@ -71,7 +71,7 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// Holds the angles between candidates and stored normals, in degrees.
+// The angles between candidates and stored normals, in degrees.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
@@ -94,7 +94,7 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// Changes a rule around normals that do not follow it, so that they do.
+// Changes to a rule around normals that do not follow it, so that they do.
 class Mending {
  public:
   Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)
@@ -303,7 +303,7 @@ class Mending {
   std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
 };
 
-// Compares the candidates of a mesh with its stored normals.
+// The candidates of a mesh, compared with its stored normals.
 class Candidates {
  public:
   Candidates(const GltfShading& shading, const Polygons& plain, const Polygons& quads,

@@ -72,7 +72,7 @@ class Polygons {
   }
   /// Returns the vertices of a polygon, in order around it.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t polygon) const noexcept;
-  /// Returns whether any polygon is more than a triangle.
+  /// Returns true if any polygon is larger than a triangle.
   [[nodiscard]] bool any_joined() const noexcept { return joined_ > 0; }
 
  private:

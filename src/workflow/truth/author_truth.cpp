@@ -28,7 +28,7 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// Finds the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
+// A finder of the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)

@@ -34,7 +34,7 @@ class PlayedTrack {
   /// jump, or just before it.
   void at(double time, bool just_before, std::span<double> weights) const;
 
-  /// Tells whether the viewer plays the specified weights, except for rounding and dropped weights.
+  /// Returns true if the viewer plays the specified weights, except for rounding and dropped weights.
   [[nodiscard]] bool is_as_specified() const noexcept { return as_specified_; }
 
  private:

@@ -23,9 +23,9 @@ namespace chronormal::inline internal::gltf {
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
-/// Stores new arrays, those of one kind in one buffer view. The kinds are vectors, whose view has the target
-/// ARRAY_BUFFER (section 3.6.2.4 of the specification), scalars, and the indices and the values of sparse accessors,
-/// whose views must not have a target.
+/// A store of new arrays, in which arrays of one kind share a buffer view. The kinds are vectors, whose view has the
+/// target ARRAY_BUFFER (section 3.6.2.4 of the specification), scalars, and the indices and the values of sparse
+/// accessors, whose views must not have a target.
 class NewArrays {
  public:
   /// Creates an empty store that keeps the bytes of its arrays in `spool`.

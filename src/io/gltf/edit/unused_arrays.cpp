@@ -36,7 +36,7 @@ bool is_known(std::string_view extension) {
                      [&](std::string_view known) { return extension.starts_with(known); });
 }
 
-// Returns whether every extension that is used anywhere in a value is a known one.
+// Returns true if all extensions that are used anywhere in a value are known.
 bool has_known_extensions_only(const Json& value) {
   if (value.is_object()) {
     const auto extensions = value.find("extensions");
@@ -55,7 +55,7 @@ const Json& at(const Json& value, const char* key) {
   return value.is_object() && found != value.end() ? *found : kNull;
 }
 
-// Marks the accessors that a document refers to.
+// The accessors that a document refers to.
 class References {
  public:
   References(const Json& root, std::size_t accessors) : referred_(accessors, false) {
@@ -161,7 +161,7 @@ std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const st
   return result;
 }
 
-// Maps the old place of a byte to its new place after some ranges were left out.
+// A map from the old place of a byte to its new place after some ranges were left out.
 class Moved {
  public:
   explicit Moved(const std::vector<Range>& ranges) : ranges_(ranges) {

@@ -72,7 +72,7 @@ struct Judged {
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
-// Compares candidates one after the other, and keeps the best.
+// A comparison of candidates that come one after the other; it keeps the best.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -346,7 +346,7 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   });
 }
 
-// Tells whether pairs of targets are few enough to try a correction target for each.
+// Returns true if there are few enough pairs of targets to try a correction target for each.
 bool has_few_products(const Making& making, const MeshWeights& weights) {
   const MeshPlan& plan = making.source.plan;
   return making.most_extras > 0 && (plan.is_driven || weights.rig) && plan.products_fit &&

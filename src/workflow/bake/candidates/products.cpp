@@ -70,7 +70,7 @@ struct Products {
   std::size_t left_out = 0;
 };
 
-// Lists the vertices that show each element.
+// The vertices that show each element, as lists.
 class VerticesOfElements {
  public:
   explicit VerticesOfElements(const GltfShading& shading) : first_(shading.groups.size() + 1) {
@@ -126,7 +126,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// Makes the corrections of products, one after the other.
+// A maker of the corrections of products, one after the other.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,

@@ -38,7 +38,7 @@ struct NewBaseNormals {
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 
-/// Counts vertices to which no right delta can be added.
+/// The numbers of vertices to which no right delta can be added.
 struct BaseFaults {
   std::size_t without_base = 0;    ///< the faces have no area in the base
   std::size_t without_stored = 0;  ///< the stored base normal is zero, or nearly

@@ -76,7 +76,7 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// Fits the deltas of one element.
+// A fit of the deltas of one element.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -191,7 +191,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// Finds the elements whose targets are active at the same time in some pose.
+// The elements whose targets are active at the same time in some pose.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)

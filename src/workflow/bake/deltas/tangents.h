@@ -23,8 +23,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns whether each target's stored tangents are stale; none are if no viewer adds up tangents. The shading must
-/// have its deltas. O(corners) for each target that moves something.
+/// Returns for each target whether its stored tangents are stale. If no viewer adds up tangents, all are false. The
+/// shading must have its deltas. O(corners) for each target that moves something.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
 /// Returns the deltas of a target for tangents: (vertices, 3) for each part, empty for parts without tangents.

@@ -78,7 +78,7 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
   return {first, first + stride, first + 2 * stride};
 }
 
-// Holds the sums of one vertex in many poses.
+// The sums of one vertex in many poses.
 class Sums {
  public:
   // Adds up the normal and its deltas in `count` poses, from number `first` on. Both must be as a viewer stores them.

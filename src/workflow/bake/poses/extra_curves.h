@@ -70,9 +70,9 @@ struct ExtraCurves {
 using TrackCurves = std::map<TrackName, ExtraCurves>;
 
 /// Extends a track by curves. A LINEAR track stays LINEAR, with the given pieces of each gap (straight_track), or
-/// becomes a cubic spline if `pieces` is empty. A cubic spline gets more keys at the ends of the curves' pieces; it plays
-/// as before, and holds the curves exactly. If that takes more than most_keys keys, the result has no values, but the
-/// number of keys that it would have.
+/// becomes a cubic spline if `pieces` is empty. A cubic spline gets more keys at the ends of the curves' pieces; it
+/// plays as before, and holds the curves exactly. If that takes more than most_keys keys, the result has no values, but
+/// the number of keys that it would have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());

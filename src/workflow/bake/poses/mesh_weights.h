@@ -15,7 +15,7 @@
 
 namespace chronormal::inline internal {
 
-/// Names a track of a file: the animation, and the first of its tracks with the same keys.
+/// The name of a track in a file: the animation, and the first of its tracks with the same keys.
 struct TrackName {
   std::size_t animation = 0, keys = 0;
   friend auto operator<=>(const TrackName&, const TrackName&) = default;

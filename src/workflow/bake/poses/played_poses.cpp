@@ -56,7 +56,7 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   return result;
 }
 
-// Finds where each weight, and each product of two weights, is largest.
+// The largest value of each weight and of each product of two weights, and where it occurs.
 class Peaks {
  public:
   // Adds the weights that are active at the same time in the item with this number.

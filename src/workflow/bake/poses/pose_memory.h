@@ -14,8 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// Stores vectors as long as there is room, and then no more. Poses come in the same order each time, so dropping the
-/// oldest vectors would leave nothing to be found. Threads: all functions may run at once.
+/// A memory of vectors that stores as long as there is room, and then no more. Poses come in the same order each time,
+/// so dropping the oldest vectors would leave nothing to be found. Threads: all functions may run at once.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}

@@ -55,7 +55,7 @@ Status hold_between(const SequenceNormals& normals, const Instant& from, const I
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// Judges straight lines between the normals at two instants. Times count keyframes: keyframe k is at k. After a
+// A judge of straight lines between the normals at two instants. Times count keyframes: keyframe k is at k. After a
 // keyframe could not be read, status() has the error, and no answer is valid.
 class LineJudge {
  public:
