@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// Returns facts, tables of targets, primitives and tracks, and the problems with two lines each. Long tables are cut.
+/// Returns facts, tables of targets, primitives and tracks, and two lines for each problem. Long tables are cut.
 [[nodiscard]] std::string inspect_text(const Inspected& input);
 
 }  // namespace chronormal::cli

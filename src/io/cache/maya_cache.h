@@ -66,8 +66,8 @@ struct MayaCacheDescription {
 ///
 /// Errors: those of both readers, with the file name in the place; kFailed for files that cannot be opened;
 /// kInvalidInput with the missing time and the file, if a regularly sampled channel lacks samples that the description
-/// declares. With a resolver, files are found by their paths through it; kUsage for a cache of a file per frame, whose
-/// files only a folder can list.
+/// declares. If `resolve` is given, it finds files by their paths; then kUsage for a cache with a file for each frame,
+/// because only a folder can list such files.
 [[nodiscard]] Result<PositionCache> read_maya_cache(
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});

@@ -103,7 +103,7 @@ struct NpzMember {
   std::string_view npy;   ///< the bytes of its .npy file
 };
 
-/// Returns a .npz file of arrays, stored.
+/// Returns a .npz file of arrays, which are not compressed.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
 /// Returns the bytes of positions (V, 3) as float64, with the origin added.

@@ -234,8 +234,8 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
 // Returns the weights of the current moment and of the moments that follow in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // There may be a million samples, so the search does not start at the first. Samples are evenly spaced, so all
-  // samples after t_ have at least this index.
+  // Finds the first sample after t_. There may be a million samples, so the search starts at t_ samples_: no sample
+  // after t_ has a smaller index, since samples are evenly spaced.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
   for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)

@@ -107,7 +107,7 @@ class NormalTerms::Term {
 /// Returns the control normals from weight `from` to weight `to`, given those from 0 to 1.
 [[nodiscard]] ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept;
 
-/// A map from the terms of an element to a vertex that shows it, which turns and scales: it divides by |n(0)|,
+/// A map that turns and scales the terms of an element for a vertex that shows it: it divides them by |n(0)|,
 /// multiplies by the length of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is nearly
 /// zero, a division is impossible; the terms are then made so long that N does not matter beside them.
 class VertexTerms {

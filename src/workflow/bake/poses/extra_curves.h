@@ -80,8 +80,8 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 /// The number of pieces into which each gap between two keys of a LINEAR track is split.
 using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 
-/// The drivers of a mesh's correction targets: formulas of the weights of its own targets, with one term or many, or
-/// curves.
+/// The drivers of a mesh's correction targets: formulas, which have one term in the weights of the mesh's own targets;
+/// sums, which have many; or curves over tracks.
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one per correction target; all zero if there are sums or curves
   std::vector<GltfExtraTarget> sums;  ///< one per correction target, or none; tracks have curves beside them
