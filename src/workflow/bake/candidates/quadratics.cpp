@@ -1,5 +1,5 @@
 // Makes candidates whose correction targets have weights that are quadratic in the weights of the mesh's own targets.
-// Viewers that keep only directions must not get negative weights, so each vector then becomes two correction targets:
+// Viewers that keep only directions need weights from 0 to 1, so each vector then becomes two correction targets:
 // one for the positive terms of the weight, and one for the negative terms.
 
 #include "workflow/bake/candidates/makers.h"

@@ -71,8 +71,7 @@ class Peaks {
     }
   }
 
-  // Returns `most` of these numbers, ascending. A fourth of them are evenly spread, and the others have the largest
-  // peaks.
+  // Returns at most `most` of these numbers, ascending: those with the largest peaks, and a fourth at even steps.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
