@@ -128,7 +128,7 @@ int main() {
   const std::vector<Crossing> crossings =
       containment.crossings(segment, VectorView<const float>::packed(from), VectorView<const float>::packed(to));
 
-  // A normal that the response could use, and the errors of the directions in which balls then leave.
+  // A normal that the response could use, and the errors of the directions in which balls leave with this normal.
   struct Choice {
     const char* name;
     double sum = 0, max = 0;  // degrees
@@ -146,8 +146,8 @@ int main() {
     ++hits;
     outside = std::fmax(outside, area_outside(segment, ball, contact));
 
-    // In the frame of the surface the collision is a reflection; adding the velocity of the surface returns to the
-    // frame of the world.
+    // In the frame of the surface, the collision is a reflection. Adding the velocity of the surface afterwards returns
+    // to the frame of the world.
     const double t = contact.t;
     ControlNormals n;
     face_control_normals(segment, {contact.face, 1}, {&n, 1});

@@ -28,8 +28,9 @@ constexpr std::array<std::size_t, 5> kSegments = {1, 2, 4, 8, 16};
 
 constexpr int kSamples = 21;
 
-/// The prediction of eq. 55 for the error of order 2, from the tangential acceleration of the exact normals, in mean
-/// degrees: the whole acceleration, its part along the path of the normal, and its part across the path.
+/// The error in degrees that eq. 55 of docs/theory.md predicts for a scheme of order 2, on average. The prediction
+/// follows from the tangential acceleration of the exact normals: `all` takes the whole acceleration, `along` its part
+/// along the path of the normal, and `across` its part across the path.
 struct Leading {
   double all = 0, along = 0, across = 0;
 };
@@ -56,7 +57,7 @@ constexpr Row kSchemes[] = {{"quaternion:random:1", 1},
                             {"cubic", 4},
                             {"polynomial", 0}};
 
-using Errors = std::array<double, kSegments.size()>;  // mean degrees
+using Errors = std::array<double, kSegments.size()>;  // average errors in degrees
 
 /// A motion with known positions at every time from 0 to 1.
 struct SmoothMotion {
@@ -82,7 +83,7 @@ struct SmoothMotion {
 
 SmoothMotion turning_column() {
   const Motion twist = make_builtin_morph("twist").value();
-  std::vector<std::uint32_t> corners;  // of every 19th face: the figures are the same to a percent
+  std::vector<std::uint32_t> corners;  // only every 19th face, which changes the figures by less than a percent
   for (std::size_t f = 0; f < twist.topology.face_count(); f += 19) {
     for (const std::uint32_t corner : twist.topology.face(f)) corners.push_back(corner);
   }
@@ -149,7 +150,7 @@ Leading leading_terms(const Motion& sampled) {
       sum.across += std::fabs(dot(a, cross(u, u1))) / length(u1);
     }
   }
-  double mean = 0;  // mean of t (1 - t) / 2 over the samples
+  double mean = 0;  // average of t (1 - t) / 2 over the samples
   for (int i = 0; i < kSamples; ++i) mean += i * (kSamples - 1.0 - i) / (2 * kSamples * std::pow(kSamples - 1.0, 2));
   const double factor = mean * kDegreesPerRadian / static_cast<double>(faces * sampled.segments.size());
   return {factor * sum.all, factor * sum.along, factor * sum.across};

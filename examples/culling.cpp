@@ -19,7 +19,8 @@ using namespace chronormal;
 
 constexpr Vec3d kEye{4, -5, 2};
 constexpr int kSamples = 21;
-// Smallest angle in rad between a face and the line of sight that float32 must decide (its error is 1e-6)
+// The smallest angle, in radians, between a face and the line of sight at which float32 must decide correctly. The
+// error of float32 is 1e-6 radians.
 constexpr double kGrazing = 2e-6;
 
 Vec3d corner_at(const Segment& segment, std::size_t face, double t) {

@@ -16,9 +16,9 @@ using namespace chronormal;
 struct Family {
   const char* name;
   double size;    // length of the edges
-  double motion;  // displacement of the vertices, in sizes; if negative, both ends are independent
-  double needle;  // height of the triangle, in sizes
-  double offset;  // distance of the triangle from the origin, in sizes
+  double motion;  // largest displacement of the vertices, as a multiple of `size`; negative if the ends are independent
+  double needle;  // height of the triangle, as a multiple of `size`
+  double offset;  // distance of the triangle from the origin, as a multiple of `size`
 };
 
 constexpr Family kFamilies[] = {
@@ -41,7 +41,7 @@ Motion make(const Family& family, std::size_t faces) {
   Motion motion{Topology::triangles(3 * faces, corners).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[1].time = 1;
   for (std::size_t i = 0; i < 9 * faces; ++i) {
-    // The second coordinate is the height of a needle.
+    // Only the y coordinates are scaled, which turns triangles into needles.
     const double shape = i % 3 == 1 ? family.needle : 1;
     const double from = shape * uniform();
     const double to = family.motion < 0 ? uniform() : from + family.motion * shape * uniform();

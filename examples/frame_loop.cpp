@@ -84,7 +84,7 @@ int main() {
     const double t = time - static_cast<double>(segment);
     std::atomic<std::size_t> zeros = 0;
     run_jobs([&](std::size_t job) {
-      if (job == 0) (void)normals.prepare(0.4);  // there are two and a half frames per segment
+      if (job == 0) (void)normals.prepare(0.4);  // there are 2.5 frames per segment
       zeros += normals.unit_normals(t, in_buffer, share_of(job, normals.size()));
     });
     std::printf("%5d %8zu  %.2f %17zu\n", frame, segment, t, zeros.load());
@@ -96,8 +96,8 @@ int main() {
       if (VectorView<float>::packed(whole)[i] != in_buffer[i]) return 1;
   }
 
-  // Make a slider rig of the flag at rest and one morph target. Weights are set once per frame; then any thread writes
-  // a range.
+  // Make a slider rig of the flag at rest and one morph target. The weights are set once per frame. After that, any
+  // thread may write a range of normals.
   std::vector<float> deltas(keyframes[0].size());
   for (std::size_t i = 0; i < deltas.size(); ++i) deltas[i] = keyframes[2][i] - keyframes[0][i];
   if (!normals.set_targets({topology, keyframes[0], {BlendTarget::from_dense(deltas, "blow")}})) return 1;

@@ -10,7 +10,7 @@ shown = np.empty((4, 3), dtype=np.float32)
 curves = cn.curves(keys[0], keys[1], faces)
 for k in range(len(keys) - 1):
     if k > 0:
-        curves.next(keys[k], keys[k + 1])  # in the memory of the segment before
+        curves.next(keys[k], keys[k + 1])  # reuses the memory of the previous segment
     for t in (0, 0.5):
         curves.unit_normals(t, out=shown)
         print(f"t = {k + t}: the normal of vertex 2 is {shown[2].round(3)}")

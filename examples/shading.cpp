@@ -26,7 +26,7 @@ namespace {
 using namespace chronormal;
 
 constexpr double kTime = 0.5;  // local t, between the keyframes
-// Pixels: the width of a panel, and of three panels with the legend; the height.
+// The width of one panel, the width of three panels with the legend, and the height, in pixels.
 constexpr int kPanel = 380, kWidth = 1200, kHeight = 480;
 constexpr int kSub = 3;               // samples per pixel in each direction
 constexpr double kScale = 132;        // pixels per unit of length
@@ -56,7 +56,7 @@ struct Hit {
   bool front = true;     // false for the inside of the column, whose normals point away from the eye
 };
 
-/// A camera at infinity, so that all rays are parallel: the directions towards it, to its right and up.
+/// The directions towards the camera, to its right and upwards. The camera is at infinity, so all rays are parallel.
 const Vec3d kEye = unit(Vec3d{0.55, -1, 0.24}), kRight = unit(cross(Vec3d{0, 0, 1}, kEye)), kUp = cross(kEye, kRight);
 constexpr Vec3d kMiddle{0, 0, 1.5};  // the point that the camera looks at
 
@@ -134,7 +134,7 @@ std::vector<png_byte> draw(const std::vector<Hit>& hits, const Topology& mesh, c
   std::vector<png_byte> bytes;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      const int panel = x / kPanel;  // linear, exact, angle, legend
+      const int panel = x / kPanel;  // 0: linear, 1: exact, 2: angle, 3: legend
       Vec3d sum;
       for (int s = 0; s < kSub * kSub; ++s) {
         const int sample = (y * kSub + s / kSub) * kPanel * kSub + x % kPanel * kSub + s % kSub;
