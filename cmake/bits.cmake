@@ -1,5 +1,5 @@
-# `bits`: the tests of bits as a program for a machine of another kind, which has neither GoogleTest nor anything else. They
-# expect the same constants everywhere.
+# Adds `bits`, a program of tests that compare results with constants bit by bit. GoogleTest is compiled into it, so it
+# runs on a machine of another kind on which nothing is installed. The constants are the same on all machines.
 set(gtest /usr/src/googletest/googletest)
 add_executable(bits EXCLUDE_FROM_ALL ${gtest}/src/gtest-all.cc ${gtest}/src/gtest_main.cc tests/core/charconv_test.cpp
                     tests/core/portable_math_test.cpp tests/normals/curves/golden_bits_test.cpp)

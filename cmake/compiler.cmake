@@ -29,8 +29,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT CMAKE_BUILD_TYPE STREQUAL "Relea
                                                     -Wno-stringop-overread)
 endif()
 if(MINGW)
-  # GCC believes that the stack of Windows is aligned to 32 and 64 bytes, which it is not (its bug 54412): the assembler
-  # writes instructions that need no alignment. Kernels have more sections than a usual object file may have.
+  # GCC wrongly assumes that the stack on Windows is aligned to 32 or 64 bytes (its bug 54412), so the assembler
+  # replaces instructions that need this alignment. -mbig-obj allows kernels more sections than a usual object file may
+  # have.
   target_compile_options(chronormal_flags INTERFACE -Wa,-muse-unaligned-vector-move -Wa,-mbig-obj)
 endif()
 if(CHRONORMAL_WERROR)

@@ -51,7 +51,7 @@ if(CHRONORMAL_MPI)
 else()
   list(FILTER cli_sources EXCLUDE REGEX "/ranks/mpi\\.cpp$")
 endif()
-# The headers of Windows give short names to many things.
+# The headers of Windows define macros with common names, so windows.cpp is compiled alone.
 set_source_files_properties(src/io/system/windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/json.cpp
                             PROPERTIES COMPILE_DEFINITIONS CHRONORMAL_VERSION="${PROJECT_VERSION}")
@@ -94,14 +94,16 @@ function(chronormal_compile_together target)
     endforeach()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # In such a group, GCC takes private types of one .cpp file for types of a header, and warns about them.
+  # In files that are compiled as one, GCC takes private types of one .cpp file for types of a header, and warns about
+  # them.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
-# A shared object, such as an engine's plugin, can be linked from the static libraries, and exports none of their names.
+# The static libraries can be linked into a shared object, such as an engine's plugin, which then exports none of their
+# names.
 set(position_independent ON)
 if(EMSCRIPTEN)
-  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without such code
+  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without position-independent code
 endif()
 set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
@@ -133,7 +135,7 @@ function(chronormal_add_product suffix flags)
   endif()
 
   if(EMSCRIPTEN)
-    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # and fast_float, which read and write numbers as text
+    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # writes numbers as text
     target_compile_options(chronormal${suffix} PRIVATE -msimd128)
   endif()
 
@@ -175,7 +177,7 @@ function(chronormal_add_product suffix flags)
     # The main thread gets as much stack as on Linux.
     target_link_options(chronormal_cli${suffix} PRIVATE -static -Wl,--stack,8388608)
   elseif(CHRONORMAL_STATIC)
-    # A program that the system may load at any address.
+    # The system may load a program that is linked with -static-pie at any address.
     target_link_options(chronormal_cli${suffix} PRIVATE -static-pie)
   endif()
   if(CHRONORMAL_MPI)
@@ -207,8 +209,8 @@ if(CHRONORMAL_C)
 endif()
 
 if(CHRONORMAL_FUZZ)
-  # Fuzzing exercises the readers, which call no kernels. Kernels take long to compile with sanitizers, so they have
-  # none.
+  # Fuzzing exercises the readers, which call no kernels. Kernels take long to compile with sanitizers, so they are
+  # compiled without.
   set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 elseif(CHRONORMAL_SANITIZED)
   # The address and undefined behaviour sanitizers, at an optimisation level that compiles fast. Checks that double the

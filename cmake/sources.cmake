@@ -9,7 +9,7 @@ if(NOT EXISTS ${sources})
 endif()
 set(headers ${PROJECT_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
-# Only these headers of /usr/include, since others may not fit the target system.
+# Links only these headers of /usr/include, since others may not fit the target system.
 foreach(header fmt CLI nlohmann fast_float)
   file(CREATE_LINK /usr/include/${header} ${headers}/${header} SYMBOLIC)
 endforeach()
@@ -43,7 +43,7 @@ chronormal_source_library(meshoptimizer meshoptimizer-* src/indexcodec.cpp src/v
 target_include_directories(meshoptimizer SYSTEM PUBLIC ${root}/src)
 add_library(meshoptimizer::meshoptimizer ALIAS meshoptimizer)
 
-# Draco: the parts that a decoder needs.
+# Compiles only the parts of Draco that a decoder needs.
 set(code src/draco/compression)
 chronormal_source_library(
   draco draco-* src/draco/attributes/*.cc src/draco/core/*.cc src/draco/mesh/*.cc src/draco/point_cloud/*.cc
