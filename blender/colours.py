@@ -12,7 +12,8 @@ DEGREES = "Normal error in degrees"
 # Colours from no error to the largest one of the scale, as they look on the screen (sRGB).
 RAMP = ((0.80, 0.82, 0.84), (0.97, 0.87, 0.35), (0.96, 0.55, 0.16), (0.84, 0.15, 0.12), (0.45, 0.02, 0.25))
 
-# The names of meshes and the degrees of their corners that hide() has removed, for show().
+# The attributes that hide() has removed and show() restores: the name of each mesh, and the errors of its corners in
+# degrees.
 _hidden: list[tuple[str, numpy.ndarray]] = []
 
 # The number of degrees at the end of the colour scale.
@@ -30,7 +31,7 @@ def ramp(shares: numpy.ndarray) -> numpy.ndarray:
 
 
 def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
-    """Adds to a mesh, for every corner, its error and a colour for the error."""
+    """Adds to a mesh two attributes of its corners: the error in degrees, and a colour for the error."""
     global _top
     _top = top
     clear(mesh)
@@ -44,7 +45,7 @@ def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
 
 
 def clear(mesh: bpy.types.Mesh) -> bool:
-    """Removes the attributes; returns whether there were any."""
+    """Removes the attributes that paint() added. Returns whether there were any."""
     names = [name for name in (COLOUR, DEGREES) if name in mesh.attributes]
     for name in names:
         mesh.attributes.remove(mesh.attributes[name])

@@ -110,7 +110,8 @@ def frames_of(scene: bpy.types.Scene) -> list[int]:
 
 
 def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> numpy.ndarray:
-    """Returns the values of the keys at frames, as (frames, keys), whether an animation or a driver sets them."""
+    """Returns the values of the keys at the given frames as an array (frames, keys). Blender evaluates the scene at
+    each frame, so values that an animation or a driver sets are included."""
     current, subframe, now = scene.frame_current, scene.frame_subframe, truth.values_now(o)
     values = []
     for frame in frames:
@@ -124,7 +125,8 @@ def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> nump
 
 
 def poses_now(judge: Judge, scene: bpy.types.Scene, now: numpy.ndarray) -> Iterator[Pose]:
-    """Returns the pose of the sliders, with the time of the current frame if its animation sets them so."""
+    """Returns the pose that the sliders have now. Its time is that of the current frame if the file's animation gives
+    these values at that frame."""
     time = judge.time_of(scene.frame_current)
     if time is not None and not numpy.allclose(judge.plain.track.at(time), now, atol=1e-4):
         time = None
@@ -154,7 +156,7 @@ def poses_of_keys(judge: Judge) -> Iterator[Pose]:
 
 
 class Finding(bpy.types.PropertyGroup):
-    """A row of the list."""
+    """A row of the list in the panel: a pose, or a place on the mesh."""
 
     kind: bpy.props.EnumProperty(items=[(name, name, "") for name in ("NOW", "FRAME", "KEY", "PAIR", "PLACE")])
     label: bpy.props.StringProperty()
@@ -251,7 +253,8 @@ def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
 
 
 def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> Found:
-    """Judges an object NOW, over TIME, or its KEYS and pairs of them."""
+    """Judges the poses that `over` selects: NOW the current one, TIME those of all frames, and KEYS each key alone and
+    pairs of keys."""
     state, scene = context.window_manager.chronormal, context.scene
     is_baked = state.judged == "BAKED"
     frames = frames_of(scene) if is_baked or over == "TIME" else []

@@ -1,7 +1,8 @@
 """Gets Blender's own normals of an object with shape keys, and exports the object by itself.
 
-Both use a copy in a separate scene, so that the user's scene does not change. The copy has no modifiers, since the
-exporter leaves out modifiers of meshes with shape keys, and no animation, so that every key can be set.
+The normals and the exported file come from a copy in a separate scene, so that the user's scene does not change. The
+copy has no modifiers, since the exporter leaves out modifiers of meshes with shape keys, and no animation, so that
+every key can be set.
 """
 # SPDX-License-Identifier: MIT
 
