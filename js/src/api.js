@@ -19,8 +19,8 @@ const bytesOf = (data) => {
 // A GLB identifies itself by its first bytes; everything else is JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Does a task in a worker, which ends with it, so that no memory stays in use and the task can be stopped in the
-// middle. The worker gets the files themselves, not copies.
+// Performs a task in a worker that ends with the task, so that its memory is freed and the task can be stopped in the
+// middle. The memory of the files moves to the worker and is not copied.
 async function inWorker(platform, task, { signal, onProgress }) {
   const module = await compile(platform); // compiled once for all workers
   signal?.throwIfAborted();
@@ -62,8 +62,8 @@ async function execute(platform, task, options) {
   return done;
 }
 
-// Copies the inputs, so that the caller may change them during the call. `more` gets the name of the folder for outputs
-// and returns the arguments that say what is written.
+// Returns the task of a command. The inputs are copied, so the caller may change them during the call. `more` gets the
+// name of the folder for outputs, and returns the arguments that request outputs.
 function taskOf(command, input, options, more = () => ['--json']) {
   const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));
@@ -74,7 +74,7 @@ function taskOf(command, input, options, more = () => ['--json']) {
   let outputs = 'out';
   while (folders.has(outputs)) outputs += '_';
   return {
-    // A single "-" would mean standard input, and a name in brackets a list.
+    // With ./ in front, the program does not read "-" as standard input, nor a name in brackets as a list.
     args: [command, ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,

@@ -5,7 +5,8 @@ import { formulasOf, markOf, weightOf } from './drive.js';
 
 const attached = new WeakMap(); // for each scene: {observer, driven}
 
-// Returns the driven targets and the meshes that show them: weights belong to a MorphTargetManager, which clones share.
+// Returns an entry for each MorphTargetManager to drive, with the meshes that use the manager. The weights belong to
+// the manager, which a mesh and its clones share.
 function drivenOf(scene) {
   const driven = new Map();
   for (const mesh of scene.meshes) {
@@ -35,7 +36,7 @@ export function attach(scene) {
       const { manager, formulas, w } = driven[d];
       for (let i = 0; i < w.length; ++i) w[i] = manager.getTarget(i).influence;
       for (let k = 0; k < formulas.length; ++k) {
-        // has no effect if the weight is unchanged
+        // Babylon.js does nothing if the weight is unchanged.
         manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w);
       }
     }
@@ -44,7 +45,7 @@ export function attach(scene) {
   return driven.flatMap(({ meshes }) => meshes);
 }
 
-/** Leaves the meshes of a scene to the application again; correction targets get the weight 0. */
+/** Stops driving the meshes of a scene, and sets the weights of correction targets to 0. */
 export function detach(scene) {
   if (!attached.has(scene)) return;
   const { observer, driven } = attached.get(scene);

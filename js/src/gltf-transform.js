@@ -3,7 +3,8 @@ import { WebIO } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { bake } from 'chronormal';
 
-// The compressions that would need encoders. Reading a file undoes them, so the result is not compressed.
+// The extensions whose compression is removed before a bake, since writing it would need encoders. Reading a file has
+// already decompressed the data, so the result is not compressed.
 const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);
 
 async function bytesOf(document) {

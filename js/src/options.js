@@ -20,7 +20,7 @@ const TIMES = [(value) => isText(value) || NUMBER[0](value) || isNumbers(value),
 const isPoses = (value) => Array.isArray(value) && value.length > 0 && value.every(isNumbers);
 const WEIGHTS = [(value) => isText(value) || isNumbers(value) || isPoses(value), 'an array of numbers, an array of such arrays, or a string'];
 
-// Options of a call: for the functions, not for the program.
+// The options of the JavaScript functions themselves, which are not passed to the program.
 const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {

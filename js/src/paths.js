@@ -3,8 +3,9 @@
 const ROOT = /^[A-Za-z]:(?=\\|\/|$)/;
 
 /**
- * Converts a path of Windows, or a word of the command line that may be or contain one after `=`, for the program:
- * C:\models\face.glb is /C:/models/face.glb, and \models\face.glb is on the drive of the folder cwd.
+ * Converts a path of Windows for the program. `word` is the path, or a word of the command line that is a path or has a
+ * path after `=`. C:\models\face.glb becomes /C:/models/face.glb, and \models\face.glb gets the drive of the folder
+ * cwd.
  */
 export function fromWindows(word, cwd) {
   const [option] = word.match(/^--[a-z-]+=/) ?? [''];

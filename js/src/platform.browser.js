@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** Called in a worker: answers each message by the messages that answer(message, say) sends. */
+/** Serves messages in a worker. Calls answer(message, say) for each message; say(reply) sends a message back. */
 export async function serve(answer) {
   self.onmessage = ({ data }) => answer(data, (reply, transfer = []) => self.postMessage(reply, transfer));
 }

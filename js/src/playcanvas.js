@@ -53,7 +53,7 @@ export function attach(app, ...assets) {
   return driven.map(({ meshInstance }) => meshInstance);
 }
 
-/** Leaves the meshes of an application to it again; correction targets get the weight 0. */
+/** Stops driving the meshes of an application, and sets the weights of correction targets to 0. */
 export function detach(app) {
   if (!attached.has(app)) return;
   const { update, driven } = attached.get(app);

@@ -36,7 +36,7 @@ export function compile(platform) {
   return compiled;
 }
 
-// Output of a stream is passed on in pieces of this many bytes, or line by line if someone watches.
+// The number of bytes after which output is passed on. Output to a terminal is also passed on at the end of each line.
 const PIECE = 65536;
 
 class Sink {
@@ -90,8 +90,8 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
         Object.assign(ENV, env);
         FS.init(() => null, (byte) => out.put(byte), (byte) => err.put(byte));
         if (stdin) {
-          // The program reads a device to an end that may never come, so standard input becomes a file, whose end is
-          // known.
+          // The program would read a device until it ends, which may never happen. Therefore standard input becomes a
+          // file, whose end is known.
           FS.close(FS.getStream(0));
           FS.writeFile('/.stdin', stdin);
           FS.open('/.stdin', 'r');

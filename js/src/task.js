@@ -20,7 +20,8 @@ function write(FS, name, bytes) {
     if (!(error instanceof FS.ErrnoError)) throw error;
     throw new UnusableName(name);
   }
-  // The program has names in UTF-8 that end with a zero, and devices are not files.
+  // A name is unusable if it cannot be written in UTF-8, contains the zero that ends names in the program, or names a
+  // device.
   const known = new TextDecoder().decode(new TextEncoder().encode(name));
   if (known !== name || name.includes('\0') || !FS.isFile(FS.stat(name).mode)) throw new UnusableName(name);
 }

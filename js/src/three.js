@@ -34,7 +34,7 @@ export function attach(root) {
   return meshes;
 }
 
-/** Leaves the meshes below an object to the application again; correction targets get the weight 0. */
+/** Stops driving the meshes below an object, and sets the weights of their correction targets to 0. */
 export function detach(root) {
   root.traverse((mesh) => {
     if (!attached.has(mesh)) return;

@@ -20,10 +20,13 @@ export interface CallOptions {
   name?: string;
   /** The files that a .gltf names, by their URIs, and the files that options name. */
   resources?: Record<string, Bytes>;
-  /** Ends the call in the middle; its promise is rejected with the reason. */
+  /** Stops the call when it is aborted. The promise of the call is then rejected with the reason. */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
-  /** false: this thread does the work and waits for it, and checks `signal` only before. Default: a worker does it. */
+  /**
+   * If false, the calling thread does the work, is blocked meanwhile, and checks `signal` only before. Default: a
+   * worker does the work.
+   */
   worker?: boolean;
   /** The limit of the program's memory in bytes, at least 16 MiB. Default: 4 GiB, or less if the machine has less. */
   memoryLimit?: number;
@@ -110,7 +113,7 @@ export interface CompareOptions extends MotionOptions {
   access?: 'random' | 'sequential';
   certify?: boolean;
   tolerance?: number;
-  /** The face to report, as its number or as FACE:SEGMENT: the report has its normals by each scheme. */
+  /** The face whose normals by each scheme are reported, as its number or as FACE:SEGMENT. */
   face?: number | string;
   blend?: number;
   active?: number;
@@ -129,9 +132,9 @@ export interface SampleOptions extends MotionOptions {
   times?: number | number[] | string;
   /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, and other targets are at 0. */
   weights?: number[] | number[][] | string;
-  /** Interpolates between the exact normals at the ends of each segment. Default: all normals are exact. */
+  /** The scheme that interpolates between the exact normals at the ends of segments. Default: every normal is exact. */
   scheme?: Scheme;
-  /** Plays the scheme in so many steps a segment, each made from the one before. */
+  /** The number of steps per segment if the scheme is played, so that each step starts from the previous result. */
   step?: number;
   elements?: Elements;
   crease?: number;
@@ -143,7 +146,7 @@ export interface SampleOptions extends MotionOptions {
 }
 
 export interface Sampled {
-  /** x, y and z of each normal, in the order of `shape`; (0, 0, 0) where there is none. */
+  /** x, y and z of each normal, in the order of `shape`; (0, 0, 0) where there is no normal. */
   normals: Float32Array;
   /** The numbers of times or poses, of elements, and of coordinates, which are 3. */
   shape: number[];

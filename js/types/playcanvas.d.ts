@@ -1,6 +1,9 @@
 import type { AppBase, Asset, MeshInstance } from 'playcanvas';
 
-/** Drives the correction targets of all meshes of baked files, which are containers, that an application shows, until detach(). Returns these meshes. */
+/**
+ * Drives the correction targets of all meshes of the given baked files (containers) that an application shows, until
+ * detach(). Returns these meshes.
+ */
 export function attach(app: AppBase, ...assets: Asset[]): MeshInstance[];
-/** Leaves the meshes of an application to it again; correction targets get the weight 0. */
+/** Stops driving the meshes of an application, and sets the weights of correction targets to 0. */
 export function detach(app: AppBase): void;

@@ -49,7 +49,7 @@ export interface MotionError {
   no_normal: number;
   faint: number;
   faint_worst_degrees: number;
-  /** Samples without a true normal although the faces around have an area. No tolerance allows any. */
+  /** The number of samples without a true normal although the faces around have an area. Each exceeds any tolerance. */
   cancelled: number;
   unlit: number;
   /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the samples. Only for glTF files. */
@@ -187,7 +187,10 @@ export interface JudgedPoses {
 
 export interface ViewerChange {
   viewer: string;
-  /** `named` is true if the bake is made for this viewer; `better` if its errors became smaller as a whole. */
+  /**
+   * `named` is true if the bake is made for this viewer. `better` is true if the errors in this viewer became smaller
+   * as a whole.
+   */
   named: boolean;
   better: boolean;
   /** Errors in the file's animations, with each target alone, and in poses that a program sets. */
@@ -270,7 +273,7 @@ export interface SequenceBakeReport extends BakeHead, CurvedPath {
   audit?: WholeBakeAudit;
 }
 
-/** A key that only one of the two has tells them apart: 'meshes' in report. */
+/** A report of bake(). Only the report for a glTF file has `meshes`, which tells the two types apart. */
 export type BakeReport = GltfBakeReport | SequenceBakeReport;
 
 /** The report of bake() with `plan`: the size and the errors of each candidate. */
@@ -520,7 +523,7 @@ export interface InspectedGltf {
   }>;
 }
 
-/** An input with faces has all of these; a glTF file without faces has `input`, `gltf` and `trouble`. */
+/** The report of inspect(). For a glTF file without faces, only `input`, `notes`, `gltf` and `trouble` are there. */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
   /** The numbers in the file names of a sequence, if they tell the files apart. */
