@@ -2,8 +2,9 @@
 
     pip install --no-build-isolation ./python     # in a venv with --system-site-packages, or where NumPy and pybind11 are
 
-CHRONORMAL_BUILD names a build folder of the project, configured with CHRONORMAL_PYTHON=ON, whose libraries are used; without it
-the library is compiled in the folder of setuptools. Licences of libraries that are inside are packed from THIRD_PARTY there.
+CHRONORMAL_BUILD names a build folder of the project, configured with CHRONORMAL_PYTHON=ON, whose libraries are used.
+Without it, the library is compiled in the folder of setuptools. The licences of libraries that are compiled in are
+packed from THIRD_PARTY in that build folder.
 """
 
 import os

@@ -1,4 +1,4 @@
-# Types of the classes that the extension module has; the docstrings are there.
+# The types of the classes of the extension module. Their docstrings are in the module itself.
 from typing import Literal
 
 import numpy as np

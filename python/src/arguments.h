@@ -1,4 +1,4 @@
-// Reads the arguments that all calls of every frame have in common: times, and the elements whose normals are
+// Reads the arguments that all functions for single frames have in common: times, and the elements whose normals are
 // requested.
 #ifndef CHRONORMAL_PYTHON_ARGUMENTS_H_
 #define CHRONORMAL_PYTHON_ARGUMENTS_H_
@@ -28,7 +28,7 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   return options;
 }
 
-// Holds the numbers of a Python float or of an array; is_one tells which of the two it was.
+// The numbers of a Python float or of an array. is_one tells which of the two was given.
 struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {

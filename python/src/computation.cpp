@@ -6,7 +6,7 @@
 namespace chronormal::python {
 namespace {
 
-// Counts the turns of all objects, and the forks that wait for the turns to end.
+// The numbers of turns (computation.h) in progress, over all objects, and of forks that wait until these turns end.
 class ForkGate {
  public:
   void begin_turn() {

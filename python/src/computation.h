@@ -31,8 +31,9 @@ class Turns {
   std::atomic<std::thread::id> owner_;
 };
 
-// A computation without the GIL, with or without an object. If the handler of a signal raises, as for Ctrl-C, the
-// computation throws Interrupted, and the exception of Python is set.
+// A computation that runs without the GIL. If it is made with the Turns of an object, it has a turn of this object. If
+// the handler of a signal raises, as for Ctrl-C, the computation throws Interrupted, and the exception of Python is
+// set.
 class Computation {
  public:
   Computation() = default;

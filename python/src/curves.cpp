@@ -48,7 +48,7 @@ class Curves : public ZeroedObject {
     Turns& turns = turns_.required_of_others();
     Status status = Success{};
     {
-      const py::gil_scoped_release released;  // no Interruption is in effect, since it would leave half of a segment
+      const py::gil_scoped_release released;  // no Interruption here: half of a segment would be left
       const std::lock_guard turn(turns);
       status = curves_->set_segment(first, last);
     }

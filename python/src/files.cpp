@@ -394,7 +394,7 @@ std::string inspect_source(const py::dict& source) {
   return inspect_json(without_gil([&] { return inspect_input(std::move(input), animation); }));
 }
 
-// Bakes a glTF document; the file is written as a GLB.
+// Bakes a glTF document. Returns the bytes of the GLB, and writes the report into `json`.
 std::string bake_document(const Opened& input, const BakeOptions& options, std::string& json) {
   const GltfDocument& document = *input.document();
   GltfEdit edit(document);

@@ -26,7 +26,8 @@ py::array array_of_column(QueryColumn column) {
       column.values);
 }
 
-// Returns the arrays of an answer, with the names that they have in a file. Computes without the GIL.
+// Returns a dict of the arrays of an answer, by the names that the program gives them in files. Calls `ask` without the
+// GIL.
 template <class Ask>
 py::dict answer_of(const Ask& ask) {
   QueryAnswer found = without_gil(ask);

@@ -22,7 +22,7 @@ class InstallTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
             pip = ["-m", "pip", "--disable-pip-version-check", "--no-input"]
-            source = Path(folder, "source")  # pip builds in the folder of the source
+            source = Path(folder, "source")  # a copy of the source, since pip builds in the folder of the source
             shutil.copytree(PYTHON, source / "python", ignore=shutil.ignore_patterns("build", "*.egg-info"))
             for name in ("CMakeLists.txt", "LICENSE"):
                 shutil.copy(PYTHON.parent / name, source)

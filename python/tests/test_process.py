@@ -137,8 +137,8 @@ class SignalTest(unittest.TestCase):
             said.clear()
             signal.setitimer(signal.ITIMER_REAL, 0.001)
             rows = curves.unit_normals(times, threads=1)
-            # A fast machine finishes before it checks for signals, and gets this signal between two calls, so the work
-            # is doubled.
+            # On a fast machine the call ends before the signal arrives, and the handler runs between two calls.
+            # Therefore the work is doubled each time.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
         self.assertIn("the object is in use by the computation that this signal handler interrupts", said[1])
@@ -194,7 +194,7 @@ class ForkTest(unittest.TestCase):
                 thread.join()
 
     def test_a_child_may_end_as_programs_do(self):
-        # Audit() uses threads, if there are several cores.
+        # This audit starts threads if there are several cores, so the fork below happens in a process with threads.
         self.assertEqual(cn.audit(sample="twist")["command"], "audit")
         child = multiprocessing.get_context("fork").Process(target=cn.audit, kwargs={"sample": "twist"})
         child.start()
