@@ -12,7 +12,9 @@ const VIEWERS = [
 const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
 
 /**
- * @param input of page.js; its member `options` has the user's choices: {viewers, tolerance, maxTargets, maxBytes}, with no viewers for the default ones
+ * Makes the panel of a bake.
+ * @param input of page.js; its member `options` has the user's choices: {viewers, tolerance, maxTargets, maxBytes}. An
+ *   empty list of viewers stands for the default viewers
  * @param {{plan: () => void, bake: () => void}} acts
  */
 export function makeBakePanel(input, { plan, bake }) {

@@ -8,6 +8,7 @@ const damaged = () => new Error('The data of this page are damaged. Download or 
 const isArray = (value) => typeof value?.type === 'string' && Number.isInteger(value.offset) && Number.isInteger(value.count);
 
 /**
+ * Reads a container.
  * @param {Uint8Array} bytes a container
  * @returns {object} its JSON, in which each {offset, type, count} below "parts" is replaced by a typed array
  */

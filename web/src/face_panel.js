@@ -6,7 +6,7 @@ import { faceOf, faceOfNumber, wayOf } from './faces.js';
 import { GRAPH, SPHERE, TRIANGLE, cornersInPicture, errorFigure, frameOf, inksOf, lengthFigure, liftedFrom, lookOf, nearOf, s, sphereFigure, stageOf, triangleFigure, turned,
   viewOf } from './figures.js';
 
-/** The schemes that the panel shows; `report` stores figures of the same schemes. */
+/** The schemes that the panel shows. The command `chronormal report` stores figures of the same schemes. */
 export const FIGURE_SCHEMES = ['linear', 'quadratic', 'cubic', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal'];
 const FIRST_SHOWN = ['linear', 'slerp', 'decasteljau:4', 'quaternion:matrix'];
 const STEP = 6; // pixels of the picture by which an arrow key moves a corner; five times as many with Shift
@@ -296,7 +296,7 @@ export function makeFacePanel(report, player, view, compute) {
 
   return {
     box,
-    /** Shows the face of a triangle of the part that the player has. */
+    /** Shows the face that a triangle of the current part belongs to. */
     pick: (index) => choose(faceOf(player.part, index)),
     /** Hides the face, which is not part of the part that the player shows now. */
     leave() {
@@ -310,7 +310,7 @@ export function makeFacePanel(report, player, view, compute) {
     svg: () => new XMLSerializer().serializeToString(svgOf()),
     figure: () => figure,
     way: () => way,
-    /** {view, stage, sample, near, ...}: the settings by which the pictures are drawn. */
+    /** The settings by which the pictures are drawn: {view, stage, sample, near, ...}. */
     look,
   };
 }

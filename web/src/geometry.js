@@ -9,8 +9,9 @@ export const NONE = 0xffffffff;
 // direction.
 const ROUNDING = 1e-13;
 
-// Factors by which the vector area n of a face is multiplied for one of its corners, by the weighting. dot is e.f of
-// the two edges at the corner, sine the length of e x f, squares the product of e.e and f.f, and area is |n|.
+// For each weighting, a function that returns the factor of a face's vector area n at one of its corners. e and f are
+// the edges at the corner. `dot` is e.f, `sine` the length of e x f, `squares` the product of e.e and f.f, and `area`
+// is |n|.
 const WEIGHTS = {
   area: () => 1,
   uniform: (area) => 1 / area,
@@ -53,9 +54,9 @@ function addAreas({ triangles }, slots, p, normals, sizes) {
   }
 }
 
-// Adds the terms of all polygons by a weighting other than area, or of faces with more than three corners. `slots` has
-// the element of each corner; if `starts` is given, a corner c has several elements, from slots[starts[c]] to
-// slots[starts[c + 1]].
+// Adds the weighted terms of all polygons, for weightings other than area and for faces with more than three corners.
+// `slots` has the element of each corner. If `starts` is given, a corner c has several elements, from slots[starts[c]]
+// to slots[starts[c + 1]].
 function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, normals, sizes) {
   const weightOf = WEIGHTS[weighting];
   for (let f = 0; f + 1 < offsets.length; ++f) {

@@ -1,4 +1,4 @@
-// Places in a motion. A place `at` is a number of a sample; a fraction lies between two samples.
+// Places in a motion. A place `at` is the index of a sample, or a fraction for a place between two samples.
 
 /** Returns the time or weight at a place. */
 export function valueAt({ at: values }, at) {
@@ -6,7 +6,7 @@ export function valueAt({ at: values }, at) {
   return values[from] + (at - from) * (values[to] - values[from]);
 }
 
-/** Returns the place of a time or weight. If two samples have the same one, the result is the later sample. */
+/** Returns the place of a time or weight. If two samples have this value, the result is the later sample. */
 export function placeOf({ at: values }, value) {
   let low = 0, high = values.length - 1;
   while (low < high) {

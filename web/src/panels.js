@@ -146,7 +146,7 @@ export function schemeTable(report, player) {
 export const notes = ({ thinned }) =>
   thinned?.length ? panel('What was left out here', true, h('ul', {}, thinned.map((sentence) => h('li', {}, sentence)))) : null;
 
-/** Returns a sentence that says how well the file's normals fit. */
+/** Returns a sentence that says how large the errors of the file's normals are. */
 export function verdict({ audit }) {
   if (!audit) return '';
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;

@@ -56,8 +56,8 @@ function deCasteljau(points) {
   return { intervals: points - 1, evaluate: each(rule) };
 }
 
-// Section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. If isTimed, it passes the middle normal at t =
-// 1/2.
+// Section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. With isTimed, the result at t = 1/2 is the
+// middle normal.
 function circle(isTimed) {
   const rule = (t) => (units, at, result) => {
     const [a, m, b] = units, ax = a[at], ay = a[at + 1], az = a[at + 2];

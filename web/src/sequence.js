@@ -80,7 +80,8 @@ export function makeSequence(part) {
     segment = { number, from: positionsOf(a), to: positionsOf(b), storedFrom: storedOf(a), storedTo: storedOf(b) };
     fit = {};
   }
-  // Returns the unit normals of all elements at t = 0, 1/K, ..., 1. At the two ends they are limits.
+  // Returns the unit normals of all elements at t = 0, 1/K, ..., 1. An element without a normal at t = 0 or 1 gets its
+  // normal just inside the segment.
   function unitsAt(intervals) {
     const units = [];
     for (let i = 0; i <= intervals; ++i) {
@@ -99,7 +100,8 @@ export function makeSequence(part) {
     return units;
   }
 
-  // The largest angle of the author's offset at each vertex, if each keyframe has its own normals.
+  // The largest angle at each vertex between the author's normal and the geometry's normal, in radians: the angle in
+  // the first keyframe. It is empty unless each keyframe has its own normals.
   const allowed = new Float64Array(keyframes.normals ? V : 0);
   if (keyframes.normals) {
     enter(0);

@@ -53,7 +53,8 @@ void main() {
   bool hasNone = dot(vNormal, vNormal) < 1e-8;
   bool isJudged = vDegrees > -0.5;
   vec3 n = hasNone ? face : normalize(vNormal);
-  // The back of a face has the opposite normal; not where it is seen from its edge, as behind silhouettes: there it is as beside it.
+  // The back of a face has the opposite normal. A face that is seen nearly edge on keeps its normal, since otherwise
+  // the shading would jump at silhouettes.
   if (!gl_FrontFacing && !hasNone && abs(dot(face, eye)) > 0.3) n = -n;
   if (mode == ${ERROR}) {
     float depth = 0.72 + 0.28 * max(dot(face, eye), 0.0);

@@ -62,7 +62,7 @@ export function makeView(stage, onPoint, onPick) {
   const handle = element(stage, 'wipe');
   Object.assign(handle, { tabIndex: 0, role: 'slider', ariaLabel: 'Where the picture changes from one side to the other' });
 
-  // Returns the rectangles of both sides in CSS pixels from the top left, each with the visible part of it.
+  // Returns the rectangle of each side in CSS pixels from the top left, and the part of the rectangle that is visible.
   function panes() {
     const width = stage.clientWidth, height = stage.clientHeight;
     if (view.layout === 'wipe') {
@@ -230,8 +230,9 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  // Returns the vector from a vertex to a camera that sees it. Of several directions around the normal, the first along
-  // which nothing is in the way for `distance` is taken, or else the one with the most room, shortened to that room.
+  // Returns the vector from a vertex to a camera that sees it. Tries several directions around the normal, and takes
+  // the first in which nothing is in the way for `distance`. If there is none, takes the direction with the most room,
+  // and shortens the vector to that room.
   function freeWay(target, normal, towards, distance) {
     const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
     up.cross(side);
