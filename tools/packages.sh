@@ -1,5 +1,5 @@
-# Sourced by ./run and ./test: installs the packages that the machine lacks, of those that tools/packages.txt and the
-# package-lock.json of tests/viewers and web list.
+# This file is sourced by ./run and ./test. It installs the packages that tools/packages.txt and the package-lock.json
+# of tests/viewers and web list, as far as the machine lacks them.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
 
@@ -12,7 +12,8 @@ listed_packages() {
   ' "$root/tools/packages.txt"
 }
 
-# update_lists APT-GET...: runs `apt-get update`, and waits for its lock, which apt-get only does for installations.
+# update_lists APT-GET...: runs `apt-get update`, and waits while another program holds its lock. apt-get itself waits
+# only when it installs.
 update_lists() {
   local deadline=$((SECONDS + 300)) said
   until said=$("$@" update 2>&1); do

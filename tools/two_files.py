@@ -114,7 +114,8 @@ def without_guard(lines):
 
 
 class File:
-    """A file that goes into the two: its text, its includes of our headers, and its includes of system headers."""
+    """A source or header that goes into the two files: its text, its includes of our headers, and its includes of
+    system headers."""
 
     def __init__(self, path):
         self.path, self.includes, self.system = path, [], []

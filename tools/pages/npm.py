@@ -43,7 +43,7 @@ print(used.ru_utime + used.ru_stime, 1024 * used.ru_maxrss)
 
 
 def measured(command, folder):
-    """Seconds of all processors and bytes of memory at most that a command takes."""
+    """Returns the seconds that a command takes, summed over all processors, and the largest memory in bytes."""
     words = [sys.executable, "-S", "-E", "-c", MEASURE, *map(str, command)]
     return [float(word) for word in subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True).stdout.split()]
 

@@ -93,8 +93,8 @@ def random_order(faces, count):
 
 
 def some(name, pairs):
-    """Returns random faces of a morph, for the wanted number of pairs of a face and a segment; all faces if there are
-    not more."""
+    """Returns random faces of a morph, so many that there are `pairs` pairs of a face and a segment, or all faces if
+    there are fewer pairs."""
     motion = cn.read(sample=name)
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)
     count = pairs // (len(positions) - 1)
@@ -259,8 +259,8 @@ def zeros_of_squared_length(part):
 
 
 def margin(z):
-    """Interpolation at K + 1 equidistant nodes of [0, 1] converges like exp(-K g). Returns the contribution of a
-    singular point z; g is the least of all."""
+    """Returns the rate of convergence that a singular point z allows. The error of interpolation at K + 1 equidistant
+    nodes of [0, 1] falls like exp(-K g), where g is the smallest rate of all singular points."""
     z_log_z = lambda w: np.where(w == 0, 0, w * np.log(np.where(w == 0, 1, w)))  # noqa: E731
     return (z_log_z(z) - z_log_z(z - 1)).real
 
@@ -339,8 +339,7 @@ def draw_lens(page, at, grows):
 
 
 def draw_oscillation(page, soup, at, found):
-    """Draws a face with its zero nearest to a tenth above the middle, and the mean error of all morphs against the
-    degree."""
+    """Draws the face whose zero is nearest to 0.5 + 0.1i, and the mean error of all morphs against the degree."""
     shown = np.abs(at.real + 1j * np.abs(at.imag) - (0.5 + 0.1j)).argmin()
     face, t = soup.face(shown), np.linspace(0, 1, 401)
     exact = np.array([face.exact(x)[0] for x in t])
@@ -461,9 +460,9 @@ def quaternions_of(tangent, binormal, normal):
 
 
 def frames_as_printed(part, tangent=1, turned=1, w=0):
-    """Computes section 2.5 of the paper independently, by the 4 x 4 matrix of its Eq. 7; the library's
-    quaternion:matrix uses neither matrices nor quaternions. If tangent is -1, t1 = n1 x b1, as the paper prints it;
-    if turned is -1, b1 is reversed; w is the fourth component of normals."""
+    """Computes the frames of section 2.5 of the paper by the 4 x 4 matrix of its Eq. 7. This is independent of the
+    library, whose quaternion:matrix uses neither matrices nor quaternions. If `tangent` is -1, t1 = n1 x b1, as the
+    paper prints it. If `turned` is -1, b1 is reversed. `w` is the fourth component of normals."""
     n0, n1 = part.exact(0), part.exact(1)
     column = lambda v, w: np.concatenate([v, np.full((len(v), 1), float(w))], axis=1)  # noqa: E731
     matrices = [np.stack([column(part.corners[k][:, i], 1) for i in range(3)] + [column(n, w)], axis=2) for k, n in ((0, n0), (1, n1))]
