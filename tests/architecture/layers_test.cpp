@@ -83,8 +83,9 @@ std::string room_of_public_header(const std::string& floor, const fs::path& head
   return "";
 }
 
-// Returns the place of a file, given by its path or as it is included: include/chronormal/FLOOR/STEM.h,
-// src/FLOOR/ROOM/..., or cli/... Returns nothing for a path outside of the layers or in a folder that is not a room.
+// Returns the place of a file. `path` is the path of the file, or the text by which it is included:
+// include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., or cli/... Returns nothing for a path outside of the layers or
+// in a folder that is not a room.
 std::optional<Place> place_of(const std::string& path) {
   std::vector<std::string> parts = parts_of(path);
   if (!parts.empty() && (parts[0] == "include" || parts[0] == "src")) parts.erase(parts.begin());
@@ -321,7 +322,7 @@ TEST(Layers, raw_intrinsics_stand_in_two_files) {
 }
 
 // Returns the lines by which a private header declares names in the public namespace. Private names belong in an inline
-// namespace: it separates them for the linker and the compiler, but code can use them without naming it.
+// namespace, which separates them for the linker and the compiler. Code can use them without naming this namespace.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {

@@ -1,5 +1,5 @@
-// Tests that only src/io/system/ calls the operating system. A compiler on Linux sees nothing of it where POSIX names
-// stand elsewhere, so this test looks for them in the text.
+// Tests that only src/io/system/ calls the operating system. A compiler on Linux does not complain about POSIX names
+// elsewhere, so this test searches the text for them.
 
 #include <gtest/gtest.h>
 
@@ -23,15 +23,16 @@ namespace fs = std::filesystem;
 
 const std::string kRoom = "src/io/system/";
 
-// The core has no room before it. What it asks of Linux and of POSIX threads stands behind conditions.
+// These files of the core may call Linux and POSIX threads directly, under #if conditions, since the core cannot
+// include the room of the system.
 const std::array<std::string, 2> kCore = {"src/core/memory.cpp", "src/core/parallel.cpp"};
 
 constexpr std::string_view kHeaders[] = {"unistd.h",   "fcntl.h",   "glob.h",    "poll.h",    "dirent.h", "termios.h",
                                          "sched.h",    "pthread.h", "dlfcn.h",   "pwd.h",     "io.h",     "malloc.h",
                                          "langinfo.h", "direct.h",  "process.h", "windows.h", "sys/"};
 
-// Names of POSIX, among them macros on macOS, and names of the library that take the name of a file for one of the code
-// page of Windows, or that libc++ has only in part (core/charconv.h).
+// Three kinds of names: names of POSIX, some of which are macros on macOS; functions of the library that read a file's
+// name in the code page of Windows; and functions that libc++ has only in part (core/charconv.h).
 constexpr std::string_view kWords[] = {
     "STDIN_FILENO", "STDOUT_FILENO", "STDERR_FILENO", "ssize_t",        "off_t",         "mode_t",
     "pid_t",        "dev_t",         "ino_t",         "timespec",       "pollfd",        "winsize",
@@ -41,7 +42,7 @@ constexpr std::string_view kWords[] = {
     "isatty",       "sigfillset",    "strdup",        "std::ifstream",  "std::ofstream", "std::fopen",
     "fopen",        "std::rename",   "std::to_chars", "std::from_chars"};
 
-// Parts of lines that stand for a file of Linux, a path from text and text from a path.
+// Parts of lines that only the room of the system may have: paths of Linux, and conversions between paths and text.
 constexpr std::string_view kParts[] = {"\"/proc/",
                                        "\"/sys/",
                                        "filesystem::path(",
@@ -63,7 +64,8 @@ bool has_word(std::string_view line, std::string_view word) {
   return false;
 }
 
-// Tells whether a function is called that no namespace has: "::open(". Those of zlib are no part of a system.
+// Tells whether a line calls a function of the global namespace, such as "::open(". Functions of zlib do not belong to
+// the system and are ignored.
 bool calls_global(std::string_view line) {
   for (std::size_t at = 0; (at = line.find("::", at)) != std::string_view::npos; at += 2) {
     if (at > 0 && (is_letter(line[at - 1]) || line[at - 1] == '>')) continue;
@@ -92,7 +94,7 @@ std::vector<std::string> refused(const std::string& path, const std::string& tex
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     std::string code = line.substr(0, line.find("//"));
-    for (std::size_t at = 0; (at = code.find("fs::path()")) != std::string::npos;) code.erase(at, 10);  // is empty
+    for (std::size_t at = 0; (at = code.find("fs::path()")) != std::string::npos;) code.erase(at, 10);  // an empty path
     const bool has =
         std::any_of(std::begin(kWords), std::end(kWords), [&](auto word) { return has_word(code, word); }) ||
         std::any_of(std::begin(kParts), std::end(kParts),

@@ -144,7 +144,8 @@ TEST_F(AuditCli, viewers_are_in_the_json_with_their_errors_and_sources) {
 }
 
 TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
-  // Each normal is right at weight 1; in between, the long normal turns too soon in viewers that add deltas unchanged.
+  // Each normal is true at weight 1. In between, the longer normal delta turns the sum too soon in viewers that add
+  // deltas unchanged.
   test::ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals = {0, 0, 0, -1, 0, 0, -1, 0, 0, -3, 0, -1};
   folder_.write("long.glb", mesh.file().glb());
@@ -227,7 +228,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-// Notes on standard error are also in the JSON, for callers that do not read standard error.
+// The notes on standard error are also in the JSON, for programs that do not read standard error.
 TEST_F(AuditCli, notes_on_a_file_are_in_the_json_of_audit_and_bake) {
   test::GltfBuilder builder = test::hinge().file();
   builder.json["extensionsRequired"] = {"FOO_bar"};
@@ -398,7 +399,8 @@ TEST_F(AuditCli, long_tables_show_the_worst) {
   const std::string text = text_of("many.glb --samples 2");
   const std::string table = text.substr(0, text.find("... and 4 more"));
   for (int i = 0; i < 20; ++i) {
-    // The table shows 16 rows, the first ones among equals: all 7 with an error of 90 degrees, and 9 of the rest.
+    // The table shows 16 rows and prefers earlier rows among equal errors: all 7 targets with an error of 90 degrees,
+    // and 9 of the others.
     const bool is_shown = i % 3 == 0 || i < 14;
     EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
   }
@@ -411,7 +413,7 @@ std::string last_line(const std::string& text) {
 }
 
 TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
-  // Twenty targets lack normals, most with errors of a few degrees, and an earlier mesh has smaller errors.
+  // Twenty targets lack normals and most have errors of a few degrees. An earlier mesh has smaller errors.
   const auto slight = [](float share) {
     test::ShadedMesh::Target target = test::hinge().targets[0];
     for (float& c : target.positions) c *= share;
@@ -471,7 +473,8 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // In a still file nothing drives the target, so it can have only one delta, before and after a bake.
+  // Nothing drives the target in a file without animations, so the target can have only one delta, before and after a
+  // bake.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();

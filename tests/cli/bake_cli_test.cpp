@@ -77,7 +77,7 @@ TEST_F(BakeCli, what_was_baked_before_takes_its_images_along) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(bytes_of("folder/twice.glb").find("image.png"), std::string::npos);
   EXPECT_NE(bytes_of("folder/twice.glb").find(" and so on"), std::string::npos);
-  // In the same folder, the file stays byte for byte the same.
+  // In the same folder, a bake of the baked file writes the same bytes again.
   EXPECT_EQ(run("once.glb -o again.glb").exit_code, 0);
   EXPECT_TRUE(bytes_of("again.glb") == bytes_of("once.glb"));
 }
@@ -167,13 +167,13 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
-// Files above 64 MiB are read one keyframe after the other, without stored normals.
+// Files above 64 MiB are read one keyframe at a time, and their stored normals are not kept.
 TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
   constexpr std::size_t kLine = 1 << 20, kLines = 24;
   const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";
   std::string room;
   for (std::size_t i = 0; i < kLines; ++i) room += comment;
-  // The stored normals of keyframe 1 are wrong. The report can only find this in the file itself.
+  // The stored normals of keyframe 1 are wrong. Only an audit of the file itself can find this.
   for (const int k : {0, 1, 2}) {
     std::string mesh = bytes_of("f_" + std::to_string(k) + ".obj");
     mesh = mesh.substr(0, mesh.find('f')) + (k == 1 ? "vn 1 0 0\n" : "vn 0 0 1\n") +
@@ -316,7 +316,7 @@ TEST_F(BakeCli, the_last_of_several_files_is_where_to_write) {
   EXPECT_EQ(run("f_0.obj f_1.obj f_2.obj frames.glb").exit_code, 0);
   expect_error("moving.glb", 2, "the output is missing");
   expect_error("f_0.obj f_1.obj f_2.obj", 2, "the output is missing");
-  expect_error("moving.glb still.glb", 1, "still.glb");  // it is there
+  expect_error("moving.glb still.glb", 1, "still.glb");  // the first file is there, so only the second is named
 }
 
 TEST_F(BakeCli, avatars_are_read_and_written_as_glb_under_their_own_extension) {

@@ -28,7 +28,7 @@ class InterruptedBake : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
     return run_shell(before + kProgram + " " + arguments, folder_.path());
   }
-  // Bakes over a file in a folder. The bake must fail with exit code 1 and keep the file.
+  // Bakes over a file in a folder, and checks that the bake fails with exit code 1 and leaves the file as it was.
   void expect_refused(const std::string& folder) const {
     const ProcessResult result = run("bake 'cloth_*.obj' --force --no-audit -o " + folder + "/old.glb");
     EXPECT_EQ(result.exit_code, 1) << result.err;
@@ -36,7 +36,8 @@ class InterruptedBake : public testing::Test {
     EXPECT_TRUE(test::read_whole(folder_ / (folder + "/old.glb")) == kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
-  // Bakes in the same way on a disk with little room. Only root can mount such a disk, so other users skip the test.
+  // Mounts a disk with room for so many kilobytes as the folder `small`. Only root can mount it, so other users skip
+  // the test.
   void mount_disk_of(std::size_t kilobytes) const {
     fs::create_directory(folder_ / "small");
     const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";
@@ -84,8 +85,9 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
 
 TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
-// The arrays wait in a separate file until the JSON in front of them is known, and each array is deleted from the disk
-// after it is copied. The largest array has 214 KB; the disk has room for all arrays, but not for one more.
+// The arrays wait in a separate file until the JSON in front of them is known. Each array is deleted from the disk
+// after it is copied into the result. The largest array has 214 KB. The disk has room for all arrays, but not for
+// another copy of the largest.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   expect_refused_on_a_disk_of(whole_.size() / 1024 + 100);
 }

@@ -212,7 +212,8 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// For each option, an input with which the option is valid. needs_of() adds the other arguments that a command needs.
+// Arguments with which an option is valid, by the name of the option. needs_of() adds the other arguments that a
+// command needs.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
@@ -358,7 +359,7 @@ TEST_F(Cli, every_option_that_help_lists_is_taken) {
       const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
       const auto use = special != kUses.end() ? special : usual;
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
-      // An option of a single query names the query here: {"query --points", "contain ..."}.
+      // An option that belongs to one query names this query in the table, as in {"query --points", "contain ..."}.
       const std::string question =
           command == "query" && special == kUses.end() && !name.starts_with("--help") ? "collapse " : "";
       const ProcessResult result = run(command + " " + question + use->second + needs_of(command, use->second));
@@ -476,7 +477,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
-  // An empty value, or one that is not a number, is an error; it does not count as a missing option.
+  // An empty value, or a value that is not a number, is an error of its own: the option does not count as missing.
   for (const char* const option :
        {"audit a.obj --tolerance", "audit a.obj --samples", "audit a.obj --fps", "compare a.obj b.obj --samples",
         "compare a.obj b.obj --blend", "compare a.obj b.obj --crease", "sample a.obj --crease",
@@ -760,7 +761,7 @@ TEST_F(Cli, long_work_shows_on_a_terminal_its_pace_and_the_time_that_is_left) {
   const std::string line = shown.substr(begin + 1, end - begin - 1);
   EXPECT_TRUE(line.starts_with("sampling [") && line.ends_with(" left")) << line;
   EXPECT_LE(line.size(), 80U) << line;
-  // At the printed rate, the remaining samples take about the printed time. Both numbers are rounded.
+  // At the printed rate, the remaining samples take the printed time, except for the rounding of both numbers.
   const double rate = std::stod(line.substr(line.find("%, ") + 3));
   double seconds = 0;
   for (std::size_t at = line.find("/s, ") + 4; line.compare(at, 4, "left") != 0;) {

@@ -21,10 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Three triangles move in the first of two segments: one without area, one whose normal turns over at t = 1/4, and one
-// whose normal turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. Of 3 x
-// 2 x 3 samples, 6 have no exact normal, and linear has two errors: the one above, and 180 degrees where opposite
-// normals cancel.
+// Three triangles move in the first of two segments. One has no area. The normal of one turns over at t = 1/4. The
+// normal of one turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. There
+// are 3 x 2 x 3 samples, of which 6 have no exact normal. Linear interpolation has two errors: the one above, and 180
+// degrees where opposite normals cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {
@@ -214,7 +214,7 @@ TEST_F(CompareFigures, a_weighting_is_that_of_the_figures_and_not_of_their_name_
   std::map<double, std::string> sums;
   for (const std::string weighting :
        {"area", "angle", "uniform", "area-angle", "max", "inverse-edges", "inverse-roots"}) {
-    // Two triangles of different shapes around each of two vertices, so that every weighting has its own sum.
+    // There are two triangles of different shapes around each of two vertices, so every weighting gives another sum.
     folder_.write("h0.obj", "v 0 0 0\nv 3 0 0\nv 0 1 0\nv 4 2 1\nf 1 2 3\nf 3 2 4\n");
     folder_.write("h1.obj", "v 0 0 0\nv 3 0 1\nv 0 2 0\nv 4 2 -3\nf 1 2 3\nf 3 2 4\n");
     const std::string own =

@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 class CompareTruth : public testing::Test {
  protected:
-  // Writes two triangles that turn by an angle from frame to frame, about an axis outside of both.
+  // Writes two triangles that turn by `angle` radians from frame to frame, about an axis outside of both.
   void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;

@@ -188,7 +188,7 @@ TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
     EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
     EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
   }
-  // The note about zeros cannot be printed, and must not be written into the output file.
+  // Standard error is closed, so the note about zeros cannot be printed. It must not end up in the output file instead.
   folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);
@@ -298,7 +298,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
     for (std::size_t i = 0; i < inputs.size(); ++i)
       EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
   }
-  // The new file keeps all content of the old one.
+  // The old file is replaced by a new one that has all of its content.
   EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);
   EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // refused because of its extension
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
@@ -400,7 +400,7 @@ TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
   if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "never end"});
 }
 
-// Results larger than a stack of 256 kB are on the heap.
+// Large results are on the heap, so a stack of 256 kB is enough.
 TEST_F(HostileCli, a_small_stack_is_enough) {
   if (std::string(kProgram).ends_with("_sanitized")) GTEST_SKIP() << "a sanitizer needs more";
   folder_.write("a.obj", kFirst);
@@ -414,8 +414,8 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// The files claim a terabyte, of which almost nothing was written. (p.ply and q.ply have the length that their headers
-// state.)
+// The files claim a terabyte, of which almost nothing was written. Only p.ply and q.ply have the length that their
+// headers state.
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =

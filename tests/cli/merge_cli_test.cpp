@@ -68,7 +68,8 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
 }
 
-// Two inputs have the same names, sizes and times, but another content; or one frame changes between the shards.
+// First, two inputs have the same names, sizes and times but different content. Then, one frame changes between two
+// shards.
 TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
   const std::string changed = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0.25\nf 1 2 3\nf 2 4 3\n";
   const std::string before = file("w_3.obj");

@@ -26,7 +26,7 @@ using Json = nlohmann::json;
 
 class Paths : public testing::Test {
  protected:
-  // Writes two triangles that turn by an angle from frame to frame, and lean over.
+  // Writes two triangles that turn by `angle` radians from frame to frame, and lean over by `lean`.
   void write_turn(double angle, double lean = 0.1) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -100,10 +100,10 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
 }
 
 TEST_F(Paths, that_bend_a_little_too_much_are_not_said_to_bend_by_the_limit) {
-  write_turn(2 * std::asin(0.502), 0);  // a turn bends by the sine of half its angle
+  write_turn(2 * std::asin(0.502), 0);  // a curve that turns by an angle bends by the sine of half the angle
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:1").err.find("which bend by 0.51 of their length (at most 0.50"),
             std::string::npos);
-  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees, but for rounding
+  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees, except for rounding
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom:1").err.find("too far apart"), std::string::npos);
 }
 
@@ -118,9 +118,9 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
   }
 }
 
-// Compares rendered normals between keyframes with the curves through the keyframes. The tolerance covers both the
-// straight pieces and the keys. Vertices with nearly cancelling faces are left out, since a bound for faces is no bound
-// for their sum.
+// Compares the rendered normals between keyframes with the normals of the curves through the keyframes. The tolerance
+// covers the error of the straight pieces and the error of the keys together. Vertices whose faces nearly cancel are
+// left out, since a bound for the normals of faces is no bound for their sum.
 TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
   constexpr std::uint64_t kSeed = 20261127;
   constexpr std::size_t kSide = 8;
@@ -213,7 +213,7 @@ TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
           << command << factor << result.err;
     }
   }
-  // The velocities fit 24 frames per second, but the frames are read as one second apart.
+  // The velocities are meant for 24 frames per second, but the frames are read as one second apart.
   write_turn_with_velocities(0.3, 24);
   EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
   EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);

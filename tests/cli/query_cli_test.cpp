@@ -34,7 +34,7 @@ class QueryCli : public testing::Test {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   }
-  // Compares with a tolerance that is larger than the brackets of times.
+  // Compares the values within a tolerance that is wider than the brackets around the times.
   static void expect_near(const Json& values, const std::vector<double>& wanted) {
     ASSERT_EQ(values.size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(values[i].get<double>(), wanted[i], 1e-12) << i;

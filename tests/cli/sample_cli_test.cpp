@@ -235,7 +235,7 @@ TEST_F(SampleCli, keys_are_the_times_of_the_keyframes) {
   ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj b.obj --fps 4 -o c.mdd", folder_.path()).exit_code,
             0);
   EXPECT_EQ(times_of("a.obj c.mdd"), (std::vector<double>{0, 0.25, 0.5}));
-  // A cubic spline is cut into many pieces, whose ends are not keys; a jump of the weights counts as one key.
+  // A cubic spline is cut into many pieces, whose ends do not count as keys. A jump of the weights counts as one key.
   test::GltfBuilder builder = test::quad_document();
   const std::vector<float> times = {0.5F, 1, 3};
   builder.add_track(0, 0, times, std::vector<float>{0, 0, 0, 0, 9, 9, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 9, 9},

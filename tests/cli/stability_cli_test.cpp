@@ -33,7 +33,7 @@ class Stability : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Compares the names with a list, or adds new names to the list if the documents are updated.
+// Compares the names with a list. When the documents are updated, adds new names to the list instead.
 void expect_listed(const Names& found, const std::string& file) {
   const std::filesystem::path path = std::filesystem::path(kSourceFolder) / "tests/cli" / file;
   Names listed;

@@ -31,8 +31,8 @@ TEST(Cholesky, solves_a_system) {
 }
 
 TEST(Cholesky, a_pivot_below_the_least_is_the_least) {
-  // The second squared pivot is 1 - 1 = 0, or about -1e-16 with rounding. In both cases it is replaced by 1/4, so the
-  // matrix becomes (1 1; 1 1.25), whose inverse is (5 -4; -4 4).
+  // The square of the second pivot is 1 - 1 = 0, or about -1e-16 with rounding. In both cases it is replaced by 1/4, so
+  // the matrix becomes (1 1; 1 1.25), whose inverse is (5 -4; -4 4).
   for (const double corner : {1.0, 1 - 0x1p-53}) {
     const auto x = solution({1, 1, 1, corner}, 0.25, {{1, 0, 2}, {0, 1, 1}});
     EXPECT_EQ(x[0], (Vec3d{5, -4, 6})) << corner;

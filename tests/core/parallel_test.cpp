@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Counts the threads that are inside at the same time, and keeps the largest count.
+// A counter of the threads that are inside at the same time. It keeps the largest count.
 class Crowd {
  public:
   void pass(std::chrono::microseconds time) {
@@ -94,7 +94,8 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The other thread cannot finish its piece before this one waits, and then the waiting thread has work for two.
+  // The other thread cannot finish its piece before this thread waits. While this thread waits, there is work for two
+  // threads.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;
@@ -194,7 +195,7 @@ TEST(ParallelFor, that_helps_with_a_loop_of_another_rounding_goes_on_with_its_ow
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
-// Returns the exit code of a child of fork(), in which `body` runs.
+// Runs `body` in a child of fork(). Returns the exit code of the child.
 int exit_code_of_child(const std::function<int()>& body) {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -27,7 +27,8 @@ ROOT = Path(__file__).resolve().parents[2]
 DIST = Path(os.environ.get("CHRONORMAL_DIST", ROOT / "dist"))
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 SEED = int(os.environ.get("CHRONORMAL_SEED", "20261126"))
-# The libraries that a manylinux wheel may need (PEP 513 and its successors), as far as these wheels use them.
+# The libraries of the system that a manylinux wheel may use (PEP 513 and its successors), as far as these wheels use
+# them.
 MANYLINUX = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "libpthread.so.0", "ld-linux-x86-64.so.2"}
 
 

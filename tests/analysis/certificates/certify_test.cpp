@@ -33,7 +33,7 @@ using test::IntegerVector;
 
 constexpr std::uint64_t kSeed = 8200;
 constexpr std::size_t kTimes = 64;
-constexpr double kOracle = 1e-12;  // radians
+constexpr double kOracle = 1e-12;  // the largest error of the oracle, in radians
 
 const std::vector<std::string>& all_schemes() {
   static const std::vector<std::string> names = [] {
@@ -77,7 +77,7 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// The findings about one scheme.
+// The counts of elements of one scheme, by the result of the comparison, and the tightness of the bounds.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
   double largest_share = 0;  // largest ratio of a sampled error to the upper bound
@@ -180,7 +180,7 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
               << tallies[s].gap / static_cast<double>(tallies[s].elements - tallies[s].unknown) << " rad\n";
 }
 
-// If hardly anything moves, the only error is rounding, which adds up from slerp to slerp.
+// If hardly anything moves, the exact error is nearly zero, and the rounding of one slerp adds to that of the next.
 TEST(ExactCertificates, include_the_rounding_of_many_slerps) {
   const Motion motion = fixtures::soup({.face_count = 150, .seed = 9, .motion = 1e-6});
   const Segment segment = motion.segment(0);
@@ -224,7 +224,7 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // The optimal length of one end normal leaves only rounding.
+  // With the best length of one end normal, only rounding remains as error.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 

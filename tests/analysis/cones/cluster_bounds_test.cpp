@@ -48,8 +48,8 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The tests repeat meshoptimizer.h, in float32. Only squares are summed in double: in float32, squares of lengths below
-// 1e-19 underflow, and every test that divides by a length or adds one would fail for that reason alone.
+// The functions below repeat the tests of meshoptimizer.h in float32. Only squares are summed in double: in float32,
+// the squares of lengths below 1e-19 underflow, so every test that uses a length would fail for this reason alone.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -69,7 +69,7 @@ bool rejects_view(const meshopt_Bounds& b, const Vec3f& view) {
 }
 
 struct Meshlets {
-  Motion motion;  // with its faces in the order of meshlets
+  Motion motion;  // the faces are in the order of meshlets
   std::vector<std::vector<std::uint32_t>> faces;
 
   [[nodiscard]] std::vector<ClusterBounds> bounds(double t0, double t1) const {
@@ -151,8 +151,8 @@ struct Count {
 };
 using Rejects = std::function<bool(const meshopt_Bounds&, const Vec3f&)>;
 
-// Counts the pairs of a meshlet and a camera that a test rejects, and those among them with a front-facing face at some
-// instant.
+// Counts the pairs of a meshlet and a camera that a test rejects. Among these, also counts the pairs in which some face
+// is front-facing at some instant, since these rejections are wrong.
 Count judged(const Meshlets& meshlets, const std::vector<meshopt_Bounds>& bounds, const std::vector<Instant>& instants,
              const std::vector<Vec3f>& cameras, const Rejects& rejects, bool is_view) {
   Count result;
@@ -244,7 +244,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
     EXPECT_GT(c.rejected, 100u);
   }
   EXPECT_LE(apex_s8.rejected, apex.rejected);
-  EXPECT_GT(rival.wrong, 20u);  // the check detects wrong bounds
+  EXPECT_GT(rival.wrong, 20u);  // wrong bounds are detected
 }
 
 // Tests one or a few faces of each family of hard faces, from cameras all around.
@@ -332,8 +332,8 @@ Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
   return result;
 }
 
-// Returns the Bernstein coefficients of the same cubic: weighted sums of its power coefficients, with ratios of
-// binomials as weights.
+// Returns the Bernstein coefficients of the cubic with these power coefficients. Each is a weighted sum of power
+// coefficients, with ratios of binomials as weights.
 std::array<Rational, 4> bernstein_of(const Powers& p) {
   return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
 }
@@ -373,8 +373,8 @@ std::array<Powers, 3> constant(const float (&v)[3]) {
   return result;
 }
 
-// The apex goes back from the center as far as some Bernstein coefficient of some face requires, and no further; each
-// of the four coefficients decides some cases.
+// The apex moves back from the center only as far as some Bernstein coefficient of some face requires. Each of the four
+// coefficients decides some of the cases.
 TEST(ClusterBounds, have_the_nearest_apex_that_bernstein_coefficients_put_behind_all_faces) {
   constexpr std::uint64_t kSeed = 914;
   fixtures::Random random(kSeed);

@@ -160,7 +160,7 @@ TEST(ExactCones, of_control_normals_contain_every_exact_normal_of_the_interval) 
   EXPECT_EQ(outside_of(cones_of, false), 0u);
 }
 
-// The check detects the errors of a shortcut: cones of the end normals alone.
+// Cones of the end normals alone are a wrong shortcut. This test shows that the check detects their errors.
 TEST(ExactCones, of_the_two_ends_alone_do_not) { EXPECT_GT(outside_of(cones_of_ends, false), 1000u); }
 
 TEST(Cones, have_the_same_bits_on_every_instruction_set_and_in_any_number) {
@@ -197,8 +197,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // Over the first half, the control normals {zero, zero, x} still begin with zeros; over the second half there are
-  // none.
+  // Over the first half, the control normals {zero, zero, x} still begin with zeros. Over the second half, none of them
+  // is zero.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);
@@ -222,8 +222,8 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2 these control normals nearly cancel, so an error of 2^-26 in one control normal turns n(t) by much more
-// than 2^-26.
+// At t = 1/2 these control normals nearly cancel. Therefore an error of 2^-26 in one control normal changes the
+// direction of n(t) by much more than 2^-26.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
     const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
@@ -240,7 +240,7 @@ TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   }
 }
 
-// The directions are two edges and a corner of a cube. Their smallest cones are known.
+// The three directions are two edges and a corner of a cube, whose smallest cones are known.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals{{x, 3 * y, z}, {x, x + y, y}, {1e-140 * x, 1e140 * y, z}};
@@ -267,7 +267,7 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// Compares with half of the widest angle between any two of 21 normals, which is a lower bound of the cone's
+// Compares each cone with half of the largest angle between any two of 21 normals, which is a lower bound of the cone's
 // half-angle.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {

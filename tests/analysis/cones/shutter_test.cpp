@@ -1,5 +1,6 @@
-// Compares means over an open shutter with oracles that share no code with them: closed forms if n(t) is a straight
-// line, even one that passes close to zero, and otherwise dense Gaussian quadrature in long double, from positions.
+// Compares means over an open shutter with oracles that share no code with the library. If n(t) is a straight line, the
+// oracle is a closed form, also for lines that pass close to zero. Otherwise it is dense Gaussian quadrature in long
+// double, from positions.
 
 #include "chronormal/analysis/cones.h"
 

@@ -30,7 +30,7 @@ using fixtures::Random;
 
 constexpr std::uint64_t kSeed = 20230;
 
-// The outward faces of a tetrahedron, a double pyramid and a cube, for arbitrary vertices.
+// The outward faces of a tetrahedron, a double pyramid and a cube, as indices of vertices.
 const std::array<std::vector<Corners>, 3> kMeshes{{
     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
     {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
@@ -124,8 +124,8 @@ std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& ra
   return result;
 }
 
-// Returns twice a position at t = 1/2, which is often on a vertex, an edge or a face. Twice, so that coordinates stay
-// integers.
+// Returns a position at t = 1/2, which is often on a vertex, an edge or a face. The position is doubled, so that its
+// coordinates are integers.
 Vec3f twice_a_place(const Scene& scene, Random& random) {
   const auto twice = [&](std::uint32_t v) { return scene.segment().from[v] + scene.segment().to[v]; };
   const Corners& face = scene.faces[random.below(scene.faces.size())];
@@ -154,7 +154,7 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
         from = scene.segment().from[random.below(scene.segment().from.count)];
         to = scene.segment().to[random.below(scene.segment().to.count)];
         break;
-      case 2:  // begins in that place
+      case 2:  // begins at this position
         from = 0.5F * twice;
         break;
       default:;
@@ -164,14 +164,15 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Tells whether a point touches an edge at t without crossing it: the winding number is the given one right before and
-// right after t, but another one at t.
+// Tells whether a point touches an edge at t without crossing it: right before and right after t, the winding number is
+// `winding`.
 bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   constexpr double kBeside = 0x1p-44;
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares the winding numbers at both ends and at a time in between, and the sums of crossings, with the oracle.
+// Compares winding numbers at both ends and at a time in between with the oracle, and with the sums of the crossings
+// before.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;

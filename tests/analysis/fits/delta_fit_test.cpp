@@ -27,7 +27,7 @@ DeltaNormals some_deltas(std::mt19937& random) {
   return result;
 }
 
-// Adds a row to the fit that demands the normals of other deltas at these weights.
+// Adds a row to the fit that asks for the normals which `wanted` gives at these weights.
 void ask_for(const DeltaNormals& wanted, const std::vector<double>& weights, DeltaFit& fit) {
   std::vector<Vec3d> shown(3), missing(3);
   shown_normals(fit.deltas(), weights, shown);

@@ -1,4 +1,5 @@
-// Compares the optimal scale of one end with a brute force search in long double over a fine grid of scales and times.
+// Compares the optimal scale of one end normal with a brute force search in long double over a fine grid of scales and
+// times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -90,7 +91,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     }
     const bool collapses = found.error > 90 * kDegree;  // the largest angle is sensitive to the grid
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // The error that the function claims is the true error of its result.
+    // The function also returns the error of its result. This error must be the true one.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -98,7 +99,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     EXPECT_NEAR(found.error, claimed, 2e-3 * claimed) << round;
     right_angles += collapses ? 1 : 0;
   }
-  EXPECT_GE(right_angles, 3);  // the error need not have a single minimum there
+  EXPECT_GE(right_angles, 3);  // errors near 90 degrees occur, where there may be several minima
   EXPECT_LT(right_angles, 100);
 }
 
@@ -198,7 +199,8 @@ TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more)
 TEST(EndDelta, errors_of_lines_are_found_wherever_they_are) {
   Random random(6);
   for (int round = 0; round < 2000; ++round) {
-    // Strong motion has normals that turn fast somewhere, and lines that turn fast near an end.
+    // If the motion is strong, some normals turn fast. If the lengths of the ends differ much, the line turns fast near
+    // an end.
     const ControlNormals normals = triangle(random, random.uniform(0, 30));
     const Vec3d from = unit(normals.n0), to = std::exp(random.uniform(-9, 9)) * unit(normals.n1);
     const auto expected = static_cast<double>(brute_error(normals, real(from), real(to), 1000));

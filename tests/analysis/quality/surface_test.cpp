@@ -76,12 +76,12 @@ TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itsel
   const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
   EXPECT_EQ(surface.turned_edges.count, 0U);
-  // A face that meets another face with the wrong winding counts, even if one of the two occurs twice.
+  // An edge counts if the windings of its two faces contradict each other.
   EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
 }
 
 TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
-  // Faces 1 and 3 repeat face 0, and 2 is its other side; 4 repeats a vertex and takes no part.
+  // Faces 1 and 3 repeat face 0, and face 2 is its back. Face 4 has the same vertex twice and is ignored.
   const Surface surface = survey_triangles(4, {0, 1, 2, 1, 2, 0, 0, 2, 1, 2, 0, 1, 0, 0, 1, 1, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 1}));
   EXPECT_EQ(surface.back_to_back, (Found{1, 0}));
@@ -100,7 +100,8 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // Polygons on the same four points whose outline crosses itself are neither copies nor other sides.
+  // The outlines of these polygons cross themselves, so polygons on the same four points are neither copies nor backs
+  // of each other.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});
@@ -113,7 +114,7 @@ TEST(Surface, edge_that_one_face_has_twice_is_open) {
   EXPECT_EQ(alone.open_edges, (Found{2, 0}));
   EXPECT_EQ(alone.turned_edges, Found{});
   EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
-  // A second face on one side of the edge makes it closed; it does not become non-manifold.
+  // A second face on one side of the edge makes the edge closed. It does not become non-manifold.
   const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
   EXPECT_EQ(both.edges, 4U);
   EXPECT_EQ(both.open_edges.count, 3U);
@@ -166,7 +167,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// Finds the same numbers with maps and sets, edge by edge and face by face.
+// Finds the same numbers independently, with maps and sets over edges and faces.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();

@@ -88,7 +88,7 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  // Two zeros without a double between them count as one.
+  // Two zeros with no double between them count as one zero.
   return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 
@@ -157,7 +157,7 @@ TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over)
 TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
   const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
   EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
-  // The corner is out of the plane by the smallest float, 2^-149, at both ends.
+  // At both ends, the corner is out of the plane by 2^-149, the smallest float.
   const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
   EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }

@@ -25,7 +25,8 @@ namespace {
 
 using test::WholePolynomial;
 
-// Return a vector of doubles, or of floats, in units of 2^-1074.
+// Each of these functions returns a vector in integers, in units of 2^-1074: the first for doubles, the second for
+// floats.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -44,7 +45,7 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    // Both durations are multiplied to make times integers.
+    // The times are fractions of two durations. Multiplying by both durations makes the times integers.
     const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
     const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
     const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
@@ -112,7 +113,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   return "";
 }
 
-// Makes a viewer at a place that is usually not a float, or at which the face is edge-on at a simple t.
+// Makes a viewer. Its place is usually not a float, or it is a place from which the face is edge-on at a simple t.
 View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto vertices = segment.topology->face(face);
   const Vec3d a = to_double(segment.from[vertices[0]]), b = to_double(segment.to[vertices[1]]),
@@ -149,7 +150,7 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       return View::of_direction({std::ldexp(p.x, -static_cast<int>(random.below(1000))), q.y, q.z});
     }
     case 9:
-    case 10: {  // on a part of its path, whose ends need not be doubles
+    case 10: {  // the viewer moves on a part of its path, whose ends need not be doubles
       const double before = static_cast<double>(random.below(9)), here = 1 + static_cast<double>(random.below(9)),
                    all = before + here + static_cast<double>(random.below(9));
       const Vec3d p = random.below(2) == 0 ? lattice() : clamped(a + somewhere(1)), q = somewhere(3);
@@ -193,7 +194,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The function must not answer "undecided" without a root.
+        // The function may answer "undecided" only if there is a root.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -252,7 +253,7 @@ exact::Rational exact_value(const std::vector<double>& p, double at) {
 }
 
 TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
-  // Only the rounding errors of the search itself can make it fail here.
+  // The coefficients have no error here, so only the rounding of the search itself could lead to wrong brackets.
   constexpr std::size_t kBlocks = 200;
   fixtures::Random random(4711);
   std::size_t found = 0;
@@ -261,7 +262,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // Some end values barely have their sign.
+        // In some blocks, an end value is so small that its sign is barely certain.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
@@ -389,7 +390,7 @@ Motion crumpling_grid(std::uint32_t size) {
   return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
 }
 
-// Compares the faces of every edge at instants outside of all brackets.
+// Compares the faces at every edge at instants that are outside of all brackets.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
   const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);

@@ -56,7 +56,7 @@ TEST(NearCollapse, mirror_image_turns_over_half_way) {
   }
 }
 
-// In a plane n(t) is a scalar, whose roots follow from the quadratic formula in long double.
+// If a face moves in a plane, n(t) has one component. Its roots follow from the quadratic formula in long double.
 TEST(NearCollapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   Motion motion = fixtures::large_soup(2000, 21);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -131,7 +131,7 @@ TEST(NearCollapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) 
        {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
     for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
       const NearCollapses found = find_near_collapses(normals);
-      // The search finds few faces, and the reference confirms each at the very instant that was found.
+      // The search finds few collapses, and at the instant of each the reference normal is nearly zero.
       for (std::size_t i = 0; i < found.count; ++i)
         EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
       EXPECT_LE(found.count, 1U);
@@ -152,7 +152,7 @@ TEST(NearCollapse, random_faces_in_space_do_not_collapse) {
     EXPECT_EQ(find_near_collapses(normals).count, 0U);
 }
 
-// The directions are within 90 degrees of an axis, so |n(t)| may become arbitrarily small.
+// All directions are within 90 degrees of one axis, but |n(t)| may become arbitrarily small.
 TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_never_wrong) {
   fixtures::Random random(20261125);
   std::size_t proven = 0, near = 0;

@@ -1,4 +1,5 @@
-// Checks that sums and errors of normals in many poses have the bits of plain loops on every instruction set.
+// Checks that sums of normals in many poses, and the errors of these normals, have the bits of plain loops on every
+// instruction set.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +48,7 @@ TEST(AddWeighted, has_the_bits_of_one_sum_after_the_other_on_every_instruction_s
   }
 }
 
-// The vector of a pose in planes of this many.
+// Returns the vector of pose p. `planes` has the x of all `count` poses, then all y, then all z.
 Vec3f at(const std::vector<float>& planes, std::size_t count, std::size_t p) {
   return {planes[p], planes[count + p], planes[2 * count + p]};
 }

@@ -1,5 +1,5 @@
-// Compares what a glance claims about faces with long double, and with the search for collapses, on every instruction
-// set.
+// Tests the glance, a cheap check of faces. Compares its claims with long double and with the search for collapses, on
+// every instruction set.
 
 #include "analysis/signs/kernels/face_glance.h"
 
