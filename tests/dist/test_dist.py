@@ -429,15 +429,15 @@ class Packaging(Unpacked):
     def setUp(self):
         super().setUp()
         self.archive = artefact(f"chronormal-{VERSION}.tar.gz")
-        # Both compile in one folder. The folder is only for this archive: files of another archive could have the same
-        # times, and the build would not notice that they differ.
+        # The port and the recipe are compiled in one folder, which is only for this archive. Files of another archive
+        # could have the same times, and the build would not notice the difference.
         self.build = ROOT / "build/packaging"
         known = self.build / "archive"
         if not known.exists() or known.read_bytes() != self.archive.read_bytes():
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # The build would take minutes longer with io, which users get by default.
+        # Users get io by default, but with io the build would take minutes longer.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

@@ -87,8 +87,8 @@ function(vcpkg_cmake_install)
   run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${CURRENT_PACKAGES_DIR})
 endfunction()
 
-# Moves the files for find_package(), and adapts their path to the package's folder, which is two levels up instead of
-# three.
+# Moves the files for find_package(). The folder of the package is then two levels above them instead of three, so their
+# path to this folder is adapted.
 function(vcpkg_cmake_config_fixup)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "CONFIG_PATH" "")
   file(GLOB files ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}/*)
@@ -116,7 +116,7 @@ endfunction()
 
 include(${PORT_FOLDER}/portfile.cmake)
 
-# vcpkg checks for these files at the end of a port.
+# At the end of a port, vcpkg itself checks for these files.
 foreach(file share/${PORT}/copyright share/${PORT}/usage share/${PORT}/chronormalConfig.cmake
              include/chronormal/chronormal.h)
   if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/${file})

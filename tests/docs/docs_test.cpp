@@ -82,8 +82,8 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// Runs a command with the program and the examples that were built with this test, in a separate folder for each
-// document. Tables may be as wide as a page.
+// Runs a command in a separate folder for each document, with the program and the examples that were built with this
+// test. Tables may be as wide as a page.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
   // Without npm, the page of a report may be missing. The content of the page does not matter for this test.
@@ -120,7 +120,7 @@ std::string joined(const Lines& lines) {
   return text;
 }
 
-// Checks the lines of one console block, and returns them with the current output.
+// Checks the lines of one console block. Returns the block with the current output of its commands.
 Lines check_console(const Lines& block, const fs::path& folder, const std::string& where) {
   Lines renewed;
   for (std::size_t i = 0; i < block.size();) {
@@ -139,7 +139,7 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
 
     const ProcessResult result = run_documented(command, folder);
     const Lines actual = lines_of(result.out);
-    // A document may show a failing command, if it shows its message too.
+    // A document may show a command that fails, but only together with its message.
     if (shown.empty()) {
       EXPECT_EQ(result.exit_code, 0) << where << ": " << command << "\n" << result.out;
     }

@@ -12,9 +12,9 @@
 //     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
 //                                          "start" how many times memory was requested before the first other call
 //
-// Calls count from main() on, since earlier calls belong to the libraries. close() closes before it fails, as Linux
-// does, and unlink() removes. fsync() only counts, since no power will be cut. The layer never allocates, and calls the
-// kernel directly.
+// Only calls after the start of main() count, since earlier calls belong to the libraries. A close() that fails closes
+// the file all the same, as on Linux, and an unlink() that fails removes it. fsync() does nothing but count, since no
+// power will be cut. The layer never allocates memory, and calls the kernel directly.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -76,7 +76,7 @@ struct Fault {
 constexpr int kMostFaults = 2;
 Fault faults[kMostFaults];
 std::atomic<long> counts[kKinds];
-std::atomic<long> mallocs_at_start{-1};  // -1 before the first other call
+std::atomic<long> mallocs_at_start{-1};  // number of allocations before the first other call; -1 until that call
 std::atomic<bool> is_armed{false};
 
 long number_at(const char*& text) {
@@ -226,7 +226,7 @@ int ftruncate(int file, off_t size) noexcept {
 off_t lseek(int file, off_t at, int from) noexcept {
   return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
 }
-// Fails to delete a file, or pretends to: the program cannot do better than try.
+// Deletes a file, but may return an error: a program that cannot delete a file can do no more.
 int unlink(const char* path) noexcept {
   const bool is_refused = fails(kUnlink);
   const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);

@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>;  // contents by name
 
 constexpr const char* kOld = "what was there before\n";
-constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // explained above
+constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // the header of this file explains both
 
 struct Command {
   std::string name;                    // becomes the name of the test
@@ -100,11 +100,11 @@ struct Outcome {
   Files files;  // all files in the folder out
 };
 
-// Returns the step between tested faults: 1 in the full test, otherwise `many`.
+// Returns the step from one tested fault to the next: 1 in the full test, otherwise `many`.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
 // Tells whether the program is sanitized. The fault layer and the address sanitizer both replace malloc, so these tests
-// cannot run then; a manual run says so. The sanitized shards leave these tests out.
+// cannot run with a sanitized program. A run by hand prints this; the sanitized shards leave these tests out.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {
@@ -193,8 +193,8 @@ class Faults : public testing::TestWithParam<Command> {
     ::_exit(98);
   }
 
-  // Tells whether a file is kept for the next run. Such files are useful only together with the journal, which is last
-  // in the list.
+  // Tells whether a file may be kept for the next run. Such a file is useful only together with the journal, which is
+  // the last one in the list.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();
@@ -217,7 +217,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Checks a run with a fault: it must fail with exit code 1 and a message, or complete the whole request.
+  // Checks a run with a fault. The run must either fail with exit code 1 and a message, or do all that was requested.
   void check(const Outcome& run, const std::string& what) const {
     check_files(run, what);
     if (run.exit_code == expected_.exit_code) {
@@ -238,7 +238,7 @@ class Faults : public testing::TestWithParam<Command> {
     return is_whole || start < kMostOfArguments ? 0 : start - kMostOfArguments;
   }
 
-  // Makes one in `many` calls of a kind fail; a harmless fault must not change the exit code.
+  // Makes one in `many` calls of a kind fail. With is_harmless, the faults must not change the exit code.
   void check_each(const std::string& kind, const std::string& how, std::size_t many, bool is_harmless = false) {
     const std::size_t table = kind == "malloc" ? mallocs_of_table() : 0;
     const std::size_t most = table > 0 ? kMostPlaces : counts_[kind];
@@ -330,8 +330,8 @@ TEST_P(Faults, inputs_that_become_shorter_while_they_are_read_end_in_exit_1) {
   for (std::size_t n = 1; n <= counts_["mmap"]; ++n) {
     const std::string fault = "mmap:" + std::to_string(n) + ":short";
     const Outcome shrunk = run(fault, {});
-    // The shortened file may also be a result that is read again for judging, or a memory file, which does not become
-    // shorter.
+    // The program may go on: the file that becomes shorter may also be a result that is read again for judging, or a
+    // file in memory, which keeps its length.
     EXPECT_TRUE(shrunk.exit_code == 1 || shrunk.exit_code == expected_.exit_code) << fault << ": " << shrunk.err;
     for (const auto& [name, bytes] : shrunk.files)
       EXPECT_TRUE(expected_.files.count(name) == 1 || is_kept(name)) << fault << ": " << name;
@@ -354,7 +354,7 @@ TEST_P(Faults, streams_that_are_full_or_closed_change_exit_codes_only_where_data
   }
 }
 
-// Calls fail while stderr accepts nothing, and calls fail in pairs.
+// First, calls fail while stderr accepts no output. Then, calls fail in pairs.
 TEST_P(Faults, pairs_of_failures_leave_no_trace) {
   std::vector<std::string> single;
   for (const char* const kind : {"write", "fsync", "close", "rename", "open", "change", "truncate", "seek", "unlink"})

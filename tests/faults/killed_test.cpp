@@ -1,5 +1,5 @@
-// Kills a run with --resume at system calls, and starts it again; the result must equal that of an undisturbed run.
-// ./test --full slow kills at random calls, `./test --full faults` (CHRONORMAL_FULL=1) at each call.
+// Kills a run with --resume at system calls, and starts it again. The result must equal the result of a run that was
+// not killed. ./test --full slow kills at random calls, and `./test --full faults` (CHRONORMAL_FULL=1) at each call.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,8 @@ class Killed : public testing::TestWithParam<Command> {
     ASSERT_GT(calls_, 20U);
   }
 
-  // Runs the command. `layer` is the text before the path of the fault layer, or empty for none.
+  // Runs the command. `layer` is the text in front of the path of the fault layer. If it is empty, the layer is not
+  // used.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
     // A further command makes the shell run the program in a child process, so that it can report how the program ended.
@@ -87,7 +88,7 @@ TEST_P(Killed, runs_that_are_killed_twice_give_the_bytes_of_an_undisturbed_run) 
     const std::string what =
         "seed " + std::to_string(kSeed) + ", calls " + std::to_string(first) + " and " + std::to_string(second);
     EXPECT_EQ(run_to(first, SIGKILL).exit_code, 128 + SIGKILL) << what;
-    (void)run_to(second, SIGKILL);  // the second run has less to do, and may finish before
+    (void)run_to(second, SIGKILL);  // the second run has less work, and may end before it is killed
     finish(what);
   }
 }

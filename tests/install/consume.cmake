@@ -19,7 +19,7 @@ set(programs core)
 set(project ${SOURCE}/tests/install)
 if(FROM STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
-  # Moves the installation, to check that no file contains its first path.
+  # Moves the installation to another path, to check that no file in it contains its first path.
   file(RENAME ${folder}/prefix ${folder}/moved)
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
   list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)

@@ -1,4 +1,4 @@
-// Tests MotionStream: the keyframes that it holds, the number of times that each is read, and errors of the reader.
+// Tests MotionStream: which keyframes it holds, how many times it reads each of them, and errors of the reader.
 #include "chronormal/motion/motion.h"
 
 #include <gtest/gtest.h>

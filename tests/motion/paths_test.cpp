@@ -75,9 +75,9 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
-// Compares the normals of all faces, or of all vertices, of the pieces with those of the curve at times between, and
-// returns the largest angle in degrees. Subtracts twice the possible effect of rounding positions to float32: once for
-// the pieces, and once because the cutting accepts a piece that is within rounding.
+// Compares the normals of the pieces with the normals of the curve at times between the keyframes, for all faces or for
+// all vertices. Returns the largest angle in degrees. Subtracts twice the possible effect of rounding positions to
+// float32: once for the pieces, and once because the cutting accepts a piece that is within rounding.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {
@@ -107,8 +107,8 @@ double largest_error(const Motion& motion, const Motion& pieces, bool of_vertice
           }
           const double size = static_cast<double>(
               std::sqrt(exact[e][0] * exact[e][0] + exact[e][1] * exact[e][1] + exact[e][2] * exact[e][2]));
-          // A triangle has two edges and a quad has four, each at most 1.8 times as long as its largest component, plus
-          // a margin.
+          // A triangle has two edges and a quad has four. Each edge is at most 1.8 times as long as its largest
+          // component. The factors include a margin.
           rounding = 2 * 57.3 * 0x1p-24 * 16 * static_cast<double>(face.size() - 2) * widest * 1.2 * furthest / size;
         }
         largest = std::max(largest, test::angle_of(exact[e], found[e]) * 57.29577951308232 - rounding);
@@ -213,7 +213,7 @@ TEST(Pieces, are_no_more_than_was_allowed) {
   EXPECT_EQ(cut_into_segments(motion, curve(), 0).value().cut.pieces, 2U);
 }
 
-// Vertex 2 passes beside the line through the other two vertices between keyframes 1 and 2.
+// Between keyframes 1 and 2, vertex 2 passes close to the line through the other two vertices.
 TEST(Pieces, a_face_that_turns_over_decides_nothing) {
   Motion motion;
   motion.topology = Topology::triangles(6, {0, 1, 2, 3, 4, 5}).value();
@@ -226,7 +226,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // Now it passes through the line itself.
+  // Now vertex 2 passes through the line itself.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();

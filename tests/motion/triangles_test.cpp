@@ -16,7 +16,7 @@ namespace {
 using Place = std::array<std::int64_t, 2>;
 using Triangle = std::array<std::uint32_t, 3>;
 
-// Returns twice the area as an integer.
+// Returns twice the signed area of a triangle, as an integer.
 std::int64_t area(const Place& a, const Place& b, const Place& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -51,7 +51,8 @@ bool is_simple(const std::vector<Place>& polygon) {
   return true;
 }
 
-// Puts the polygon on a plane in space: x and y are on two of the axes, and the third coordinate has a slope.
+// Puts a polygon on a plane in space: x and y become two of the coordinates, and the third one depends linearly on
+// them.
 std::vector<float> in_space(const std::vector<Place>& polygon, std::size_t axis) {
   std::vector<float> positions;
   for (const Place& p : polygon) {
@@ -90,7 +91,7 @@ void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
 TEST(Triangles, convex_polygons_stay_fans) {
   EXPECT_EQ(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(cut({{0, 0}, {2, 0}, {3, 1}, {2, 2}, {0, 2}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
-  // A polygon that a fan covers despite a concave corner, here the first, is still cut into a fan.
+  // A fan covers this polygon although its first corner is concave, so it is still cut into a fan.
   EXPECT_EQ(cut({{1, 1}, {4, 0}, {1, 4}, {0, 4}, {0, 0}}).front(), (Triangle{0, 1, 2}));
 }
 

@@ -1,7 +1,7 @@
-# cmake -DSOURCE=... -DFOLDER=... -DCOMPILER=... [-DFLAGS=...] [-DRUN=...] [-DLIBRARY=...] -P: writes the two files of
-# tools/two_files.py, compiles them and the example of docs/cpp.md with the command of that page, and compares the
-# output of the example and of bits.cpp with their output when linked with the library. LIBRARY is the command line for
-# linking the library; without it, the output that an earlier run left in FOLDER is used.
+# cmake -DSOURCE=... -DFOLDER=... -DCOMPILER=... [-DFLAGS=...] [-DRUN=...] [-DLIBRARY=...] -P: tests tools/two_files.py.
+# Writes the two files, and compiles them with the example of docs/cpp.md by the command of that page. The example and
+# bits.cpp must print the same when they are linked with the library. LIBRARY is the command line for linking it;
+# without LIBRARY, the output that an earlier run left in FOLDER is used.
 file(MAKE_DIRECTORY ${FOLDER})
 function(run output)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE errors)

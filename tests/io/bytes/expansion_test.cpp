@@ -1,5 +1,5 @@
-// Tests the limits on memory and output that a small file can cause. Every file here declares far more than it stores;
-// --max-expansion allows reading it.
+// Tests the limits on memory and output that a small file can cause. Every file here declares far more than it stores,
+// and can be read only with --max-expansion.
 
 #include "io/bytes/expansion.h"
 
@@ -75,7 +75,7 @@ TEST(Expansion, of_deflated_arrays_is_asked_for_before_they_are_unpacked) {
   expect_refused(error_of(read_npz(bomb, "bomb.npz")));
   EXPECT_TRUE(read_npz(bomb, "bomb.npz", 1, kEnough).ok());
   EXPECT_TRUE(read_npz(zeros(2, 1000000, false), "stored.npz").ok()) << "what is stored is there";
-  // Keyframes of one vertex take more memory for themselves than for their positions.
+  // A keyframe of one vertex takes more memory for its own fields than for its positions.
   expect_refused(error_of(read_npz(zeros(400000, 3, true), "frames.npz")));
 }
 

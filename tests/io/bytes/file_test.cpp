@@ -52,7 +52,7 @@ std::string many_bytes() {
   return bytes;
 }
 
-// Replaces a descriptor by another one during its lifetime.
+// A replacement of a descriptor by another one, which ends with this object.
 class Redirect {
  public:
   Redirect(int from, int to) : from_(from), saved_(::dup(from)) {

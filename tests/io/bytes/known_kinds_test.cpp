@@ -1,4 +1,5 @@
-// Checks that a known kind of file with the extension of another format gets a message with its real kind.
+// Checks the message about a file whose extension is that of another format. If the kind of the file is known by its
+// first bytes, the message must name it.
 #include "io/bytes/known_kinds.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +55,8 @@ const std::vector<Sample> kSamples = {
 
 class KnownKinds : public ::testing::Test {
  protected:
-  // Returns the message about a file with this name and these bytes. If the name is a cache's, a mesh is given too.
+  // Returns the message about a file with this name and these bytes. If the file is a cache by its name, it is read
+  // together with a mesh.
   std::string said(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -112,7 +114,7 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
       text += std::vector<std::string>{"v ",  "f ",       "# ", "{\"asset\":", "1.5 ",   "\n",
                                        "-2 ", "o solid ", " <", "[",           "mtllib "}[random() % 11];
     EXPECT_EQ(known_kind(text), "") << text;
-    // Random bytes often begin like kinds that have only two or three bytes at the start.
+    // Some kinds are recognised by only two or three bytes, with which random bytes often begin.
     const bool may_be_one =
         std::any_of(kShort.begin(), kShort.end(), [&](const std::string& begin) { return bytes.starts_with(begin); });
     EXPECT_TRUE(may_be_one || known_kind(bytes).empty()) << known_kind(bytes);

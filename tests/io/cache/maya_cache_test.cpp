@@ -23,7 +23,7 @@ void expect_turning(const Result<PositionCache>& cache) {
   EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
 }
 
-// Makes a file of one time whose groups have no TIME, since the header has it.
+// Makes a file of one time. Its groups have no TIME, since the header has the time.
 std::string frame_bytes(bool wide, std::int32_t ticks, const std::vector<float>& positions) {
   const test::MayaWriter writer(wide);
   return writer.header(ticks) + writer.group("MYCH", writer.points<float>("body", positions));

@@ -214,7 +214,7 @@ TEST(ReadNpz, damaged_zip_files_are_errors) {
   EXPECT_NE(error_of(bytes).find("walk.npz, 'positions.npy': "), std::string::npos);
   EXPECT_NE(error_of(test::zip({{"positions.npy", kPositions, false, false, 1}})).find("encrypted"), std::string::npos);
   bytes = test::small_npz(false);
-  bytes[8] = 12;  // the method in the directory counts, not the one in the member's own header
+  bytes[8] = 12;  // the compression method in the directory counts, not the method in the member's header
   expect_turning(read_good(bytes));
   bytes = test::small_npz(false);
   bytes[bytes.rfind("positions.npy") - 36] = '\x0C';
@@ -226,7 +226,7 @@ TEST(ReadNpz, sizes_that_deflate_can_not_reach_are_refused_before_memory_is_take
   const auto declared = static_cast<std::uint32_t>(huge.size() + std::uint64_t{119304600} * 36);
   EXPECT_NE(error_of(test::zip({{"positions.npy", huge, true}}, "", declared)).find("cannot unpack to"),
             std::string::npos);
-  // Deflate could expand to this size, but this member does not.
+  // Deflate could expand the member to the declared size, but the member has fewer bytes.
   const std::string header = npy_header("<f4", "(2, 3, 3)");
   const std::string shorter = npy(header, raw(test::turning_elements<float>(false)).substr(4));
   EXPECT_NE(error_of(test::zip({{"positions.npy", shorter, true}}, "", static_cast<std::uint32_t>(shorter.size() + 4)))

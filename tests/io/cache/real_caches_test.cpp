@@ -29,7 +29,7 @@ class RealCaches : public ::testing::Test {
     data_ = folder;
   }
 
-  // Reads a cache as a motion over a mesh of one triangle and the points that it needs.
+  // Reads a cache as a motion. The mesh has one triangle, and as many points as the cache.
   void expect_maya(const std::string& folder, std::size_t samples, double first, double last) const {
     SCOPED_TRACE(folder);
     std::string obj;
@@ -59,7 +59,7 @@ TEST_F(RealCaches, maya_caches_of_every_kind_are_read) {
   expect_maya("sine_mxmd_oversample", 34, 10, 19.9);
 }
 
-// Four caches of one animation agree where they have a sample at the same time.
+// There are four caches of one animation. Where several have a sample at the same time, the samples must be equal.
 TEST_F(RealCaches, maya_caches_of_one_animation_agree) {
   const auto at_frame_11 = [&](const std::string& folder) -> std::vector<float> {
     const auto cache = read_maya_cache((data_ / "caches" / folder / "cache.xml").string(), {1, 0, "pCubeShape1"});

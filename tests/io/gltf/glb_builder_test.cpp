@@ -21,7 +21,7 @@ std::vector<float> vectors(float first, std::size_t nonzero) {
 }
 
 // Adds arrays of every kind: dense, sparse, all zeros, repeated, and with the same numbers and bounds in another order.
-// Returns their accessors.
+// Returns the accessors of these arrays.
 std::vector<std::size_t> add_all(GlbBuilder& builder) {
   std::vector<std::size_t> accessors = {builder.set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices)};
   std::vector<float> dense = vectors(1, 3 * kVertices), sparse = vectors(1, 30);

@@ -92,7 +92,7 @@ void expect_sparse() {
   over.make_sparse<Index>(replaced, {1, 3}, kReplacing);
   EXPECT_EQ(geometry_of(over).positions, kReplaced);
 
-  // Without a view the other elements are zero, as in a target that moves few vertices.
+  // Without a view, the elements that are not replaced are zero, as in a target that moves few vertices.
   GltfBuilder alone;
   const std::size_t base = alone.add_positions(test::kQuad);
   const std::size_t target = alone.add_accessor_over(std::nullopt, "VEC3", 5126, 4);

@@ -1,4 +1,4 @@
-// Reads files with one wrong number or byte, or a wrong length. Each must give an error with a place, or a valid
+// Reads files in which one number or byte or the length is wrong. Each file must give an error with a place, or a valid
 // result.
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads arbitrary files, and collects all violations of invariants.
+// A reader of arbitrary files, which counts refused files and collects complaints about broken invariants.
 class Batch {
  public:
   // Reads a file, or under a sanitizer, which is slow, only every seventh file.
@@ -45,7 +45,7 @@ class Batch {
   void complain(const std::string& label) { complaints_ += label + "\n"; }
   [[nodiscard]] bool last_was_refused() const { return last_refused_; }
 
-  // Returns the text "files refused complaints", which are three numbers.
+  // Returns the number of files, the number of refused files, and the complaints, in one text.
   [[nodiscard]] std::string summary() const {
     return std::to_string(count_) + " " + std::to_string(refused_) + " " + complaints_;
   }
@@ -221,7 +221,7 @@ TEST(GltfBoundary, every_bit_and_count_of_compressed_bytes) {
       for (std::size_t at = 0; at < builder.buffer.size(); ++at) {
         for (int bit = 0; bit < 8; ++bit)
           read_with(at, std::string(1, static_cast<char>(builder.buffer[at] ^ (1 << bit))));
-        // The counts have 7, 14, 21, 28 and 32 bits in Draco's encoding, and 32 plain bits.
+        // Draco encodes these counts in 7, 14, 21, 28 and 32 bits, or as plain numbers of 32 bits.
         for (const char* const count : {"\x7F", "\xFF\x7F", "\xFF\xFF\x7F", "\xFF\xFF\xFF\x7F", "\xFF\xFF\xFF\xFF\x0F",
                                         "\xFF\xFF\xFF\xFF", "\xAA\xAA\xAA\x0A", "\x80\x80\x80\x80\x08"}) {
           if (at + std::strlen(count) <= builder.buffer.size()) read_with(at, count);

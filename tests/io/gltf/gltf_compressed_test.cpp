@@ -108,7 +108,8 @@ TEST(GltfMeshopt, triangles_of_two_bytes_come_back) {
   EXPECT_EQ(geometry_of(GltfFixture(builder)).corners, kCorners);
 }
 
-// Decodes exactly as appendix B of the extension's specification says; x, y and the value of 1 in z are integers.
+// Decodes a normal by the formula in appendix B of the extension's specification. x, y and the z that stands for 1 are
+// integers.
 std::array<double, 3> octahedral(const std::array<int, 3>& coded, int largest) {
   const double one = coded[2];
   double x = coded[0] / one, y = coded[1] / one;
@@ -151,7 +152,7 @@ void expect_octahedral(int bits) {
   for (std::size_t i = 0; i < vertices; ++i) {
     const auto expected = octahedral({filtered[4 * i], filtered[4 * i + 1], filtered[4 * i + 2]}, largest);
     for (std::size_t k = 0; k < 3; ++k) {
-      // In float arithmetic, the last digit may be rounded either way.
+      // The function computes in float32, so the last digit may be rounded either way.
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), expected[k], 1.001 / largest) << i;
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), static_cast<double>(four[4 * i + k]),
                   4.0 / (1 << (bits - 1)))
@@ -236,7 +237,7 @@ TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_th
     if (has_stride) {
       EXPECT_EQ(geometry_of(file).positions, test::kQuad);
     } else if (file.ok()) {
-      // Elements are then packed, as the core specification demands.
+      // Without a stride, elements are packed, as the core specification demands.
       const std::vector<float> packed(wide.begin(), wide.begin() + 12);
       EXPECT_EQ(geometry_of(file).positions, packed);
     }

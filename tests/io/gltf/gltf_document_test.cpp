@@ -226,7 +226,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
             {"sequence", false},
             {"extras", {{{"target", 1}, {"linear", Json::array()}, {"quadratic", {{0, 0, factor}}}}}}};
   };
-  // Returns the factor of the mark that the mesh has, or 0 if it has none.
+  // Returns the factor in the mark that is found for the mesh, or 0 if there is no mark.
   const auto factor_of = [](const GltfBuilder& builder) {
     const GltfFixture file(builder);
     EXPECT_TRUE(file.ok()) << file.error();

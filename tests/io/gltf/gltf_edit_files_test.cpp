@@ -49,7 +49,8 @@ std::string first_bytes() { return bytes_of(kFirst); }
 std::string second_bytes() { return "skip" + bytes_of(kSecond) + "x"; }
 std::string as_data(const std::string& bytes) { return "data:application/octet-stream;base64," + base64(bytes); }
 
-// Opens a written file, and compares its arrays with those of two_buffers(), and with a third if it was added.
+// Opens a written file, and compares its arrays with those of two_buffers(). With with_third, the file must also have
+// an added third array.
 void expect_arrays(const std::string& path, bool with_third) {
   const Result<GltfDocument> document = GltfDocument::open(path);
   ASSERT_TRUE(document.ok()) << document.error().text();
@@ -264,7 +265,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   constexpr std::uintmax_t kSize = 4294967296;
   folder.write("b.bin", std::string(static_cast<std::size_t>(kSize / 99), '\0'));
   std::error_code error;
-  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // the rest is a hole of the largest allowed size
+  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // a hole fills the file up to the largest allowed size
   if (error) GTEST_SKIP() << "the file system has no files of 4 GiB: " << error.message();
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", kSize}, {"uri", "b.bin"}}};

@@ -150,7 +150,7 @@ TEST(GltfHuge, keys_that_nothing_backs_are_refused_before_they_are_made) {
   EXPECT_TRUE(read_apart("keys", builder.glb()).starts_with("a.gltf, /"));
 }
 
-// Many tracks share their arrays: a small file would need a lot of memory.
+// Many tracks share their arrays. If each track copied the arrays, a small file would need a lot of memory.
 TEST(GltfHuge, tracks_that_share_their_keys_are_refused_before_these_are_copied) {
   if (test::is_sanitized()) GTEST_SKIP() << kSlow;
   GltfBuilder builder = test::quad_document();
@@ -244,7 +244,7 @@ TEST_F(HostileData, gltf_files_are_read_or_refused_with_a_place_within_a_second)
   std::printf("%zu files, %zu of them refused\n", count, refused);
 }
 
-// Errors of the Khronos validator about parts that we read: a file with such an error must be refused.
+// Errors of the Khronos validator about parts of a file that we read. A file with such an error must be refused.
 const std::set<std::string_view> kRead = {
     "ACCESSOR_INDEX_OOB",
     "ACCESSOR_INDEX_PRIMITIVE_RESTART",
@@ -266,7 +266,7 @@ const std::set<std::string_view> kRead = {
     "VALUE_NOT_IN_RANGE",
 };
 
-// Errors about parts that are not read, or read only when they are used, with the reason.
+// Errors about parts of a file that we do not read, or read only when they are used, each with the reason.
 const std::map<std::string_view, const char*> kNotRead = {
     {"ACCESSOR_INVALID_SIGN", "the sign of tangents does not touch geometry"},
     {"ACCESSOR_JOINTS_INDEX_DUPLICATE", "skins are not read"},
@@ -305,8 +305,7 @@ const std::map<std::string_view, const char*> kNotRead = {
 // Files with types of later versions, for which the validator only warns.
 const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 
-// Tells whether a message is about something that we read. A code may occur in parts that we read and in others; then
-// the end of its pointer decides.
+// Tells whether a message is about a part that we read. If a code also occurs in other parts, its JSON pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
     // Items of these lists are not read at all.

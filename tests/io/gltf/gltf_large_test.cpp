@@ -20,8 +20,8 @@ void append_word(std::string& text, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>((value >> shift) & 0xFF);
 }
 
-// Writes a GLB of 180 MB in which a grid of 64 x 64 vertices morphs. In front of it is a mesh of 15 million vertices
-// that does not morph and is a hole in the file.
+// Writes a GLB of 180 MB. A grid of 64 x 64 vertices in it morphs. The mesh in front of the grid has 15 million
+// vertices, does not morph, and is a hole in the file.
 std::string write_large_glb(const TemporaryFolder& folder) {
   constexpr std::uint32_t kStill = 15'000'000, kSide = 64, kMoving = kSide * kSide;
   constexpr std::uint64_t kStillBytes = std::uint64_t{12} * kStill;

@@ -242,8 +242,8 @@ struct Track {
   std::vector<float> times, values;
 };
 
-// Returns the true positions of a part: applies the weights of its node at a time, by the formulas of the
-// specification.
+// Returns the true positions of a part: applies the weights of its node at a time by the formulas of the specification,
+// in code that shares nothing with the reader.
 std::vector<double> true_positions(const Track& track, const std::vector<float>& base,
                                    const std::vector<std::vector<float>>& targets, double time) {
   return test::morphed(base, targets,

@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the expected beginning of the note's place
+  const char* pointer;  // the beginning that the place of the note must have
 };
 
 // Makes a quad with two targets, and an animation of them.
@@ -228,8 +228,8 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   EXPECT_NE(error.find("gltfpack -c"), std::string::npos) << error;
 }
 
-// A lenient reader reads every file that a strict reader accepts in the same way and without a note. If only the
-// lenient reader accepts a file, there is a note.
+// If a strict reader accepts a file, a lenient reader reads the same from it, without a note. If only the lenient
+// reader accepts a file, it gives a note.
 TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
   constexpr std::uint32_t kSeed = 5404;
   std::cout << "seed " << kSeed << '\n';
@@ -261,7 +261,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     } else {
       ++noted;
       ASSERT_FALSE(strictly.errors.empty()) << file->notes()[0].text() << text;
-      // Every array stays at the place where other programs look for it.
+      // Arrays must stay at the places where other programs look for them, so the file can be written again.
       ASSERT_TRUE(GltfEdit(*file).bytes("").ok());
     }
   }

@@ -1,5 +1,5 @@
-// Tests octahedral normals of EXT_meshopt_compression: by the formula of its specification in double, and bit for bit
-// against npm meshoptimizer in browsers.
+// Tests the octahedral normals of EXT_meshopt_compression, by the formula of the extension's specification in double,
+// and bit for bit against npm meshoptimizer in browsers.
 #include "io/gltf/decode/gltf_octahedral.h"
 
 #include <gtest/gtest.h>
@@ -20,9 +20,9 @@
 namespace chronormal::gltf_octahedral_test {
 namespace {
 
-// Returns every (x, y) of up to most_steps steps along each side of the square, for each number of bits; with few bits
-// these are all possible values. w is a component that must not change. tests/viewers/filters.test.mjs has the same
-// loop.
+// Returns coded normals for each number of bits: every (x, y) on a grid of at most most_steps steps along each side of
+// the square. With few bits, these are all possible values. w is a component that must not change. The same loop is in
+// tests/viewers/filters.test.mjs.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;

@@ -1,5 +1,5 @@
-// Tests KHR_animation_pointer to single weights: the channels of one node form one track, like a channel of all
-// weights.
+// Tests KHR_animation_pointer with pointers to single weights. The channels of one node together form one track, like a
+// channel of all weights.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -170,7 +170,7 @@ TEST(GltfPointers, equal_times_in_arrays_of_their_own_are_counted_once) {
 }
 
 TEST(GltfPointers, keys_of_many_channels_count_against_the_expansion_that_is_allowed) {
-  // Every key of any channel makes a row with all weights.
+  // Each key of each channel becomes a row that has all weights.
   GltfBuilder builder = document();
   std::vector<float> times(40000);
   for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<float>(k);

@@ -37,7 +37,7 @@ GltfBuilder rich_document() {
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the expected beginning of the error's place
+  const char* pointer;  // the beginning that the place of the error must have
 };
 
 // Returns the first error that occurs when all of a file is read, or "".

@@ -51,7 +51,7 @@ struct Skinned {
   }
 };
 
-// Reads everything, like an audit, and returns the joint weights of the vertices, or the error.
+// Reads all parts of a file, like an audit. Returns the joint weights of the vertices, or the error.
 Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std::size_t>* first = nullptr,
                                      std::optional<std::size_t> animation = std::nullopt) {
   EXPECT_TRUE(fixture.ok()) << fixture.error();
@@ -156,7 +156,7 @@ TEST(GltfSkin, a_rotation_that_has_no_length_turns_nothing) {
     EXPECT_EQ(skin.value().pose(time, false)[0](Vec3d{1, 0, 0}), (Vec3d{2, 2, 3}));
 }
 
-// ---- faults of a file, which are reported only to those who look through the skin
+// ---- faults of a file, which are reported only to code that reads the skin
 
 struct Case {
   std::string error;
@@ -285,7 +285,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned, 0), spoilt.error);
-    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // the animation is skipped, and the joints stay as without it
+    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // such an animation is skipped
   }
 }
 
@@ -344,7 +344,8 @@ struct Compressed {
   }
 };
 
-// Sums the weights of a vertex for joint 0 and joint 1 from the file's data, without using code of src/.
+// Returns the sums of the weights of a vertex for joint 0 and for joint 1, from the data of the file and without code
+// of src/.
 std::pair<double, double> expected_shares(std::size_t vertex) {
   std::pair<double, double> of_joints;
   double sum = 0;

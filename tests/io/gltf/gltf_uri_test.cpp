@@ -39,7 +39,7 @@ class GltfUris : public ::testing::Test {
     ASSERT_EQ(mkfifo((asset_ + "/pipe.bin").c_str(), 0600), 0);
   }
 
-  // Returns "" if the geometry could be read, or else the error. Never blocks.
+  // Returns "" if the geometry could be read, or else the error. Reads in a child process, so that it never blocks.
   [[nodiscard]] std::string read(const std::string& uri, bool allow_external) const {
     const test::ChildRun run = test::run_in_child(20, [&]() -> std::string {
       GltfOptions options;
@@ -198,7 +198,7 @@ TEST_F(GltfUris, names_that_a_person_would_call_the_same_are_found) {
   const auto write = [&](const std::string& name) {
     std::ofstream(asset_ + "/" + name, std::ios::binary) << builder_.buffer;
   };
-  // A percent sign need not begin an escape, and a name may be in the URI without escapes.
+  // A percent sign does not always begin an escape. A URI may also have the characters of a name as they are.
   write("example 10%.bin");
   EXPECT_EQ(read("example 10%.bin", false), "");
   write("fifty%20percent.bin");

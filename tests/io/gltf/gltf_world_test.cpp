@@ -77,7 +77,7 @@ TEST(GltfWorld, mirrored_faces_keep_their_outward_side) {
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value().motion;
   ASSERT_EQ(motion.topology.face_count(), 3U);
-  // The normal is along +z at first, and after mirroring in x; after mirroring in z it is along -z.
+  // The normal is along +z in the first keyframe and after mirroring in x. After mirroring in z, it is along -z.
   EXPECT_GT(first_normal_at_start(motion, 0).z, 0);
   EXPECT_GT(first_normal_at_start(motion, 1).z, 0);
   EXPECT_LT(first_normal_at_start(motion, 2).z, 0);

@@ -112,7 +112,7 @@ TEST(UnusedArrays, nothing_is_left_out_unless_it_is_asked_for) {
   EXPECT_EQ(Parts(bytes_or_error(edit)).bin.size(), 48U);
 }
 
-// Bytes that an accessor shares with others are kept, and so are bytes that an unknown extension might use.
+// Bytes are kept if another accessor shares them, or if an unknown extension might use them.
 TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   const auto sharing = [] {
     GltfBuilder builder;
@@ -170,7 +170,7 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   add_mesh(builder, base, targets);
   const GltfFixture fixture(builder);
   const Parts before(builder.glb()), after(bytes_without_unused(fixture, {1}));
-  const std::size_t left_out = bytes_of(values).size();  // omitting two indices is not worthwhile
+  const std::size_t left_out = bytes_of(values).size();  // leaving out two indices would not save enough
   EXPECT_EQ(after.bin.size(), before.bin.size() + 48 - left_out);
   for (const std::size_t array : {1U, 3U}) EXPECT_EQ(after.elements(array), before.elements(array));
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
@@ -206,9 +206,10 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
   struct Case {
     const char* name;
     std::vector<std::string> uris;
-    std::size_t beside, moved;  // omitted bytes if a .gltf is written beside the source, and if elsewhere
+    std::size_t beside, moved;  // bytes left out if a .gltf is written beside its source, and elsewhere
   };
-  // All 48 bytes in the middle are unused, and all of the last buffer except for four bytes that its views need.
+  // In the middle buffer, 48 bytes are unused. In the last buffer all bytes are unused, except for four bytes that its
+  // views need.
   for (const Case& of : {Case{"files.gltf", {"one.bin", "two.bin", "old.bin"}, 0, 92},
                          Case{"mixed.gltf", {"one.bin", as_data(two), "old.bin"}, 48, 92},
                          Case{"data.gltf", {as_data(one), as_data(two), as_data(one)}, 92, 92}}) {

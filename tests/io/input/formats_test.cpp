@@ -23,7 +23,8 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // A file that is cut off before this byte must be an error; 0 if the format cannot detect it.
+  // The number of bytes at the start that a valid file must have: a shorter file must be an error. 0 if the format
+  // cannot detect a cut.
   std::size_t declared_end = 0;
 };
 
@@ -66,7 +67,7 @@ class Readers : public ::testing::TestWithParam<std::string> {
     return found == fixture_table().end() ? none : found->second;
   }
 
-  // Reads arbitrary bytes, and checks every result. Returns whether it was a mesh.
+  // Reads arbitrary bytes, and checks the result. Returns whether the bytes are a mesh.
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const test::CpuClock clock;

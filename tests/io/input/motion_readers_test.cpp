@@ -28,7 +28,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  bool is_self_contained = true;  // every truncated file is an error
+  bool is_self_contained = true;  // whether a reader notices every file that was cut off
 };
 
 const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() {
@@ -52,7 +52,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// Checks the parts that every error must have.
+// Checks that an error has all parts that every error must have.
 void check_error(const Error& error) {
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_TRUE(error.place.starts_with("a.bin")) << error.text();
@@ -198,7 +198,7 @@ TEST_P(MotionReaders, boundary_numbers_in_text_are_errors_or_results) {
                                       "6148914691236517206", "9223372036854775808", "18446744073709551615",
                                       "18446744073709551616", "-1", "-2147483648", "-9223372036854775808", "", "1.5"}) {
         SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + " := " + value);
-        // A number may only be replaced by one of another length if the whole file is text.
+        // Only in a file of text may the new number have another length than the old one.
         (void)read_anything(std::string(bytes).replace(at, end - at, value));
       }
     }

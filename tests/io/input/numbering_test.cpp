@@ -52,7 +52,7 @@ TEST(Numbering, an_exponent_counts_where_all_names_have_one) {
   EXPECT_EQ(sorted({"t_1e-05.obj", "t_2.5e-05.obj", "t_1e-04.obj", "t_9e-06.obj"}),
             (Names{"t_9e-06.obj", "t_1e-05.obj", "t_2.5e-05.obj", "t_1e-04.obj"}));
   EXPECT_EQ(times_of({"t_1e-05.obj", "t_1e+00.obj"}), (std::vector<double>{1e-05, 1}));
-  // If all names have a common part like s2e, "e" is not an exponent: scene 2, letter e, number 1.
+  // If all names begin with a part like s2e, "e" does not make an exponent: s2e1 is scene 2, letter e, number 1.
   EXPECT_EQ(sorted({"s2e1.obj", "s2e2.obj", "s2e10.obj"}), (Names{"s2e1.obj", "s2e2.obj", "s2e10.obj"}));
 }
 
@@ -113,7 +113,7 @@ TEST(Numbering, three_listed_files_are_sorted_and_two_are_not) {
   EXPECT_EQ(in_german.front(), "foo -0020.obj");
 }
 
-// Draws random integers of thousandths, prints them as names, and compares the order of the names with the order of the
+// Draws random numbers in thousandths, and prints them as names. The order of the names must be the order of the
 // numbers.
 TEST(Numbering, names_that_are_drawn_stand_in_the_order_of_what_they_were_printed_from) {
   constexpr std::uint64_t kSeed = 5401;
@@ -131,7 +131,7 @@ TEST(Numbering, names_that_are_drawn_stand_in_the_order_of_what_they_were_printe
       if (has_sign && random.below(2) == 0) value = -value;
       if (std::find(thousandths.begin(), thousandths.end(), value) == thousandths.end()) thousandths.push_back(value);
     }
-    // Only names without a sign show whether a sign is a hyphen.
+    // Without a positive number, all names would have a sign, and the sign could be a hyphen.
     if (std::none_of(thousandths.begin(), thousandths.end(), [](std::int64_t value) { return value > 0; }))
       thousandths.push_back(1000000000);
     std::vector<std::pair<std::int64_t, std::string>> drawn;

@@ -91,7 +91,7 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(
       read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
       std::string::npos);
-  // Faces that meet in vertex 3, or begin with other numbers, are not padded.
+  // Faces are not padded if they merely meet in vertex 3, or if they begin with another number.
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{3, 0, 1, 2, 3, 2, 4, 0})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{0, 1, 2, 3, 3, 2, 1, 4})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 3}, std::vector<std::int32_t>{2, 0, 1, 2, 1, 4})), "");
@@ -170,7 +170,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
           for (std::size_t i = 0; i < motion.keyframes[k].positions.size(); ++i)
             ASSERT_EQ(double{motion.keyframes[k].positions[i]} + motion.origin[i % 3],
                       double{at_origin.keyframes[k].positions[i]} + shift[i % 3]);
-        // Writers add the subtracted origin again.
+        // The writers add the origin again that the reader has subtracted.
         for (const std::string out : {"out.npz", "out_%d.obj", "out_%d.ply"}) {
           const TemporaryFolder written;
           ASSERT_TRUE(write_motion(motion, written / out, false).ok());
@@ -275,8 +275,8 @@ TEST(Loops, come_back_to_the_first_keyframe) {
     ASSERT_EQ(motion.value().keyframes.size(), 5U);
     EXPECT_EQ(motion.value().keyframes[4].time, 2.0);
     EXPECT_EQ(motion.value().keyframes[4].positions, motion.value().keyframes[0].positions);
-    // On curves, a loop is smooth at its end: the velocity there is the difference between the neighbours on both
-    // sides, keyframes 2 and 3, divided by the time between them.
+    // On curves, the motion is smooth where a loop ends. The velocity there is the difference between the neighbours on
+    // both sides, keyframes 2 and 3, divided by the time between them.
     options.from = 1;
     const Motion straight = test::read_motion(options).value();
     ASSERT_EQ(straight.keyframes.size(), 4U);

@@ -89,7 +89,7 @@ TEST_F(RealData, hostile_files_are_meshes_or_clear_errors_within_a_second) {
 TEST_F(RealData, files_that_break_the_ply_grammar_are_refused) {
   for (const fs::path& path : meshes_under("hostile/magnum_ply")) {
     const std::string name = path.filename().string();
-    const bool is_good = name == "ascii.ply" || name == "crlf.ply";  // empty.ply follows the grammar, but has no faces
+    const bool is_good = name == "ascii.ply" || name == "crlf.ply";  // empty.ply is a valid PLY file, but has no faces
     EXPECT_EQ(read(path).ok(), is_good) << name;
   }
 }

@@ -63,7 +63,7 @@ TEST(RealTargets, face_and_all_its_targets_are_one_star_of_base_plus_deltas) {
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(face / "targets")) {
     if (entry.path().extension() == ".gz") paths.push_back(entry.path());
   }
-  std::sort(paths.begin(), paths.end());  // without digits, so the order is alphabetical
+  std::sort(paths.begin(), paths.end());  // the names have no digits, so the order is alphabetical
   ASSERT_EQ(paths.size(), 102U);
   ASSERT_EQ(motion.keyframes.size(), 103U);
   ASSERT_EQ(motion.segments.size(), 102U);

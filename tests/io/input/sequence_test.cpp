@@ -217,7 +217,7 @@ TEST(ReadSequence, obj_and_ply_of_one_topology_make_a_motion) {
   EXPECT_TRUE(read({ply, text}).ok());
 }
 
-// Makes a triangle with velocities whose height is the number.
+// Makes a triangle with velocities, at the height z = `height`.
 std::string moving_ply(int height, const std::string& names = "v") {
   std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   for (const char* const axis : {"x", "y", "z"}) text += "property float " + names + axis + "\n";

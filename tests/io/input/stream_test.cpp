@@ -100,7 +100,8 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   }
 }
 
-// A part of a sequence moves on the curves of the whole sequence, so the pieces between two keyframes are the same.
+// If only a part of a sequence is read, it still moves on the curves of the whole sequence, so the pieces between two
+// keyframes are the same.
 TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(14))) {

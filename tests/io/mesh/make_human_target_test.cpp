@@ -45,7 +45,7 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
   return target.error().text();
 }
 
-// Checks invariants for arbitrary bytes. Returns whether they could be read.
+// Checks that reading these bytes breaks no invariant. Returns whether the bytes could be read.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
   const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);
@@ -174,8 +174,8 @@ TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobo
         EXPECT_TRUE(error_text(damaged).starts_with("a.target, byte ")) << error_text(damaged);
         continue;
       }
-      // Changed bytes do no harm in the date and the system of the header, or in the bits between the deflated data and
-      // the checksum.
+      // A changed byte is harmless only in the date and the system of the header, or in the bits between the deflated
+      // data and the checksum.
       expect_lift(damaged);
       EXPECT_TRUE(at < 10 || at == bytes.size() - 9);
       ++harmless;

@@ -1,5 +1,5 @@
-// Checks that the fast reader for files with the same faces as another file gives the same positions as the full
-// reader.
+// Tests the fast reader of positions, for files with the same faces as an earlier file. It must give the same positions
+// as the full reader.
 #include "io/mesh/obj_faces.h"
 
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ TEST(ObjFaces, whatever_takes_more_than_a_look_is_left_to_the_reader) {
            vertices(7) + "v 0 0 0 1\n" + kFaces,        // a fourth number
            vertices(7) + "o name \\\n" + kFaces,        // a line that is continued in the next
            "\xEF\xBB\xBF" + vertices(7) + kFaces,       // a byte order mark
-           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // text in other places
+           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // the lines of vertices and faces are in other places
            std::string("v 7 0 0\n") + kFaces,           // too few vertices
            kFaces,
            std::string(),

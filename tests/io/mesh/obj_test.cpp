@@ -278,8 +278,8 @@ TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
   EXPECT_EQ(error_of(three + "vn 0 nan\ns\nf 1//0 2//99 3//99999999999999999999\n"), "no error");
 }
 
-// A corner with a missing normal counts as a corner without one: other programs show such files, so positions and faces
-// are read.
+// A corner may refer to a normal that the file does not have. Other programs show such files, so positions and faces
+// are read, and this corner has no normal.
 TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto notes_of = [&](const std::string& rest) { return shading_of(three + rest).notes; };

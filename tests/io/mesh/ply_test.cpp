@@ -268,7 +268,7 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
     return error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, what, by));
   };
   EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite");
-  // A row may continue in the next line, so a missing number is noticed only there.
+  // A row may continue in the next line, so the reader notices only there that a number is missing.
   EXPECT_EQ(with("1 0 0", "1 0"),
             "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 0 0"),

@@ -165,7 +165,7 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// At such weights a vertex is exactly or nearly on the line through two others.
+// With these weights, a vertex is on the line through two others, or very close to it.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -182,7 +182,7 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // The weight is so near to the collapse that double cannot decide, which is reported.
+    // With this weight the face is so close to the collapse that double cannot decide. The result must say so.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
     EXPECT_EQ(evaluate(normals, std::vector{0.0, 0.7}).evaluation.zeros, 0U);
@@ -238,7 +238,7 @@ TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_
   EXPECT_GT(sure, 3U);
 }
 
-// The square of such a normal is subnormal or zero in double.
+// In double, the square of such a short normal is subnormal or zero.
 TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -253,8 +253,8 @@ TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   }
 }
 
-// Each of many targets rounds the position again, here always in the same direction: a vertex moves to 256, then in 250
-// steps of 1 + 127 eps, each of which loses 127 eps, and finally all the way back.
+// Each of many targets rounds the position again, here always in the same direction. A vertex moves to 256, then on in
+// 250 steps of 1 + 127 eps, each of which loses 127 eps, and finally all the way back.
 TEST(BlendNormals, rounding_of_every_target_counts) {
   constexpr double kEps = 0x1p-52;
   constexpr float kSize = 4e-6F;  // the loss of 7e-12 turns such a triangle by 1.8e-6 rad
@@ -274,9 +274,10 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
   }
 }
 
-// A polygon that winds around a triangle smaller than an ulp becomes a point after it was moved far away and back. Its
-// area is only rounding error and its edges are zero, so only the square of the rounding of positions accounts for the
-// error. With many corners, this error outweighs the triangle beside it, the only face with a direction.
+// A polygon winds around a triangle that is smaller than one ulp at the place to which it moves. There and back again,
+// it becomes a point. Its area is then only rounding error and its edges are zero, so only the square of the rounding
+// of positions accounts for the error. With many corners, this error outweighs the triangle beside it, which is the
+// only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
   constexpr float kFar = 1.5F * 0x1p52F;  // an ulp is 1 there
   for (const int turns : {0, 10}) {

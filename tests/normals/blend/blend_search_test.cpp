@@ -29,8 +29,8 @@ struct Candidate {
   bool is_ring = false;
 };
 
-// Returns the error of the face, or of vertex 0 of a ring, as a share of the promised error; 0 if there is no promise
-// or no normal. On the path by terms, elements that are computed from positions count as 0, too.
+// Returns the error of the face, or of vertex 0 of a ring, as a share of the promised error. Returns 0 if nothing is
+// promised or there is no normal, and on the path by terms also if the element is computed from positions.
 double used_up(const Candidate& candidate, BlendPath path) {
   const BlendNormalsOptions options{std::numeric_limits<std::size_t>::max(), path};
   const Topology& topology = candidate.set.topology;
@@ -78,8 +78,8 @@ Candidate near_a_collapse(fixtures::Random& random) {
   return result;
 }
 
-// Makes the 4 to 8 triangles around vertex 0, whose normals nearly cancel: the first target puts the ring almost onto a
-// line, where the outline has no area, although the triangles have.
+// Makes 4 to 8 triangles around vertex 0 whose normals nearly cancel. The first target puts their outline almost onto a
+// line, so that the outline has no area, although the triangles do.
 Candidate ring_near_a_collapse(fixtures::Random& random) {
   Candidate result;
   result.is_ring = true;
@@ -158,8 +158,8 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// Returns the share of the promised error that the search must find at least. Terms are in float32, while with
-// positions only the result is rounded to float32, by half an ulp.
+// Returns the share of the promised error that the search must reach, as a check of the search. Terms are stored in
+// float32. With positions, only the result is rounded to float32, by half an ulp.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

@@ -1,5 +1,5 @@
-// Checks that the terms of blend shapes agree with exact arithmetic within their stated noise, as lists and
-// individually.
+// Compares the terms of blend shapes with exact arithmetic. The difference must be within the stated noise, for terms
+// in lists and for terms that are requested one by one.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* g
   return result;
 }
 
-// Checks that elements that are not listed are zero within twice the noise of the listed ones. Returns the number of
-// correct elements.
+// Checks a term. Elements that are not listed must be zero within twice the noise of the listed ones. Returns the
+// number of correct elements.
 std::size_t expect_term(const BlendTerm& term, const std::vector<exact::Vector>& expected, const char* name) {
   EXPECT_TRUE(std::is_sorted(term.elements.begin(), term.elements.end())) << name;
   EXPECT_EQ(term.values.size(), term.noise.size()) << name;
@@ -199,8 +199,8 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
 }
 
-// Lists keep the contribution of every face. For meshes of more than 100,000 faces, terms that are requested one by one
-// compute the contributions again.
+// For small meshes, lists keep the contribution of every face. For meshes of more than 100,000 faces, terms that are
+// requested one by one compute the contributions again.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

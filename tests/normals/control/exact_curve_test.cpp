@@ -56,7 +56,7 @@ TEST(ExactCurve, has_every_component_to_the_last_place) {
   }
 }
 
-// Tests both the kernel and the function for a single face.
+// Tests the kernel, and the function for a single face.
 TEST(FaceControlNormals, are_never_made_of_rounding) {
   fixtures::Random random(42);
   for (int i = 0; i < 40; ++i) {

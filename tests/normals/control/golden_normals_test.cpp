@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file with the parts that the product's reader ignores: the normal of each corner, and the smoothing group of each
-// face.
+// A mesh file with the parts that the product's reader ignores: the normal of each corner, and the smoothing group of
+// each face.
 struct Golden {
   Motion motion;  // the mesh as both keyframes
   std::vector<float> normal_of_corner;
@@ -115,8 +115,8 @@ NormalGroups split_normals_of(const Golden& golden) {
   return NormalGroups::by_split_normals(golden.motion.topology, no_welding(golden), stored(golden)).value();
 }
 
-// Checks that a file's normals follow the weighting of its tool within 0.01 degrees, with both ways of finding hard
-// edges. All other weightings must have larger errors; otherwise the file could not distinguish the rules.
+// Checks that the normals of a file follow the weighting of its tool within 0.01 degrees, for both ways of finding hard
+// edges. All other weightings must have larger errors. Otherwise this file could not tell the weightings apart.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

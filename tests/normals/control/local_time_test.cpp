@@ -1,5 +1,5 @@
-// Tests the t that all functions for normals of a segment use: t outside of [0, 1] is moved to the nearer end, t below
-// 2^-200 is 0, and NaN has no normal.
+// Tests the local time t that all functions for normals of a segment use. A t outside of [0, 1] is moved to the nearer
+// end, a t below 2^-200 becomes 0, and at NaN there is no normal.
 
 #include "normals/control/local_time.h"
 
@@ -40,8 +40,8 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys, where all three are doubles: time - start and end - time are multiples of a unit by small
-// integers.
+// A time between two keys. All three are doubles, and the differences `before` and `after` are small integers times one
+// unit.
 struct Times {
   double start, time, end;
   double before, after;  // time - start and end - time, in the same unit and with few bits
@@ -65,8 +65,8 @@ Times random_times(fixtures::Random& random) {
   return t;
 }
 
-// Makes a fan of triangles around vertex 0. The second edge of each triangle has a component that is zero only at the
-// time, while the other components are so tiny that a rounding error of t would dominate them.
+// Makes a fan of triangles around vertex 0. The second edge of each triangle has a component that is zero exactly at
+// `times.time`. The other components are so tiny that a rounding error of t would dominate them.
 Motion edge_on_at(const Times& times, fixtures::Random& random) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -94,7 +94,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
   return motion;
 }
 
-// Returns n of some faces at a time in rational numbers; if it is zero, n shortly before.
+// Returns n of some faces at a time in rational numbers. If n is zero at this time, returns n shortly before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
   const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };

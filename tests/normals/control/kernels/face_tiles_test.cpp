@@ -28,7 +28,8 @@ namespace {
 
 using fixtures::Point;
 
-// Computes a single face, without lanes: the kernel is only used from four faces on.
+// Computes a single face. The function uses the kernel only for four faces or more, so this result is made without
+// lanes.
 ControlNormals one_face(const Segment& segment, std::size_t f) {
   ControlNormals normals;
   face_control_normals(segment, {f, 1}, {&normals, 1});
@@ -65,7 +66,7 @@ long double largest_products(const Segment& segment, std::size_t f) {
   return largest;
 }
 
-// Describes the first difference between the tiles of a range and its faces computed singly, or returns "".
+// Compares the tiles of a range with its faces computed one by one. Describes the first difference, or returns "".
 std::string difference(const Segment& segment, IndexRange faces) {
   std::vector<ControlTile> tiles((faces.count + kTile - 1) / kTile);
   face_control_tiles(segment, faces, tiles);
@@ -150,7 +151,7 @@ std::vector<Motion> motions_of_every_degree() {
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
-  // Changes near the tolerance.
+  // These changes are near the tolerance within which a degree counts as equal.
   motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));
   return motions;
 }
@@ -316,10 +317,10 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
   }
 }
 
-// ---- in float32 ----------------------------------------------------------------------------------------------------
+// ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Compares the tiles of all triangles in float32, which must have the same bits on all targets, with the tiles of
-// single faces.
+// Compares the tiles of all triangles in float32 with the control normals of single faces. The tiles must have the same
+// bits on all instruction sets.
 void look_at(test::FloatTileFaults& seen, const Motion& motion) {
   const Segment segment = motion.segment(0);
   const std::size_t count = segment.topology->face_count();
