@@ -88,7 +88,7 @@ std::vector<double> some_times(const Segment& segment, fixtures::Random& random)
   return times;
 }
 
-// The number of wrong results, and the largest error of the others.
+// The number of wrong results, and the largest error of the other results.
 struct Tally {
   std::size_t cases = 0, violations = 0;
   double largest = 0;
@@ -245,8 +245,8 @@ TEST(ExactDirections, are_right_in_files_that_broke_them) {
   EXPECT_GE(files, 8u);
 }
 
-// Only control normals in double are known here: near a zero of n(t) the direction is uncertain, and the result counts
-// such elements.
+// These curves have only control normals in double, and no positions. Near a zero of n(t) the direction is therefore
+// uncertain, and the result counts such elements.
 TEST(UncertainDirections, are_counted_where_there_are_no_positions) {
   const Vec3d z{0, 0, 1};
   const ControlNormals turning{z, {}, -z}, steady{z, z, z};

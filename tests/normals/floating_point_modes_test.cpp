@@ -59,7 +59,8 @@ class ScopedControl {
   unsigned before_;
 };
 
-// The meshes are so small that squares of coordinates may underflow, while coordinates themselves are normal numbers.
+// The meshes are so small that squares of coordinates may underflow, although the coordinates themselves are normal
+// floating-point numbers.
 TEST(FlushToZero, changes_no_bit_where_coordinates_are_normal) {
   fixtures::Random random(61);
   std::vector<Motion> motions = {fixtures::smooth_morph(8), fixtures::tiny_soup(50),

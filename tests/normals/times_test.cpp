@@ -1,6 +1,6 @@
-// Tests that the normals at t are always the same bytes: whichever times are requested before, after or together with
-// t, on every instruction set and number of threads, and by every way to compute them, including the C interface. The
-// meshes are hard and random, and integers of any size give the true normals.
+// Tests that the normals at t are always the same bytes. They must not depend on which times are requested before,
+// after or together with t, on the instruction set, on the number of threads, or on the way to compute them, including
+// the C interface. The meshes are hard and random, and integers of any size give the true normals.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,7 @@ struct Elements {
   double crease_angle;         // for corners
 };
 
-// Ways that must agree with each other to the last bit, and with the true normals within this angle.
+// Ways that must agree with each other to the last bit, and with the true normals within a tolerance.
 struct Kin {
   double tolerance;  // radians; infinite if integers cannot judge these normals
   std::vector<NamedWay> ways;
@@ -193,7 +193,8 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the C interface. They join the curves of C++ if both have the same elements.
+// Adds the ways of the C interface to `curves`, the ways of C++, if both have the same elements. Otherwise adds them to
+// `all`.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // the C interface has a normal for each corner
@@ -290,8 +291,8 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Describes the fault of one way to evaluate, or returns "". `expected` has the normals at each of the times; if it is
-// empty, the function fills it.
+// Describes the fault of one way to evaluate, or returns "". `expected` has the normals at each of the times. If
+// `expected` is empty, this function fills it with the results of this way.
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {

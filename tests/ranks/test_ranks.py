@@ -199,7 +199,7 @@ class RanksTest(unittest.TestCase):
         self.assertEqual(run.stderr.count("short.pc2"), 1, run.stderr)
 
     def begin_long_run(self, cache):
-        """Start samples of two gigabytes on three ranks, and return once all ranks are writing."""
+        """Start a run on three ranks that writes two gigabytes, and return as soon as all ranks are writing."""
         arguments = f"sample large.obj {cache} --times 0:0.033:149 -q -o long.npy"
         run = subprocess.Popen(MPIRUN + ["3", PROGRAM] + arguments.split(), stderr=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)

@@ -1,5 +1,5 @@
-// Checks that formulas give the same bits on every instruction set, in every layout, for every remainder of the count.
-// oracle_test.cpp compares their results with an independent oracle.
+// Checks that formulas give the same bits on every instruction set and in every layout, for all numbers of elements
+// beyond whole vectors. oracle_test.cpp compares the results with an independent oracle.
 
 #include "schemes/kernels/curve_kernels.h"
 
@@ -29,7 +29,8 @@ const std::vector<std::string> kSchemes = {
 
 constexpr std::size_t kElements = 150;
 
-// Faces that move much, little, not at all, and to their opposite; every tenth face never has an area.
+// Faces of several kinds: some move much, some little, some rest, and some turn to their opposite. Every tenth face
+// never has an area.
 struct Subject {
   Subject() : normals(kElements) {
     fixtures::Random random(5);
@@ -74,7 +75,7 @@ Bits bits_of(VectorView<const float> view) {
   return bits;
 }
 
-// Memory for `count` vectors in some layout, filled with a value that must not change outside of the vectors.
+// Memory for `count` vectors in some layout. It is filled with a value that must not change outside of the vectors.
 class Layout {
  public:
   static constexpr int kCount = 5;
@@ -259,7 +260,7 @@ TEST(CurveFormulas, write_past_the_caches_what_they_write_into_them) {
   }
 }
 
-// Hashes by FNV-1a the results of all formulas, and of three steps of each formula that can be played.
+// Computes an FNV-1a hash of the results of all formulas, and of three steps of each formula that can be played.
 TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_given) {
   constexpr std::size_t kCount = 777;
   for (const std::int64_t id : supported_targets()) {

@@ -20,7 +20,7 @@ Vec3d vector(fixtures::Random& random) {
   return {p[0], p[1], p[2]};
 }
 
-// Makes elements that turn by about the angle `turn`, on a path that is bent by about `bend` times the turn.
+// Makes elements that turn by about `turn` radians, on a path that is bent by about `bend` times the turn.
 std::vector<ControlNormals> turning(fixtures::Random& random, double turn, double bend, std::size_t count) {
   std::vector<ControlNormals> normals;
   for (std::size_t i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ TEST(OptimalArcs, are_within_a_few_ten_thousandths_of_the_best_of_many) {
       const ExactSamples exact(normals[i]);
       const double error = exact.mean_error(circles.arc(phis[i]));
       double best = error;
-      // One set of samples covers the whole family of arcs, and another is dense around the arc that was found.
+      // One set of samples covers the whole family of arcs. Another set is dense around the arc that was found.
       for (int k = -200; k <= 200; ++k) {
         best = std::min(best, exact.mean_error(circles.arc(k * kPi / 400)));
         best = std::min(best, exact.mean_error(circles.arc(phis[i] + 1e-4 * k)));

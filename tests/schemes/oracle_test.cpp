@@ -31,12 +31,12 @@ using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Returns the allowed deviation of a length from 1. Only `rational` divides by a length from a quartic in float32
-// instead of the length of the result. The quartic loses digits if n(t) is small relative to its control normals; the
-// direction is still as accurate as in other schemes.
+// Returns how much a length may differ from 1. Only `rational` divides by a length from a quartic in float32, and not
+// by the length of its result. The quartic loses digits if n(t) is small relative to its control normals, but the
+// direction is as accurate as in other schemes.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
-// A motion with all data from which schemes and oracles are prepared.
+// A motion, and all data from which schemes and oracles are prepared.
 struct Subject {
   explicit Subject(Motion moving) : motion(std::move(moving)), normals(motion.topology.face_count()) {
     face_control_normals(motion.segment(0), faces(), normals);
@@ -112,8 +112,8 @@ const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // Small steps, like those between two frames, have ends so close that all visibly different circles have phi near
-    // +-pi/2.
+    // If the steps are small, like those between two frames, the ends are so close that all circles that differ visibly
+    // have phi near +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -346,8 +346,8 @@ TEST(Oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
 
 // ---- searched schemes ----------------------------------------------------------------------------------------------
 
-// Compares the average errors, face by face, of a scheme that searches with a dense search over the same family, and
-// with members of the family that other schemes compute directly.
+// Compares a scheme that searches with a dense search over the same family of curves, and with members of the family
+// that other schemes compute directly. Compares the average errors of each face.
 template <class DenseSearch>
 void expect_nearly_optimal(const std::string& name, const std::vector<std::string>& members, DenseSearch&& search) {
   constexpr std::size_t kSamples = 201;
@@ -404,7 +404,7 @@ TEST(LinearScaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse
 
 TEST(LinearScaled, meets_an_element_of_degree_1_by_the_ratio_of_its_areas) {
   // One edge rests and one moves, so n is linear in t, and the scaled linear scheme is exact with the right scale. A
-  // search without the ratio of the areas as a candidate stops up to 3e-4 rad away.
+  // search that does not try the ratio of the areas would end up to 3e-4 rad away.
   struct Case {
     double ratio, turn;
   };

@@ -121,7 +121,7 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 }
 
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
-  // The bits must equal a playback without anchors that begins at the last anchor.
+  // Between two anchors, the bits must equal a playback without anchors that begins at the first of the two.
   constexpr std::size_t kInterval = 8;
   constexpr double kStep = 0x1p-6;  // makes all times exact
   const Prepared twist("twist");
@@ -192,14 +192,15 @@ TEST(Playback, schemes_without_an_incremental_form_say_so) {
 }
 
 TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
-  // The remaining operations are the normalisation: 2 additions, 6 products, a quotient and a root.
+  // The last four numbers are those of the normalisation: 2 additions, 6 products, a quotient and a root.
   EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(make_scheme("slerp").value()->sequential_operations()->trigonometric, 0);
 }
 
-// The count is computed by the code that runs: one more vector in a sum adds three products and three sums.
+// The code that computes also counts its operations. Therefore one more vector in a sum must add three products and
+// three sums to the count.
 TEST(Operations, one_vector_more_changes_the_count) {
   const std::vector<float> coefficients(12, 0.5F), state(12, 0.25F);
   SharedValues weights{};

@@ -144,8 +144,8 @@ TEST(Schemes, antipodal_ends_give_unit_normals) {
 }
 
 TEST(Schemes, antipodal_ends_through_a_third_direction_are_met_by_the_circle) {
-  // The segment is half a turn about the x axis. The normal in the middle is perpendicular to the ends, which the
-  // circle uses.
+  // The segment is half a turn about the x axis. The circle uses the normal in the middle, which is perpendicular to
+  // both ends.
   const Prepared flip({{0, -1, 0, 1, -1, 0, 0, 1, 0}, {0, 1, 0, 1, 1, 0.01f, 0, -1, 0}});
   const Vec3d middle = unit_normal_at(flip.normals[0], 0.5).vector;
   EXPECT_LT(angle(evaluate("circle:timed", flip, 0.5).normal, middle), 1e-5);
@@ -210,8 +210,8 @@ TEST(Schemes, an_edge_without_length_takes_the_direction_in_which_it_grows) {
 }
 
 TEST(Schemes, a_collapse_inside_the_segment_gives_unit_normals) {
-  // The motions pass through a point (a double zero at 1/2, where the direction does not change), through a line at 1/2
-  // (where it jumps), and through a line at 1/3.
+  // One motion passes through a point: n(t) has a double zero at 1/2, and the direction does not change. The others
+  // pass through a line, at 1/2 and at 1/3, where the direction jumps.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, -1, 0, 0, 0, -1, 0}}), "through a point");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, kReversed}), "through a line");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, 1, 0, 0, 0, -2, 0}}), "at one third");

@@ -1,4 +1,5 @@
-"""Memory of commands that read a sequence keyframe by keyframe: it must not grow with the number of keyframes."""
+"""Tests the memory of commands that read a sequence keyframe by keyframe. It must not grow with the number of
+keyframes."""
 
 import os
 import struct

@@ -32,7 +32,8 @@ struct ArrayFile {
   return value;
 }
 
-/// Parses an array. Throws if the file has another form, or a number of elements that differs from its shape.
+/// Parses an array. Throws if the file has a form that chronormal does not write, or if the number of elements does not
+/// fit the shape.
 [[nodiscard]] inline ArrayFile parse_npy(const std::string& bytes) {
   if (bytes.compare(0, 8, std::string("\x93NUMPY\1\0", 8)) != 0) throw std::runtime_error("no .npy file");
   const std::size_t begin = 10 + little_endian(bytes, 8, 2);

@@ -19,8 +19,8 @@ namespace chronormal::test {
 
 class AuthoredMesh {
  public:
-  /// Makes a sheet over n x n points, with three targets. The last target pulls the middle point up so far that all its
-  /// edges are nearly parallel to its normal. `flat` is the share of polygons that are shaded flat.
+  /// Makes a sheet of n x n points with three targets. The last target pulls the middle point up so far that all edges
+  /// at this point are nearly parallel to its normal. `flat` is the share of polygons that are shaded flat.
   AuthoredMesh(std::uint64_t seed, std::size_t n, double flat = 0.15) : random_(seed), n_(n), flat_(flat) {
     make_polygons();
     make_keys();
@@ -40,7 +40,7 @@ class AuthoredMesh {
 
   [[nodiscard]] double around(double size) { return random_.uniform(-size, size); }
   [[nodiscard]] std::size_t middle() const { return n_ / 2 * n_ + n_ / 2; }
-  // Tells whether a point is the middle point or a neighbour.
+  // Tells whether a point is the middle point of the sheet or one of its neighbours.
   [[nodiscard]] bool is_near(std::size_t i, std::size_t j) const {
     const std::size_t m = n_ / 2;
     return i + 1 >= m && i <= m + 1 && j + 1 >= m && j <= m + 1;
@@ -157,7 +157,7 @@ class AuthoredMesh {
   std::size_t n_;
   double flat_;
   std::vector<Polygon> polygons_;
-  // Per point: positions and normals of the base, and of each target at weight 1.
+  // For each point, the positions and normals of the base and of each target at weight 1.
   std::vector<std::vector<Vector>> keys_, normals_;
   ShadedMesh mesh_;
 };

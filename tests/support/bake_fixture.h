@@ -105,7 +105,7 @@ class Hills {
     return result;
   }
 
-  /// Makes a primitive of the field with some targets; with_normals says whether the base has normals.
+  /// Makes a primitive of the field with some targets. If with_normals is false, the base has no normals.
   [[nodiscard]] GltfBuilder::Json primitive(GltfBuilder& builder, const std::vector<std::vector<float>>& targets,
                                             bool with_normals = true) const {
     std::vector<GltfBuilder::Json> of_targets;
@@ -139,7 +139,8 @@ class Hills {
   return builder;
 }
 
-/// Gives the document normal deltas with large errors at every weight except 0, so that any bake improves it.
+/// Returns the document with normal deltas that have large errors at every weight except 0, so that any bake improves
+/// the document.
 [[nodiscard]] inline GltfBuilder with_misleading_normals(GltfBuilder builder) {
   for (auto& mesh : builder.json["meshes"]) {
     for (auto& primitive : mesh["primitives"]) {

@@ -1,5 +1,6 @@
-/// Blend shapes for tests, and an independent computation of their normals from blended positions: the vector area of a
-/// polygon as the sum of p_i x p_{i+1}, in rationals or in long double, without fans and without terms.
+/// Makes blend shapes for tests, and computes their normals independently from blended positions. The vector area of a
+/// polygon is the sum of p_i x p_{i+1}, in rationals or in long double. The code uses neither fans of triangles nor
+/// products of targets.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 

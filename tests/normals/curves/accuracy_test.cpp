@@ -31,13 +31,14 @@ struct Family {
   Motion (*make)();
 };
 
-// Makes faces of degree 0, 1 and 2, a third each; steps along the axes give the degrees 0 and 1.
+// Makes faces of degree 0, 1 and 2, a third each: faces at rest, faces with one moving corner, and faces whose corners
+// all move.
 Motion mixed_degrees() {
   Motion motion = fixtures::moderate_soup(kFaces, 41);
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
   for (std::size_t f = 0; f < kFaces; ++f) {
-    const std::size_t still = f % 3;  // 0: all corners move; 1: a rests, and b and c rest too; 2: only c moves
+    const std::size_t still = f % 3;  // 0: all corners move; 1: all corners rest; 2: only corner c moves
     if (still == 0) continue;
     const std::size_t count = still == 1 ? 9 : 6;
     for (std::size_t k = 0; k < count; ++k) to[9 * f + k] = from[9 * f + k];
@@ -120,8 +121,8 @@ std::vector<double> times(const ControlNormals& normals, fixtures::Random& rando
   return result;
 }
 
-// The largest error of one element of `curves` at many times, against exact normals. Times with n(t) below 1e-6 of the
-// largest control normal count only for elements that are not flagged.
+// The largest error of one element of `curves` at many times, compared with exact normals. If an element is flagged,
+// times at which n(t) is below 1e-6 of the largest control normal are left out.
 struct Judgement {
   double largest = 0;
   double time = 0;
@@ -177,7 +178,7 @@ TEST(ExactAngle, tells_the_smallest_angles_apart) {
 }
 
 // Each component of a control normal is a sum of a few products of edges. Its error is a few roundings of the largest
-// product, which may be much larger than the component itself.
+// product, and this product may be much larger than the component.
 TEST(FaceControlNormals, are_within_a_few_roundings_of_exact_arithmetic) {
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
@@ -222,7 +223,7 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
     std::array<std::size_t, 2> count{}, judged{};
     std::size_t left_out = 0;
     for (std::size_t f = 0; f < normals.size(); ++f) {
-      // Prepared alone, so that the count tells whether this face is flagged.
+      // The face is prepared alone, so flagged_count() tells whether it is flagged.
       const NormalCurves curves{std::span(normals).subspan(f, 1)};
       ASSERT_LE(curves.flagged_count(), 1U);
       const std::size_t flagged = curves.flagged_count();
@@ -244,7 +245,8 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
   }
 }
 
-// All elements share a block of float32 with a common exponent, so neighbours of another size must not reduce accuracy.
+// All elements of a block in float32 have a common exponent, so this test checks that neighbours of another size do not
+// reduce the accuracy.
 TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_degree) {
   fixtures::Random random(54);
   std::vector<ControlNormals> normals;
@@ -257,7 +259,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
     for (const Motion& motion : motions) {
       const Segment segment = motion.segment(0);
       const std::size_t repeat =
-          // Runs of one family, both shorter and longer than 8.
+          // Elements of one family follow each other in runs shorter and longer than 8.
           random.below(12) < 8 ? std::size_t{1} : std::size_t{12};
       for (std::size_t i = f; i < std::min(f + repeat, kFaces); ++i) {
         normals.emplace_back();
@@ -271,7 +273,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
   const NormalCurves curves(normals);
   double largest = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    // An element that is flagged here but not alone is judged as if it were not flagged, which is stricter.
+    // An element that is flagged only among its neighbours is judged as if it were not flagged, which is stricter.
     const Judgement judgement =
         judge(curves, i, flagged_alone[i], normals[i], triangles[i], exact::control_normals(triangles[i]), random);
     EXPECT_LE(judgement.largest, kPromised) << "element " << i << ", t = " << judgement.time;
@@ -331,7 +333,7 @@ TEST(VanishingNormal, has_the_direction_from_before_where_the_two_sides_are_anti
   expect_direction(fixtures::inside_out_soup(200), 0.5, Direction::kDiscontinuous, limit_after);
 }
 
-// The elements are evaluated one by one, all together, in planes and packed.
+// Evaluates all elements into both layouts, packed and planes.
 TEST(NormalCurvesAccuracy, give_the_same_direction_in_any_layout) {
   const Motion motion = mixed_degrees();
   const auto normals = control_normals(motion.segment(0));

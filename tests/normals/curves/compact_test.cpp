@@ -33,7 +33,7 @@ using test::largest_of;
 constexpr std::array<double, 13> kTolerances{1e-6, 2e-6, 1e-5, 6e-5, 1e-4, 1.7e-4, 2e-4,
                                              5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1};
 
-// Below this share of its terms, n(t) has no direction in double that is good enough for the tolerances here.
+// If n(t) is below this share of its terms, its direction in double is not accurate enough for the tolerances here.
 constexpr double kBelowDouble = 1e-9;
 
 std::vector<Vec3f> unit_normals(const NormalCurves& curves, double t) {
@@ -69,7 +69,7 @@ void describe(const ControlNormals& c, double t) {
   std::cout.precision(precision);
 }
 
-// Each element is prepared alone, so that its block's format is not raised by more demanding neighbours.
+// Each element is prepared alone. Otherwise more demanding neighbours could give its block a more precise format.
 TEST(CompactCurves, keep_the_tolerance_of_every_element_alone) {
   for (const test::HardFamily& family : test::hard_families()) {
     SCOPED_TRACE(family.name);
@@ -198,9 +198,9 @@ struct VerticesAt {
   }
 };
 
-// Vertices are summed in float32 if its precision is enough. The faces here become flatter and flatter, down to needles
-// and slivers. In one of two variants, faces in the middle of the mesh are less flat than at its ends, so that float32
-// is enough only for some of sixteen neighbours.
+// Vertices are summed in float32 if it is precise enough. The faces here become flatter and flatter, down to needles
+// and slivers. In one of two variants, the faces in the middle of the mesh are less flat than those at its ends, so
+// float32 is precise enough only for some of sixteen neighbours.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in) {
   for (int flat = 0; flat <= 24; flat += 2) {
     for (const bool along : {false, true}) {
@@ -258,7 +258,7 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   EXPECT_GT(bending, 5000U);
 }
 
-// Even a tolerance as wide as the whole turn of a shape must be kept.
+// A tolerance must be kept even if it is as wide as the largest turn of a shape.
 TEST(CompactCurves, keep_tolerances_without_measure) {
   fixtures::Random random(76);
   for (const double tolerance : {0.2, 0.3, 0.5, 1.0, 1.5, 2.5, 100.0, std::numeric_limits<double>::infinity()}) {
@@ -325,7 +325,7 @@ double used_up(const Format& format, const Candidate& candidate) {
   if (curves.degree_counts()[format.kind == BlockKind::kLinear16 || format.kind == BlockKind::kLinear32 ? 1 : 2] == 0)
     return 0;
   const Vec3f u = unit_normals(curves, candidate.t).front();
-  // Two kinds of blocks have 20 bytes; skip the candidate if the other kind was chosen.
+  // Two kinds of blocks have 20 bytes per element. The candidate is skipped if the curves chose the other kind.
   if (bytes_of(format.kind) == 20 && !(u == kept_as(format.kind, candidate.c, candidate.t))) return 0;
   return angle_to(u, candidate.c, candidate.t) / format.tolerance;
 }
@@ -507,8 +507,8 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
       }
       // A component of a control normal is at most 32767.
       ASSERT_LE(sum * 32767, std::numeric_limits<std::int32_t>::max()) << t;
-      // Only ratios of weights matter, so they are compared at the scale with the smallest error, at which one of them
-      // is exact.
+      // Only the ratios of weights matter. Therefore weights are compared at the scale with the smallest error, at
+      // which one of the weights is exact.
       double smallest = 2;
       for (std::size_t j = 0; j < exact.size(); ++j) {
         if (integers[j] == 0) continue;

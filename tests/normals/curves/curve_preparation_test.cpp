@@ -36,8 +36,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Makes four motions: in grid order; shuffled, with more than a megabyte of positions; with flagged elements; without
-// elements.
+// Makes four motions: one with its faces in the order of the grid, one in random order with more than a megabyte of
+// positions, one with flagged elements, and one without elements.
 std::vector<Motion> motions() {
   const Motion smooth = fixtures::smooth_morph(160), large = fixtures::smooth_morph(220);
   return {smooth, test::with_faces_in_order(large, test::shuffled_order(large.topology.face_count(), 7)),

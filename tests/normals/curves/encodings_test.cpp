@@ -1,4 +1,5 @@
-// Tests unit normals in four bytes: the meaning of the bits, the errors, and that kernels agree with functions.
+// Tests unit normals in four bytes: the meaning of the bits, the errors, and that the kernels agree with the functions
+// for single normals.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -56,7 +57,7 @@ TEST(Octahedral, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_octahedral({0, -1, 0}).bits, 0x80010000u);
   EXPECT_EQ(encode_octahedral({0, 0, -1}).bits, 0x7FFF7FFFu);
   EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // 0.6 / 1.4
-  // Below the equator: x = -(1 - 0) and y = 1 - 0.6 / 1.4.
+  // On the lower half of the octahedron, x = -(1 - 0) and y = 1 - 0.6 / 1.4.
   EXPECT_EQ(encode_octahedral({-0.6f, 0, -0.8f}).bits, (32767u - 14043u) << 16 | 0x8001u);
   EXPECT_EQ(encode_octahedral({}).bits, 0u);
   EXPECT_EQ(decode(Octahedral{0}), (Vec3f{0, 0, 1}));
@@ -163,7 +164,7 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// Kernels compute the integers differently, so they may differ by 1.
+// The kernels compute the integers in another way than the functions, so the results may differ by 1.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;
@@ -189,7 +190,7 @@ TEST(EncodedResults, are_those_of_the_functions) {
       const auto low = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits & 0xFFFF); };
       const auto high = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits >> 16); };
       const bool close = std::abs(low(a) - low(b)) <= 1 && std::abs(high(a) - high(b)) <= 1;
-      // At a fold, two codes that are far apart mean nearly the same direction.
+      // At a fold of the octahedron, two codes that are far apart may stand for nearly the same direction.
       ASSERT_TRUE(close || angle(decode(octahedral[i]), view[i]) <= kOctahedral) << i;
     }
   }

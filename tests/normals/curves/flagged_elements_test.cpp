@@ -1,5 +1,5 @@
-// Compares the elements that float32 cannot represent, mixed with others in every pattern, with the same elements
-// prepared alone.
+// Tests elements that float32 cannot represent. Mixes them with other elements in every pattern, and compares the
+// results with the same elements prepared alone.
 
 #include "normals/curves/flagged_elements.h"
 
@@ -36,7 +36,8 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
   for (std::size_t f = 0; f < faces; ++f) {
     const Kind kind = kind_of(f, random);
     if (kind == Kind::kSmooth) continue;
-    // This corner is between the two others except for rounding, so the normal is hardly more than rounding error.
+    // This corner is on the line between the two others, except for rounding. The normal is then hardly more than
+    // rounding error.
     for (std::size_t i = 9 * f; kind == Kind::kInsideOutNeedle && i < 9 * f + 3; ++i)
       from[i + 6] = 0.7F * from[i] + 0.3F * from[i + 3];
     for (std::size_t i = 9 * f; i < 9 * f + 9; ++i) to[i] = -1.02F * from[i] + 0.03F * (to[i] - from[i]);
@@ -46,10 +47,10 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
 
 struct Elements {
   std::size_t count = 0;
-  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // two computations with different error bounds
+  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // computed alone, and in a tile
 };
 
-// Returns control normals in double, or without any rounding if double is hardly more than noise.
+// Returns control normals as computed in double, or exact ones if the result in double is hardly more than noise.
 BoundedNormals settled(const BoundedNormals& rounded, const std::function<ExactCurve()>& exact) {
   return rounded.largest_share() <= kLargestShare ? rounded : BoundedNormals{exact().rounded(), {}};
 }

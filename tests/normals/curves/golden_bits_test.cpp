@@ -1,5 +1,5 @@
-// Checks a single hash of all results, which must be the same for every instruction set, number of threads and
-// compiler.
+// Compares a hash of all results with a constant. The hash must be the same for every instruction set, number of
+// threads and compiler.
 
 #include <gtest/gtest.h>
 

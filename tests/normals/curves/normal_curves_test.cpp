@@ -59,7 +59,7 @@ TEST(NormalCurves, counts_degrees_as_they_are) {
 }
 
 TEST(NormalCurves, every_mixture_of_degrees_gives_what_each_element_gives_alone) {
-  // Runs are short and long, at the ends and inside, so some are raised to a higher degree.
+  // There are short and long runs, at the ends and inside. Some of the runs are therefore raised to a higher degree.
   const auto mixed = repeated({{kStill, 2},
                                {kQuadratic, 9},
                                {kLinear, 1},

@@ -43,7 +43,7 @@ std::vector<ControlNormals> mixed_elements(std::size_t count, std::uint64_t seed
   return normals;
 }
 
-// Memory for results between guard words, at any distance from an aligned address.
+// Memory for results between guard words, which begins at any distance from an aligned address.
 template <class T>
 class Guarded {
  public:
@@ -54,7 +54,7 @@ class Guarded {
   }
   [[nodiscard]] T* data() { return words_.data() + begin_; }
   [[nodiscard]] std::span<T> span() { return {data(), count_}; }
-  // Tells whether nothing but results has changed, and among results only those that `may_be_written` allows.
+  // Tells whether only results have changed, and among the results only those that `may_be_written` allows.
   [[nodiscard]] bool is_intact(const std::function<bool(std::size_t)>& may_be_written = nullptr) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const bool inside = i >= begin_ && i < begin_ + count_ && (!may_be_written || may_be_written(i - begin_));
@@ -261,8 +261,8 @@ TEST(ThreadsOfCurves, give_the_bits_of_one) {
   }
 }
 
-// The results that are compared. For collapsing elements, curves from positions have more precise lengths than curves
-// from control normals, so lengths may differ in the last bit.
+// The results that a test compares. The lengths of collapsing elements are more precise in curves from positions than
+// in curves from control normals, and may differ in the last bit.
 enum class Say { kEverything, kNoLengths };
 
 std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say::kEverything) {
@@ -312,7 +312,8 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
   }
 }
 
-// If neighbours are scattered in memory, both ends of a vertex are first copied side by side.
+// If the neighbours of vertices are scattered in memory, the positions of a vertex at both ends are first copied side
+// by side.
 TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
   const Motion motion = test::shuffled_grid(220);
   const Segment segment = motion.segment(0);
@@ -382,8 +383,8 @@ Topology repeated_grid(const Topology& grid, std::size_t faces) {
   return fixtures::make_triangles(grid.vertex_count(), std::move(repeated));
 }
 
-// Evaluates to aligned memory, with one thread and with all, and to memory one word further, to which streaming stores
-// never write.
+// Evaluates to aligned memory, with one thread and with all threads, where streaming stores may write. Compares the
+// results with memory that begins one word later, to which streaming stores never write.
 template <class T, class Evaluate>
 void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
   Guarded<T> streamed(words, 0), stored(words, 1);

@@ -158,8 +158,8 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
 }
 
-// The first segment, where 4 and 5 coincide with 1 and 2, decides who shares a normal; in other segments they may be
-// elsewhere.
+// The first segment, in which vertices 4 and 5 coincide with 1 and 2, decides which vertices share a normal. In other
+// segments, these vertices may be apart.
 TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
   std::vector<float> apart = kTo;
   apart[3 * 4] += 0.25F;
@@ -260,7 +260,7 @@ BlendSet shapes_of(const Motion& motion, Random& random) {
   return set;
 }
 
-// Cuts 0 ... size at random places, and calls body(range) for each part.
+// Cuts the range from 0 to `size` at random places, and calls body(range) for each part.
 template <class Body>
 void for_pieces(std::size_t size, Random& random, const Body& body) {
   for (std::size_t first = 0; first < size;) {
@@ -291,7 +291,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         std::vector<float> all(3 * n), pieces(3 * n), blended(3 * n), blended_pieces(3 * n);
         std::vector<Octahedral> octahedral(n), octahedral_pieces(n);
         std::vector<Rgb10A2> rgb(n), rgb_pieces(n);
-        std::vector<float> records(7 * n);  // a normal is three floats of a record of 28 bytes
+        std::vector<float> records(7 * n);  // each record has 28 bytes, of which three floats are the normal
         const auto strided = VectorView<float>::strided(records.data(), n, 28);
         const std::size_t zeros = normals.unit_normals(t, VectorView<float>::packed(all));
         const std::size_t blended_zeros = normals.unit_normals(VectorView<float>::packed(blended));
@@ -326,7 +326,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         for (std::size_t i = 0; i < n; ++i) counted += view(all)[i] == Vec3f{} ? 1U : 0U;
         EXPECT_EQ(counted, zeros);
 
-        // One call computes many times, one uses the thread pool, and one blends.
+        // The first call computes two times at once, and the second uses the thread pool.
         std::vector<float> two(3 * n), other(3 * n);
         const double times[] = {0.5, t};
         const VectorView<float> views[] = {VectorView<float>::packed(other), VectorView<float>::packed(two)};

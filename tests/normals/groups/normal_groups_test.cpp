@@ -201,8 +201,8 @@ TEST(CreaseAngle, outside_0_to_180_degrees_is_an_error) {
   }
 }
 
-// Tells whether corners share normals exactly as a flood fill over all pairs of corners says, on a mesh that is
-// perturbed by a seed.
+// Tells whether corners share normals exactly as a flood fill over all pairs of corners says, on a mesh with random
+// displacements from `seed`.
 bool equals_a_flood(std::uint64_t seed, bool of_polygons, bool tear, double degrees) {
   Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(0), 0.8, seed);
   std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // puts the irregular keyframe first
@@ -223,9 +223,10 @@ RC_GTEST_PROP(CreaseAngle, equals_a_flood_over_all_pairs_of_corners, ()) {
 }
 
 TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
-  // Two faces of this mesh meet at 65.3217 degrees plus less than 1e-6 rad, which is within the tolerance.
+  // Two faces of this mesh meet at an angle that exceeds 65.3217 degrees by less than 1e-6 rad, which is within the
+  // tolerance.
   for (const bool tear : {false, true}) EXPECT_TRUE(equals_a_flood(154186546385, false, tear, 65.3217));
-  // In a mesh made by hand, an angle of 1e-7 rad above the limit is allowed, and 1e-5 is not.
+  // In a mesh made by hand, an angle may exceed the limit by 1e-7 rad, but not by 1e-5 rad.
   constexpr double kDegreesPerRadian = 57.29577951308232;
   const Motion motion = pages({0, 150});  // its faces are at 30 degrees
   EXPECT_EQ(creased(motion, 30 - 1e-7 * kDegreesPerRadian).size(), creased(motion, 31).size());

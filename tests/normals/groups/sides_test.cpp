@@ -138,14 +138,14 @@ TEST(Sides, polygons_lie_back_to_back_where_one_has_the_points_of_the_other_in_r
 }
 
 TEST(Sides, faces_go_together_along_edges_that_one_leaves_by_and_the_other_comes_by) {
-  // Faces 0 and 1 both have the edge to 5 in the same direction, so their windings are opposite. Face 2 continues face
-  // 1 at 6.
+  // Faces 0 and 1 pass their common edge to vertex 5 in the same direction, so their windings are opposite. Faces 1 and
+  // 2 pass the edge to vertex 6 in opposite directions, so they continue each other.
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> apart = {{0, 2}};
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, true}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 1, 1}));
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, false}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 0, 1}));
-  // A face without a common edge joins the first side whose faces it is not apart from.
+  // A face that shares no edge joins the first side in which no face must be apart from it.
   EXPECT_EQ(split_sides(4, {}, std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 2}}),
             (std::vector<std::uint32_t>{0, 1, 1, 0}));
 }

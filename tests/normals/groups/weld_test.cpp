@@ -88,7 +88,7 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   EXPECT_LT(always.size(), kCount);
 }
 
-// There are so many places that some have the same 32-bit key by which places are sorted first.
+// Places are first sorted by a 32-bit key. There are so many places here that some have the same key.
 TEST(Weld, places_that_only_look_alike_stay_apart) {
   constexpr std::size_t kCount = 500000;
   Motion motion;

@@ -1,4 +1,5 @@
-// Compares FloatRecompute with double arithmetic, and all ways to the same result with each other.
+// Compares FloatRecompute with arithmetic in double, and compares all calls that must give the same result with each
+// other.
 
 #include "chronormal/normals/recompute.h"
 
@@ -44,8 +45,8 @@ NormalGroups vertices_of(const Motion& motion) {
 }
 
 // A sum of normals in double, by the shoelace formula about a point of the face, and the error in radians that float32
-// may cause: every position is rounded a few times relative to its magnitude, which counts relative to the edges around
-// the face.
+// may cause. Each position is rounded a few times in proportion to its size, and the error of the direction is this
+// rounding divided by the edges around the face.
 struct Expected {
   Vec3d n;
   double error = 0;

@@ -1,5 +1,5 @@
-// Compares normals that are recomputed at every t with exact rational arithmetic, and all ways to the same result with
-// each other.
+// Compares normals that are recomputed at every t with exact rational arithmetic, and compares all calls that must give
+// the same result with each other.
 
 #include "chronormal/normals/recompute.h"
 
@@ -398,7 +398,7 @@ std::vector<std::size_t> as_it_is(std::size_t count) {
 }
 
 TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
-  const Motion motion = fixtures::smooth_morph(120);  // a window of 1,024 faces
+  const Motion motion = fixtures::smooth_morph(120);  // the faces of a window, which are kept together, are 1,024
   const std::size_t count = motion.topology.face_count();
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);
   const auto expect_same = [&](const std::vector<std::size_t>& order) {
@@ -413,7 +413,7 @@ TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
   }
   for (const std::size_t distance : {300U, 700U, 1000U, 1500U, 2500U}) {
     SCOPED_TRACE(distance);
-    std::vector<std::size_t> order = as_it_is(count);  // the faces are just inside the window, and just outside
+    std::vector<std::size_t> order = as_it_is(count);  // faces just inside the window, and just outside
     for (std::size_t i = 0; i + distance < count; i += 5000) std::swap(order[i], order[i + distance]);
     expect_same(order);
   }

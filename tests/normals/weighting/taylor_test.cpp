@@ -1,4 +1,4 @@
-// Tests intervals and their Taylor coefficients, which must contain the true values.
+// Tests intervals and Taylor coefficients that are intervals. Both must contain the true values.
 
 #include "normals/weighting/taylor.h"
 
@@ -87,7 +87,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
       value = value + at_centre[0];
       const Real truth = std::pow(p(Real(centre) + Real(s)), Real(exponent));
       RC_ASSERT(Real(value.low) <= truth + 1e-18L && truth <= Real(value.high) + 1e-18L);
-      // Every coefficient about another point of the interval is within the coefficient about all points.
+      // The coefficients about any other point of the piece must overlap the coefficients that hold about all points.
       const Series<3> there = p.about(centre + s);
       const Interval root = exponent == -1 ? there[0] : square_root(there[0]);
       const Series<6> other = power<6>(there, exponent, exponent == 0.5 ? root : reciprocal(root));
@@ -99,7 +99,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // If the enclosure were wider, the test would not notice a missing remainder.
+  // The enclosure must be narrow here. If it were wider, the test would not notice a missing remainder.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));
@@ -111,7 +111,7 @@ RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
 
 // ---- bounds over a piece -------------------------------------------------------------------------------------------
 
-// 1 / sqrt(p) about c, and about all of [c - half, c + half].
+// The Taylor coefficients of 1 / sqrt(p) about c, and about all points of [c - half, c + half].
 struct PieceOfRoot {
   Series<6> here, around;
 

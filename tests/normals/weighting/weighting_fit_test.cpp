@@ -1,4 +1,5 @@
-// Tests the quadratics that replace weighted normals: their bounds are never below the error, and not far above.
+// Tests the quadratics that replace weighted normals. Their bounds must never be below the error, and must not be far
+// above it.
 
 #include "chronormal/normals/weighting.h"
 
@@ -80,7 +81,7 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   for (std::size_t e = 0; e < std::min(elements, groups.size()); ++e) {
     const double error =
         sampled_error(mesh, corners[e], std::string(weighting_name(weighting)), fit.normals[e], samples);
-    // A single triangle gets its exact direction and the bound 0, which ignores rounding in the last bits.
+    // A single triangle gets its exact direction and the bound 0. This bound does not cover rounding in the last bits.
     const double rounding = fit.bounds[e] == 0 ? 1e-12 : 0;
     EXPECT_LE(error, fit.bounds[e] + rounding) << weighting_name(weighting) << ", element " << e;
     EXPECT_LE(fit.bounds[e], std::numbers::pi);
@@ -292,7 +293,7 @@ TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
 }
 
 TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
-  // The vertices on the edges of random quads are displaced by rounding to float32, or by more.
+  // In random quads, the vertices on the edges are displaced, either by as much as rounding to float32 or by more.
   fixtures::Random random(31);
   for (const double off : {1e-7, 1e-3}) {
     for (int round = 0; round < 50; ++round) {

@@ -130,7 +130,7 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
-// The test whether double is precise enough is independent of units, so the same face is treated in the same way at any
+// The check whether double is precise enough does not depend on units, so a face is treated in the same way at any
 // size.
 TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   constexpr std::uint64_t kSeed = 20261126;
@@ -139,7 +139,7 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   for (int i = 0; i < 1000; ++i) {
     Motion motion{Topology::triangles(3, {0, 1, 2}).value(), std::vector<Motion::Keyframe>(2), {}};
     for (std::size_t k = 0; k < 2; ++k) {
-      // The three corners are on a line except for the last digits of the third.
+      // Except for the last digits of the third corner, the three corners are on a line.
       std::array<float, 3> a{}, b{};
       for (auto* const point : {&a, &b})
         for (float& x : *point) x = static_cast<float>(random.uniform(-1, 1));
@@ -199,7 +199,7 @@ TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   }
 }
 
-// Integers are twenty times slower than double, and are used only for faces that need them.
+// The computation in integers takes twenty times as long as in double, and is used only for faces that need it.
 TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
   constexpr std::size_t kFaces = 20000;
   const Motion ordinary = fixtures::moderate_soup(kFaces),

@@ -1,5 +1,5 @@
-// Compares certificates of sixteen elements in lanes with certificates of single elements, on elements that are close
-// to being flagged.
+// Compares the certificates that lanes compute for sixteen elements with the certificates of single elements. The
+// elements are close to being flagged.
 
 #include "normals/curves/kernels/certify.h"
 
@@ -30,8 +30,8 @@ Vec3d vector(fixtures::Random& random) {
 
 double decade(fixtures::Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// Draws mostly curves that come as close to zero as the limits of the tests, and sometimes ordinary curves or curves
-// that no lane should decide.
+// Draws a curve. Most curves come as close to zero as the limits of the tests; some are ordinary, or so hard that no
+// lane should decide.
 BoundedNormals element(fixtures::Random& random) {
   const Vec3d n0 = vector(random);
   BoundedNormals result;
@@ -94,7 +94,7 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   return result;
 }
 
-// Describes the fault of the certificates of one element, or returns "". `alone` means that no other element was
+// Describes the fault of the certificates of one element, or returns "". `alone` is true if only this element was
 // requested.
 std::string fault(const TileCertificates& found, std::size_t lane, const Decided& expected, bool alone) {
   const auto has = [lane](std::uint32_t bits) { return (bits >> lane & 1) != 0; };

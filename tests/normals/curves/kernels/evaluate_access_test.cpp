@@ -20,7 +20,7 @@ namespace chronormal::evaluate_access_test {
 namespace {
 
 constexpr std::size_t kMost = 208;  // most elements, a multiple of whole blocks
-constexpr std::size_t kGuard = 64;  // guard words, a multiple that keeps arrays aligned
+constexpr std::size_t kGuard = 64;  // words around the results that must not change; the number keeps arrays aligned
 constexpr std::uint32_t kMark = 0xDEADBEEF;
 constexpr std::array kKinds = {BlockKind::kUnit,        BlockKind::kUnitLength,  BlockKind::kLinear16,
                                BlockKind::kQuadratic11, BlockKind::kQuadratic16, BlockKind::kScaled16,
@@ -31,7 +31,8 @@ bool is_float(BlockKind kind) {
          kind == BlockKind::kQuadratic32;
 }
 
-// Makes blocks of floats from 1 to 2, or of random bits: in the other kinds of blocks, any bits are directions.
+// Makes blocks from random bits, which are directions in most kinds of blocks. In blocks of floats, the floats are from
+// 1 to 2.
 AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random) {
   AlignedArray<std::uint32_t> words(kMost * bytes_of(kind) / 4);
   for (std::size_t i = 0; i < words.size(); ++i) {

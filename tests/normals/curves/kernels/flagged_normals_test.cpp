@@ -25,13 +25,13 @@ LongVector combination(const ControlNormals& c, double t) {
           w0 * c.n0.z + w1 * c.m.z + w2 * c.n1.z};
 }
 
-// Returns |u x v| / |v|, the sine of the angle, since u is a unit vector.
+// Returns |u x v| / |v|, which is the sine of the angle, since u is a unit vector.
 long double off(const LongVector& u, const LongVector& v) {
   const LongVector x{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   return std::hypot(x[0], x[1], x[2]) / std::hypot(v[0], v[1], v[2]);
 }
 
-// The share of sum w_k max_abs(c_k) that the largest component of n(t) must exceed to be checked.
+// n(t) is checked only if its largest component exceeds this share of the sum of w_k max_abs(c_k) over its terms.
 constexpr double kCertain = 0x1p-26;
 
 ControlNormals element(fixtures::Random& random, int exponent) {
@@ -80,7 +80,7 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
               << exponent << " " << i << " at " << t;
           if (is_uncertain) continue;
           const LongVector found{units[lane].x, units[lane].y, units[lane].z};
-          // If terms cancel, n(t) already has an error in double, which is largest for subnormal numbers.
+          // If terms cancel, n(t) in double has an error already. The error is largest for subnormal numbers.
           const long double in_double = (exponent < -1000 ? 0x1p-36L : 0x1p-52L) * size / max_abs(n);
           ASSERT_LE(off(found, expected), 1.3e-7L + 10 * in_double) << exponent << " " << i << " at " << t;
           ASSERT_NEAR(static_cast<double>(std::hypot(found[0], found[1], found[2])), 1, 4e-7);

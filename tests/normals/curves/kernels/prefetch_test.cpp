@@ -27,7 +27,8 @@ TEST(PrefetchRule, the_fastest_distance_in_the_median_decides) {
     std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
     while (const std::optional<std::size_t> trial = rule.next()) {
       const std::size_t turn = trials[*trial]++;
-      // The system interrupts two trials of the fastest distance, and each other distance is lucky once.
+      // The system interrupts two trials of the fastest distance, and one trial of each other distance is faster than
+      // all others.
       const bool is_odd = turn == 3 || (*trial == fastest && turn == 7);
       rule.take(*trial, *trial == fastest ? (is_odd ? 500.0f : 0.1f) : (is_odd ? 0.09f : 0.13f));
     }
@@ -82,7 +83,8 @@ TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
   EXPECT_EQ(rule.next(), std::nullopt);
 }
 
-// Threads compete for the last trial only in few of many rounds, so they start together with few trials left.
+// Threads compete for the last trial only in few of many rounds. Therefore all threads start together when few trials
+// are left.
 TEST(PrefetchRule, threads_share_trials) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   constexpr std::size_t kThreads = 4, kLeft = 3;

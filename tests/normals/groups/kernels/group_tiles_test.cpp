@@ -34,8 +34,9 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// The expected content of the tiles: sums of faces by the public function, each computed singly and therefore without
-// lanes; and the largest component of the sums of absolute products along the path around each element.
+// The expected content of the tiles: sums of faces that the public function computes one by one, and therefore without
+// lanes. For each element there is also the largest component of the sums of absolute products along the path around
+// it.
 struct Expected {
   std::vector<ControlNormals> normals;
   std::vector<double> magnitudes;
@@ -74,7 +75,8 @@ Expected expected_of(const Segment& segment, const NormalGroups& groups) {
   return expected;
 }
 
-// Tells whether a component agrees with a sum in another order up to rounding; zero must be zero with the same sign.
+// Tells whether a component agrees, up to rounding, with a sum in another order. A zero must be a zero with the same
+// sign.
 bool is_right(float value, double expected, float magnitude) {
   const auto rounded = static_cast<float>(expected);
   if (std::memcmp(&value, &rounded, sizeof(float)) == 0) return true;
@@ -103,7 +105,8 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// Compares all elements, in ranges of `step` that begin at `first`, both multiples of 16, with one object.
+// Compares all elements, in ranges of `step` elements from element `first` on, with one object. Both numbers are
+// multiples of 16.
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -152,7 +155,7 @@ Motion grid(std::size_t columns, std::size_t rows) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-// Returns the same mesh with its faces in another order, and its vertices too if vertices_too.
+// Returns the same mesh with its faces in another order. With vertices_too, its vertices are in another order as well.
 Motion in_another_order(const Motion& motion, bool vertices_too) {
   const std::size_t vertex_count = motion.topology.vertex_count();
   std::vector<std::size_t> place(vertex_count);
@@ -276,8 +279,8 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
     ASSERT_EQ(difference_on_all_targets(motion), "");
   }
-  // Six faces surround a vertex. Other vertices at the same places have the same faces in the opposite orientation,
-  // with a path that begins elsewhere, so other products are summed.
+  // Six faces surround a vertex. Other vertices at the same places have the same faces in the opposite orientation. The
+  // path around them begins elsewhere, so the sum has other products.
   fixtures::Random random(14);
   std::vector<Point> from = {random.in_cube(1)}, to = {random.in_cube(1)};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -317,9 +320,10 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
   }
 }
 
-// ---- in float32 ----------------------------------------------------------------------------------------------------
+// ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Compares the tiles of all elements in float32, which must have the same bits on all targets, with sums in double.
+// Compares the tiles of all elements in float32 with sums in double. The tiles must have the same bits on all
+// instruction sets.
 void look_at(test::FloatTileFaults& seen, const Segment& segment, const NormalGroups& groups) {
   std::vector<ControlTile> first;
   for (const auto target : supported_targets()) {
@@ -409,8 +413,8 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say_where_a_line_stands_for_a
       grid(30, 30), [](test::FloatTileFaults& seen, const Motion& motion) { look_at(seen, motion); });
 }
 
-// Compares the elements in double, and the bounds on their errors, with sums of integers of any size. Describes the
-// first fault or returns "", and counts the elements for which the bounds are useful.
+// Compares elements in double, and the bounds of their errors, with sums of integers of any size. Describes the first
+// fault or returns "". `counted` becomes the number of elements for which the bounds are useful.
 std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, std::size_t& counted) {
   std::vector<BoundedTile> first;
   for (const auto target : supported_targets()) {
@@ -419,7 +423,7 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      tile.left_out = 0xFFFF;  // the mask of another tile
+      tile.left_out = 0xFFFF;  // a mask that an earlier tile left, and that must be overwritten
       ControlTile rounded;
       writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
       const std::uint32_t unknown = tile.left_out;
