@@ -161,7 +161,8 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Computes the same normals in long double, about a corner of each face, for sets that are too large for rationals.
+/// Returns the normals of exact_normals() in long double, about a corner of each face, for sets that are too large for
+/// rationals.
 [[nodiscard]] inline std::vector<reference::Vector> real_normals(const BlendSet& set, const NormalGroups* groups,
                                                                  std::span<const double> weights) {
   std::vector<reference::Vector> positions;

@@ -1,4 +1,4 @@
-/// Makes point caches, MD2 models, arrays and zip files byte by byte, without using the writers.
+/// Makes point caches, MD2 models, arrays and zip files byte by byte, without the writers of the product.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 
@@ -123,7 +123,8 @@ template <class Real>
          "\n</Channels>\n</Autodesk_Cache_File>\n";
 }
 
-/// Makes an array with the given header; the length of the header has 16 bits in version 1 and 32 bits otherwise.
+/// Makes an array with this header. The length of the header is stored in 16 bits in version 1, and in 32 bits
+/// otherwise.
 [[nodiscard]] inline std::string npy(const std::string& header, const std::string& data, std::uint8_t version = 1) {
   ByteWriter writer("\x93NUMPY", false);
   writer.add(version).add(std::uint8_t{0});
@@ -222,7 +223,7 @@ struct ZipMember {
   return end.bytes() + comment;
 }
 
-/// Makes a motion with all arrays, each of a different type.
+/// Makes a motion as .npz with all arrays that a motion may have, each of a different type.
 [[nodiscard]] inline std::string small_npz(bool is_deflated) {
   return zip({{"positions.npy", npy(npy_header("<f4", "(2, 3, 3)"), raw(turning_elements<float>(false))), is_deflated},
               {"other.npy", npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': ()}", "abcd")},

@@ -28,7 +28,7 @@ extern "C" __attribute__((weak)) int __llvm_profile_write_file(void);
 namespace chronormal::test {
 namespace {
 
-// Resets the peak of resident memory, so that the parent's peak does not count.
+// Resets the peak of resident memory to the current memory, so that a peak of the parent process does not count.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::size_t peak_bytes() {
@@ -48,8 +48,8 @@ void limit_address_space(std::size_t growth) {
   setrlimit(RLIMIT_AS, &limit);
 }
 
-// Allocates the large pieces of the heap that the parent has freed, and makes the system serve all later large
-// allocations. Otherwise the child would use those pieces, and keep their pages after freeing them.
+// Allocates the large pieces of the heap that the parent has freed, so that all later large allocations come from the
+// system. Otherwise the child would use these pieces, and keep their pages after freeing them.
 void take_free_pieces() {
   constexpr std::size_t kLarge = std::size_t{1} << 16;
   mallopt(M_MMAP_THRESHOLD, kLarge);
@@ -72,10 +72,12 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-// Writes the growth as text, a separator, and the text of the work to the pipe.
+// Does the work in the child, and writes to the pipe the growth as text, a separator, and the text that the work
+// returned.
 [[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
                                 const std::function<void()>& prepare) {
-  // Limit of elapsed time, as a multiple of the processor time, for waiting and for other processes.
+  // The limit of elapsed time is this many times the limit of processor time, since a process also waits, and others
+  // use the processor.
   constexpr unsigned kWaits = 20;
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);

@@ -20,8 +20,8 @@ struct ChildRun {
 [[nodiscard]] bool is_sanitized();
 
 /// Does the work in a forked process, which is stopped after most_seconds of processor time. Except under a sanitizer,
-/// its address space may grow by at most a GiB. `prepare` runs first in the same process: the memory that it touches,
-/// such as the program's own pages, does not count as growth.
+/// its address space may grow by at most 1 GiB. `prepare` runs first in the forked process. The memory that it touches,
+/// such as the pages of the program, does not count as growth.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
                                     const std::function<void()>& prepare = {});
 

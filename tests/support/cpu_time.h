@@ -38,8 +38,8 @@ class CpuClock {
 };
 
 /// Expects that `many()` takes at most `limit` times as long as `few()`, plus `once` seconds. Runs both in turn, at
-/// most ten times, until this holds for the shortest times: a busy machine can only add time, and work that grows
-/// faster fails all ten times. Does nothing under sanitizers, whose additional work grows differently.
+/// most ten times, until the shortest times fulfil this. A busy machine can only add time, so work that grows faster
+/// fails all ten times. Does nothing under sanitizers, whose additional work grows differently.
 template <class Few, class Many>
 void expect_growth(double limit, double once, const Few& few, const Many& many) {
   if (is_sanitized()) return;

@@ -49,9 +49,10 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the positions (V, 3) of all vertices on the cubic from keyframe s to s + 1 at local t. If `given`, the
-/// keyframes have the velocities. Otherwise a velocity is the slope of the parabola through a keyframe and its
-/// neighbours, and at both ends of the cubic through the nearest four keyframes, or through all if there are fewer.
+/// Returns the positions (V, 3) of all vertices at local t on the cubic from keyframe s to s + 1. If `given`, the
+/// keyframes store the velocities. Otherwise, the velocity at a keyframe is the slope of the parabola through this
+/// keyframe and its neighbours. At the first and the last keyframe it is the slope of the cubic through the nearest
+/// four keyframes, or of the polynomial through all keyframes if there are fewer.
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;

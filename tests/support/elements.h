@@ -1,4 +1,5 @@
-/// Functions for tests of vertices and corners: motions in the form of the oracle, and shuffled and moved meshes.
+/// Functions for tests of vertices and corners. They convert motions for the oracle of reference_elements.h, and change
+/// meshes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 
@@ -33,7 +34,7 @@ namespace chronormal::test {
   return mesh;
 }
 
-/// Returns the corners of every element for the oracle. Groups and oracle both number corners face by face.
+/// Returns the corners of every element for the oracle. NormalGroups and the oracle both number corners face by face.
 [[nodiscard]] inline std::vector<std::vector<reference::Corner>> reference_corners(const reference::Mesh& mesh,
                                                                                    const NormalGroups& groups) {
   const auto all = reference::corners_of(mesh);

@@ -46,8 +46,8 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Calls judge(segment, face, random), which describes a fault or returns "", on about wanted_cases() / share faces,
-/// spread evenly over all families. Returns the number of wrong answers, and prints a line for each family.
+/// Calls judge(segment, face, random) on about wanted_cases() / share faces, spread evenly over all families. judge()
+/// describes a fault, or returns "". Returns the number of wrong answers, and prints a line for each family.
 template <class Judge>
 std::size_t judge_cases(std::uint64_t seed, const Judge& judge, std::size_t share = 1) {
   std::vector<HardMotions> families = hard_motions();

@@ -93,8 +93,8 @@ template <class SegmentOfMesh, class Faces>
   return sum;
 }
 
-/// Returns n0, m and n1 without eq. 5: n0 and n1 are the normals at the ends, and m makes the quadratic pass through
-/// the normal at t = 1/2.
+/// Returns n0, m and n1 without using eq. 5: n0 and n1 are the normals at the ends, and m makes the quadratic pass
+/// through the normal at t = 1/2.
 [[nodiscard]] inline ControlNormals control_normals(const Triangle& triangle) {
   ControlNormals result{normal_at(triangle, 0.0), {}, normal_at(triangle, 1.0)};
   const Vector half = normal_at(triangle, 0.5);
@@ -115,9 +115,9 @@ template <class SegmentOfMesh, class Faces>
 /// Returns the exact a / b as a double, with one rounding. Precondition: b is not zero.
 [[nodiscard]] inline double ratio(const Rational& a, const Rational& b) { return Rational(a / b).get_d(); }
 
-/// Returns the angle in radians between a direction, exactly as stored, and an exact vector. Its relative error is
-/// 1e-15, so even tiny angles are precise: the cross and dot products are exact, and are divided exactly by the scales
-/// of the lengths before they are rounded to double. Returns NaN if either is zero, or the direction is not finite.
+/// Returns the angle in radians between a direction, exactly as stored, and an exact vector. Even tiny angles have a
+/// relative error of only 1e-15: the cross and dot products are exact, and are divided by exact scales before they are
+/// rounded to double. Returns NaN if one of the vectors is zero, or if the direction is not finite.
 template <class S>
 [[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nan("");

@@ -1,8 +1,8 @@
 /// Makes motions for tests from a seed, with the same bits for every compiler and standard library.
 ///
-/// Random numbers come straight from std::mt19937_64, whose output the standard prescribes, and never from a
-/// distribution, whose algorithm the standard leaves open. Coordinates that went through sin or cos are rounded to a
-/// grid that is far coarser than the differences between mathematics libraries.
+/// Random numbers come straight from std::mt19937_64, whose output the standard prescribes. No std distribution is
+/// used, since the standard does not prescribe its algorithm. Coordinates that are computed with sin or cos are rounded
+/// to a grid that is far coarser than the differences between mathematics libraries.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 
@@ -76,7 +76,7 @@ class Random {
   return std::move(topology).value();
 }
 
-/// Makes triangles that share no vertices: of 3 F vertices, face f has the corners 3 f, 3 f + 1 and 3 f + 2.
+/// Makes triangles that share no vertices. Face f has the corners 3 f, 3 f + 1 and 3 f + 2.
 [[nodiscard]] inline Topology make_soup(std::size_t face_count) {
   std::vector<std::uint32_t> corners(3 * face_count);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
@@ -122,7 +122,7 @@ struct SoupOptions {
   std::size_t face_count = 1000;
   std::uint64_t seed = 1;
   double size = 1;  ///< corners are in a cube with this edge length
-  /// Corners move by up to motion x size in each coordinate; if negative, both ends are independent.
+  /// The corners move by up to motion x size in each coordinate. If it is negative, both ends are independent.
   double motion = -1;
   double offset = 0;  ///< added to x, y and z at both ends
   double needle = 0;  ///< distance of c from the line through a and b; if 0, c is anywhere
@@ -193,8 +193,8 @@ struct SoupOptions {
   return soup({.face_count = face_count, .seed = seed, .offset = 1e4});
 }
 
-/// Makes triangles whose normal nearly vanishes in between: c passes the line through a and b at a distance of `gap`
-/// times the size, at a different time for each face.
+/// Makes triangles whose normal nearly vanishes in between: corner c passes the line through a and b at a distance of
+/// `gap` times the size, at a different time for each face.
 [[nodiscard]] inline Motion collapsing_soup(double gap, std::size_t face_count = 1000, std::uint64_t seed = 7) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -236,15 +236,15 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes needles as thin as coordinates of 20 bits allow: two edges of about 2^20 each with integer coordinates that
-/// span an area of 1 in one of the coordinate planes. The triangles are in that plane if in_plane, and otherwise tilted
-/// against it.
+/// Makes needles that are as thin as coordinates of 20 bits allow. Two edges have a length of about 2^20 each, and
+/// integer coordinates that span an area of 1 in one of the coordinate planes. With in_plane, the triangles are in this
+/// plane; otherwise they are tilted against it.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };
   const auto append = [&](std::vector<Point>& points, std::size_t axis) {
     std::int64_t p = 0, q = 0, r = 0, s = 0;
-    for (std::int64_t divisor = 0; divisor != 1;) {  // Euclid's algorithm gives p s - q r = 1 for coprime p and q
+    for (std::int64_t divisor = 0; divisor != 1;) {  // Euclid's algorithm finds r and s with p s - q r = 1
       p = some();
       q = some();
       std::int64_t a = p, b = q, ar = 1, as = 0, br = 0, bs = 1;  // a = ar p + as q, b = br p + bs q
@@ -274,8 +274,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles that end as their own mirror image, with b and c swapped: the end normals are opposite, and in the
-/// middle there is no normal.
+/// Makes triangles that end as their own mirror image: corners b and c are swapped. The end normals are opposite, and
+/// in the middle there is no normal.
 [[nodiscard]] inline Motion inside_out_soup(std::size_t face_count = 1000, std::uint64_t seed = 8) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   auto& to = motion.keyframes[1].positions;
@@ -285,7 +285,7 @@ struct SoupOptions {
   return motion;
 }
 
-/// Makes triangles that shrink to a point and grow out of it as their point reflection: n(t) = (1 - 2 t)^2 n0.
+/// Makes triangles that shrink to a point and grow out of it as their reflection in this point: n(t) = (1 - 2 t)^2 n0.
 [[nodiscard]] inline Motion point_reflected_soup(std::size_t face_count = 1000, std::uint64_t seed = 14) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   for (float& c : motion.keyframes[1].positions) c = -c;
@@ -295,8 +295,8 @@ struct SoupOptions {
 /// The shape of the corners of degenerate_soup() at one end.
 enum class Shape { kTriangle, kLine, kPoint };
 
-/// Makes triangles that start and end with the given shapes. A line has exactly no normal, since coordinates are small
-/// integers; a motion from line to line has normals in between.
+/// Makes triangles that start and end with these shapes. The coordinates are small integers, so the normal of a line is
+/// exactly zero. A motion from line to line has normals in between.
 [[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
                                             std::uint64_t seed = 9) {
   Random random(seed);
@@ -328,7 +328,7 @@ struct ClosedMesh {
   Topology topology;
 };
 
-/// Makes a sphere of 20 x 4^subdivisions triangles, round up to rounding.
+/// Makes a sphere of 20 x 4^subdivisions triangles, whose points are on the unit sphere up to rounding.
 [[nodiscard]] inline ClosedMesh icosphere(int subdivisions = 2) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Point> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},

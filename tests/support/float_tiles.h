@@ -19,8 +19,8 @@
 
 namespace chronormal::test {
 
-/// Changes the end of the motion so that normals have degree 1 or 0, by kind: each point moves along z; all move alike;
-/// they grow along x; nothing moves.
+/// Changes the end of the motion so that normals have degree 1 or 0. For kind 0 each point moves along z by itself, for
+/// 1 all points move by the same vector, for 2 they are stretched along x, and for 3 nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -31,7 +31,8 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Changes the end of the motion: every coordinate moves by a share of its way, plus a small random amount.
+/// Changes the end of the motion: every coordinate moves only by a share of its original way, plus a small random
+/// amount.
 [[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -40,7 +41,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Collects the findings of some elements; `fault` describes the last fault, or is "".
+/// The results for some elements. `fault` describes the last fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;           ///< elements with a stated degree of 2
@@ -50,8 +51,8 @@ struct FloatTileFaults {
   double largest_bound = 0;          ///< relative to the absolute products
   std::string fault;
 
-  /// Checks one element. `right` has its control normals, `products` is at least the sum of the absolute products in
-  /// each component, and `count` is the number of cross products in the sum.
+  /// Checks one element. `right` has the true control normals. `products` is at least the sum of the absolute products
+  /// in each component, and `count` is the number of cross products in the sum.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -84,8 +85,8 @@ struct FloatTileFaults {
   }
 
  private:
-  /// Returns the largest distance between n(t) and the curve without m (the line between the ends, or n0 alone),
-  /// divided by the bound.
+  /// Returns the largest distance between n(t) and the stored curve if m is left out, divided by the bound. The curve
+  /// is then the line between the ends, or n0 alone.
   [[nodiscard]] static double share_of_line(const ControlTile& tile, std::size_t lane, const ControlNormals& right) {
     const double n0[3] = {right.n0.x, right.n0.y, right.n0.z}, m[3] = {right.m.x, right.m.y, right.m.z},
                  n1[3] = {right.n1.x, right.n1.y, right.n1.z};
@@ -104,7 +105,7 @@ struct FloatTileFaults {
 };
 
 /// Checks that elements that hardly move are stored as lines or as single normals, and that the stated error of a tile
-/// includes the difference. look(seen, motion) checks the tiles of a motion.
+/// covers this simplification. look(seen, motion) checks the tiles of a motion.
 template <class Look>
 void expect_lines_within_their_errors(const Motion& motion, const Look& look) {
   constexpr std::uint64_t kSeed = 20261126;

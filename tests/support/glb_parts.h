@@ -1,4 +1,4 @@
-/// Splits GLB files that an edit wrote into their parts, without the reader.
+/// Splits GLB files that an edit wrote into their parts, without the reader of the product.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 

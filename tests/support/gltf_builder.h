@@ -94,7 +94,7 @@ class GltfBuilder {
   std::size_t add_indices(const std::vector<T>& values) {
     return add_accessor("SCALAR", values);
   }
-  /// Adds an accessor whose elements begin `stride` bytes apart; 0xEE fills the gaps.
+  /// Adds an accessor whose elements begin `stride` bytes apart. The gaps are filled with 0xEE.
   template <class T>
   std::size_t add_strided(const char* type, const std::vector<T>& values, std::size_t stride, bool normalized = false) {
     const std::size_t size = components(type) * sizeof(T), count = values.size() / components(type);
@@ -103,7 +103,8 @@ class GltfBuilder {
     for (std::size_t i = 0; i < count; ++i) bytes.replace(i * stride, size, packed, i * size, size);
     return add_accessor_over(add_view(bytes, stride), type, component_type<T>(), count, normalized);
   }
-  /// Replaces some elements of an accessor from add_accessor_over(), which may have a view or not, by sparse elements.
+  /// Replaces some elements of an accessor by sparse elements. The accessor comes from add_accessor_over(), with or
+  /// without a view.
   template <class I, class T>
   void make_sparse(std::size_t accessor, const std::vector<I>& indices, const std::vector<T>& values) {
     const std::size_t index_view = add_view(bytes_of(indices)), value_view = add_view(bytes_of(values));
@@ -178,7 +179,7 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // Further buffers that a test has added after a placeholder are kept.
+  // A test may have added further buffers after a placeholder for buffer 0. These buffers are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;
@@ -190,7 +191,7 @@ class GltfBuilder {
   }
 };
 
-/// A document and the bytes that it reads from. It is read strictly by default, so that notes (gltf_notes_test.cpp)
+/// A document, and the bytes from which it is read. By default it is read strictly, so that notes (gltf_notes_test.cpp)
 /// become errors.
 class GltfFixture {
  public:

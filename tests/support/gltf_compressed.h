@@ -46,8 +46,8 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Adds a view of `count` elements of `size` bytes that exist only in compressed form. Buffer 1 is the fallback without
-/// a URI.
+/// Adds a view of `count` elements of `size` bytes that exist only in compressed form. The extension demands a fallback
+/// buffer, which is buffer 1 and has no URI.
 inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& coded, std::size_t count, std::size_t size,
                                     const char* mode, const char* filter = nullptr) {
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4, '\0');
@@ -102,8 +102,8 @@ struct DracoShares {
   std::vector<float> weights = {};
 };
 
-/// Encodes a triangle mesh with Draco. The attributes are POSITION, NORMAL, JOINTS and WEIGHTS, numbered from 0 among
-/// the given ones. The encoding is lossless, unless `bits` is set: then positions are quantised to so many bits.
+/// Encodes a triangle mesh with Draco. The attributes that are given are numbered from 0 in the order POSITION, NORMAL,
+/// JOINTS, WEIGHTS. The encoding is lossless if `bits` is 0. Otherwise, positions are quantised to so many bits.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
                                      DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,

@@ -1,5 +1,5 @@
-/// A small viewer of glTF, independent of the library: reads a GLB, plays its weight tracks by appendix C of the
-/// specification, adds up targets in float32, and computes the true normals from the positions.
+/// A small viewer of glTF that shares no code with the library. It reads a GLB, plays its weight tracks by appendix C
+/// of the specification, adds up targets in float32, and computes the true normals from the positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 

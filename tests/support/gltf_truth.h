@@ -119,7 +119,7 @@ class GltfTruth {
     }
   }
 
-  // Lets vertices at the same place share a normal if their stored normals agree within 0.1 degrees with each other.
+  // Gives vertices at the same place a common normal if their stored normals differ by at most 0.1 degrees.
   void group(const std::vector<std::size_t>& here) {
     std::vector<std::size_t> root(here.size());
     for (std::size_t a = 0; a < here.size(); ++a) root[a] = a;
@@ -152,14 +152,14 @@ struct ShownError {
   }
 };
 
-/// A pose of a mesh: the weights in the file before the bake, and in the file after it.
+/// A pose of a mesh: the weights of the targets in the file before the bake, and in the file after the bake.
 struct Pose {
   std::vector<double> before;
   std::vector<float> after;
 };
 
-/// Compares a mesh after the bake with its true normals before. Leaves out samples where |n(w)| is below 1e-4 of the
-/// largest |n| of the vertex in these poses.
+/// Compares the rendered normals of a mesh after the bake with its true normals before the bake. Leaves out samples
+/// where |n(w)| is below 1e-4 of the largest |n| of the vertex in these poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
   ShownError error;

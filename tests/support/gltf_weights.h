@@ -13,7 +13,7 @@
 namespace chronormal::test {
 
 /// Returns the weights of target_count targets at a time. `values` has the layout of the file: (K, N), or (K, 3, N) for
-/// a cubic spline. With STEP, the value at a key is that key's own.
+/// a cubic spline. With STEP, the weights of a key begin exactly at its time.
 [[nodiscard]] inline std::vector<double> weights_at(GltfInterpolation interpolation, const std::vector<float>& times,
                                                     const std::vector<float>& values, std::size_t target_count,
                                                     double time) {
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return weights;
 }
 
-/// Returns all positions of a sequence at a time, on the straight line of its segment; outside of the range, those of
-/// the nearer end.
+/// Returns all positions of a sequence at a time, on the straight line of its segment. At times outside of the range,
+/// returns the positions at the nearer end.
 [[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
   for (const Motion::SegmentKeys& segment : motion.segments) {
     const Motion::Keyframe& from = motion.keyframes.at(segment.from);

@@ -1,6 +1,6 @@
 /// Makes small motions whose normals are hard to compute in double, and some ordinary motions.
 ///
-/// They depend only on random numbers, and are the same for every compiler except for the last bits of std::pow.
+/// The motions depend only on random numbers, and are the same for every compiler except for the last bits of std::pow.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 
@@ -55,8 +55,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle whose three corners are on a line through the origin except for the rounding of float32; one corner
-/// is very close to the origin.
+/// Makes a triangle whose three corners are on a line through the origin, except for the rounding to float32. One
+/// corner is very close to the origin.
 [[nodiscard]] inline MovingTriangle sliver_at_origin(Random& random) {
   MovingTriangle triangle;
   const double ratio = random.below(2) == 0 ? 2 : random.uniform(0.3, 3);
@@ -75,8 +75,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes c pass the line through a and b at t = 1/2 at a distance of exactly `gap`. Everything else is in a plane, with
-/// integer coordinates.
+/// Makes a triangle whose corner c passes the line through a and b at t = 1/2, at a distance of exactly `gap`. All
+/// other coordinates are integers in a plane.
 [[nodiscard]] inline MovingTriangle passing_collapse(Random& random, double gap) {
   const Point a = whole_point(random), step = whole_point(random), by = whole_point(random);
   const double along = static_cast<double>(random.below(5)) - 2;
@@ -130,8 +130,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle without a normal at one or both ends: it is a line or a point there, exactly or as nearly as
-/// float32 allows.
+/// Makes a triangle without a normal at one or both ends. At such an end it is a line or a point, exactly or as nearly
+/// as float32 allows.
 [[nodiscard]] inline MovingTriangle collapsed_at_ends(Random& random) {
   MovingTriangle triangle;
   for (auto* corners : {&triangle.from, &triangle.to}) {
@@ -220,7 +220,7 @@ template <class Make>
     for (std::size_t k = 0; k < 3; ++k) to[v][k] += by[k];
   }
   std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 1, 0, 3, 4};
-  if (random.below(2) == 0) {  // replaces the second one by a slightly different copy
+  if (random.below(2) == 0) {  // replaces the second huge face by a slightly different copy
     for (const std::size_t v : {1U, 2U}) {
       for (auto* points : {&from, &to}) {
         Point copy = (*points)[v];
@@ -256,8 +256,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_polygons(vertices, std::move(offsets), std::move(corners)), from, to);
 }
 
-/// Makes a vertex with so many faces that their sum has larger rounding errors than a sum of a few; some faces are
-/// opposite.
+/// Makes a vertex with many faces, some of which are opposite. Their sum has larger rounding errors than a sum of a few
+/// faces.
 [[nodiscard]] inline Motion many_faces(Random& random) {
   const std::size_t rim = 90 + random.below(400);
   const double height = random_decade(random, -9, 0);
@@ -277,13 +277,13 @@ template <class Make>
 }
 
 /// Makes a fan of faces around vertex 0 that nearly cancel and nearly rest. The rim has integer coordinates in a plane
-/// and goes there and back, so it encloses no area. The rim's height over the plane is a small integer times a power of
-/// two that is lost in double relative to the height of vertex 0.
+/// and goes there and back, so it encloses no area. The height of the rim above the plane is so small that it is lost
+/// in double relative to the height of vertex 0: a small integer times a power of two.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };
   const int low = -static_cast<int>(30 + random.below(60)), shift = static_cast<int>(random.below(40)) - 20;
-  const bool moves = random.below(3) == 0;  // moves within its plane by integers
+  const bool moves = random.below(3) == 0;  // the fan moves within its plane by integers
   std::vector<Point> way(half);
   for (Point& p : way)
     for (double& x : p) x = small();

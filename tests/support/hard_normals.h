@@ -1,7 +1,8 @@
 /// Makes control normals that are hard to store in few bits, and measures the errors of stored ones.
 ///
-/// They depend only on random numbers and powers of two, and have the same bits for every compiler. Errors are computed
-/// in long double from the original control normals: on x86 its error is below 1e-18 of the largest control normal.
+/// The control normals depend only on random numbers and powers of two, and have the same bits for every compiler. The
+/// errors are computed in long double from the original control normals. On x86, the rounding of this computation is
+/// below 1e-18 of the largest control normal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 
@@ -88,8 +89,8 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Returns three vectors along n with the lengths that `factor` returns, each changed by a random vector of up to
-/// `turn`.
+/// Returns three vectors along n. Each vector has a length from `factor`, and is changed by a random vector of up to
+/// `turn` times this length.
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -137,7 +138,7 @@ struct HardFamily {
          const ControlNormals c{n, s * (n + random_vector(r)), wholly ? Vec3d{} : s * s * random_vector(r)};
          return at_start ? ControlNormals{c.n1, c.m, c.n0} : c;
        }},
-      {"collapse inside, or nearly",  // (t - z)^2 n, plus a part of similar size beside it
+      {"collapse inside, or nearly",  // (t - z)^2 n plus random vectors times 1 to 2^-30
        [](Random& r) {
          const Vec3d n = random_vector(r);
          const double z = r.uniform(0.02, 0.98), gap = random_power(r, 30);
@@ -168,7 +169,8 @@ struct HardFamily {
          const auto near = [&r, height](const Vec3d& v) { return v + 0.1 * height * random_vector(r); };
          return ControlNormals{near(c.n0), 0.5 * near(c.m), near(c.n1)};
        }},
-      // Components of M, -M, half an integer times M / 1023 or M / 32767, and values close to these.
+      // The components are M, -M, half an integer times M / 1023 or M / 32767, or close to these, where M is the
+      // largest.
       {"where integers round",
        [](Random& r) {
          const double largest = r.below(3) == 0 ? r.uniform(0.5, 1) : 1;
@@ -202,7 +204,7 @@ struct HardFamily {
   return families;
 }
 
-/// Makes an element of a random family; if any_scale, at any scale of double.
+/// Makes an element of a random family. With any_scale, its magnitude is anywhere in the range of double.
 [[nodiscard]] inline ControlNormals hard_element(fixtures::Random& random, bool any_scale) {
   const auto& families = hard_families();
   const ControlNormals c = families[random.below(families.size())].make(random);

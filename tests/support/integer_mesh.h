@@ -1,6 +1,6 @@
-/// Makes a moving grid only from integers and powers of two, so that its coordinates have the same bits for every
-/// compiler and mathematics library. It serves tests that compare with a constant, and tests that need large meshes
-/// quickly.
+/// Makes a moving grid from integers and powers of two alone, so that its coordinates have the same bits for every
+/// compiler and mathematics library. The grid serves tests that compare with a constant, and tests that need large
+/// meshes quickly.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 

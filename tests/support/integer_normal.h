@@ -4,8 +4,8 @@
 /// 2^(-149 - e), and their cross products are integers as well. All of them are GMP integers; only the final direction
 /// is rounded to double. (exact_normal.h computes the same in rational numbers, a hundred times slower.)
 ///
-/// If n(t) = 0, the result is the direction of n slightly earlier, or at t = 0 slightly later: by 2^-1500 of the
-/// segment, far less than any difference between two terms of n.
+/// If n(t) = 0, the result is the direction of n slightly earlier, or at t = 0 slightly later. "Slightly" is 2^-1500 of
+/// the segment, which is far less than any difference between two terms of n.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 
@@ -37,11 +37,11 @@ struct IntegerTime {
     const int e = 53 - exponent;  // t <= 1, so e is positive
     return {mpz_class(mantissa), t == 0 ? 0 : static_cast<unsigned>(e)};
   }
-  /// Returns an instant slightly before (sign -1) or after (sign 1).
+  /// Returns an instant that is slightly earlier (sign -1) or later (sign 1).
   [[nodiscard]] IntegerTime moved(int sign) const { return {(t << 1500) + sign, e + 1500}; }
 };
 
-/// Returns value / 2^-149, which is an integer.
+/// Returns the value in units of 2^-149, which is an integer.
 [[nodiscard]] inline mpz_class integer_of(float value) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 24));
@@ -51,7 +51,7 @@ struct IntegerTime {
                     : mpz_class(result >> static_cast<unsigned>(-shift));
 }
 
-/// Returns the direction of v, which is not a unit vector.
+/// Returns the direction of v as doubles, not as a unit vector.
 [[nodiscard]] inline std::array<double, 3> direction_of(const IntegerVector& v) {
   std::array<double, 3> mantissa{};
   std::array<long, 3> exponent{};
@@ -115,7 +115,7 @@ class IntegerNormals {
 
 [[nodiscard]] inline bool is_zero(const IntegerVector& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Returns the sum over some faces.
+/// Returns the sum of the normals of some faces.
 [[nodiscard]] inline IntegerVector sum_of(const std::vector<IntegerVector>& normals,
                                           std::span<const std::uint32_t> faces) {
   IntegerVector sum;

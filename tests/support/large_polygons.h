@@ -1,4 +1,4 @@
-/// Makes random motions of meshes of one or two polygons with many corners, where every vertex belongs to one of these
+/// Makes random motions of meshes of one or two polygons with many corners. Every vertex belongs to one of the large
 /// polygons.
 #ifndef CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_

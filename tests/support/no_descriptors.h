@@ -6,7 +6,7 @@
 
 namespace chronormal::test {
 
-/// During its lifetime, this process can open neither files nor folders.
+/// An object during whose lifetime this process can open neither files nor folders.
 class NoDescriptors {
  public:
   NoDescriptors() {

@@ -1,4 +1,4 @@
-/// Makes PLY files byte by byte, without using the writer.
+/// Makes PLY files byte by byte, without the writer of the product.
 #ifndef CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 
@@ -47,8 +47,8 @@ class ByteWriter {
   return writer.bytes();
 }
 
-/// Makes a file with everything that a PLY file can contain: other elements before, between and after, lists, every
-/// scalar type, and faces before the vertices (1, 2, 3, 4 x 0.5; a quad and a triangle).
+/// Makes a file with everything that a PLY file can contain: other elements before, between and after, lists, and every
+/// scalar type. The faces, a quad and a triangle, come before the vertices.
 [[nodiscard]] inline std::string mixed_binary_ply(bool big_endian) {
   ByteWriter writer(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                         " 1.0\r\ncomment a b c\r\nobj_info d\r\n"

@@ -275,8 +275,8 @@ template <std::size_t N>
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // Computes products of two components, times four: w x, w y, w z from the antisymmetric part, the others from the
-  // symmetric part.
+  // Computes four times the products of two components. The antisymmetric part of the matrix gives w x, w y and w z;
+  // the symmetric part gives the others.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};
@@ -384,7 +384,7 @@ template <std::size_t N>
     Frame mapped{};
     mapped.normal = *normal1;
     mapped.binormal = normalised(Vector{image[0], image[1], image[2]});
-    // The paper prints n1 x b1, which would make a frame of determinant -1; the right formula is tangent = binormal x
+    // The paper prints n1 x b1, which would make a frame with the determinant -1. The correct tangent is binormal x
     // normal.
     mapped.tangent = cross(mapped.binormal, mapped.normal);
     return std::pair{*frame0, mapped};
@@ -427,7 +427,7 @@ struct Circle {
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // Either side of the plane may be chosen, since the angles below decide the direction of traversal.
+  // Either of the two normals of the plane may be taken, since the angles below decide the direction of traversal.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
   const auto turn = [&circle](const Vector& point) {
@@ -497,11 +497,12 @@ struct SchemeName {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }
 
-/// Returns the unit normal that the scheme must give at t, or nothing where it is not defined or `name` is unknown.
+/// Returns the unit normal that the scheme must give at t, or nothing where the scheme is not defined or `name` is
+/// unknown.
 ///
-/// For searched schemes, `observed_middle` is the result of the tested scheme at t = 1/2. It determines the number that
-/// was searched for, and thereby the result at every other t. Without it, this function returns nothing for searched
-/// schemes; optimal_circle_error() and scaled_linear_error() judge the search itself.
+/// For schemes that search for a number, `observed_middle` is the result of the tested scheme at t = 1/2. It determines
+/// this number, and thereby the result at every other t. Without `observed_middle`, this function returns nothing for
+/// such schemes. optimal_circle_error() and scaled_linear_error() judge the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -529,7 +530,8 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The middle is parallel to u0 + s u1, where s is the ratio of the areas that it spans with the two ends.
+      // The observed middle is parallel to u0 + s u1. s is the ratio of the areas that the middle spans with the two
+      // ends.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -634,11 +636,12 @@ template <class Coarse, class Fine>
       exact, [&](double t) { return add(w, add(scaled(std::cos(t * arc), p), scaled(std::sin(t * arc), q))); }, stride);
 }
 
-/// Searches all pairs of frames densely and returns the smallest average error in radians, over `exact`, of any
-/// constant-speed circle of eq. 6 on its shorter arc (|phi| <= pi/2), or nothing if the ends coincide or are antipodal.
+/// Returns the smallest average error, in radians over `exact`, that a dense search over all pairs of frames finds.
+/// Each pair gives a circle of eq. 6, run through at constant speed on its shorter arc (|phi| <= pi/2). Returns nothing
+/// if the ends coincide or are antipodal.
 ///
-/// `density` points are spread evenly over phi, and as many evenly over the direction in which the circle leaves u0: if
-/// u0 and u1 are close, all visibly different circles have phi near +-pi/2.
+/// `density` points are spread evenly over phi, and as many over the direction in which the circle leaves u0. The
+/// latter are needed if u0 and u1 are close: all circles that differ visibly then have phi near +-pi/2.
 [[nodiscard]] inline std::optional<double> optimal_circle_error(const Triangle& triangle, const ExactSamples& exact,
                                                                 std::size_t density = 100,
                                                                 std::size_t coarse_stride = 5) {

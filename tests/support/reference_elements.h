@@ -1,8 +1,8 @@
 /// An independent oracle for the normals of vertices and corners, in long double.
 ///
 /// Like reference.h, this file includes no chronormal header and shares no line with src/. If there are several
-/// methods, the slow one is taken: vector areas come from the vertices at t about their centre, not from a fan or a
-/// polynomial; groups of corners come from a flood fill over all pairs, not from sorting.
+/// methods, the slow one is taken. Vector areas come from the vertices at t about their centre, not from a fan or a
+/// polynomial. Groups of corners come from a flood fill over all pairs, not from sorting.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 
@@ -112,8 +112,8 @@ struct MovingElement {
   return normalised(normal);
 }
 
-/// Returns the equivalence classes on 0 ... count - 1 of the relation that `related` generates, numbered in the order
-/// of their first members.
+/// Returns the equivalence classes on 0 ... count - 1 of the smallest equivalence relation that contains `related`.
+/// Classes are numbered in the order of their first members.
 [[nodiscard]] inline std::vector<std::size_t> flood(std::size_t count,
                                                     const std::function<bool(std::size_t, std::size_t)>& related) {
   std::vector<std::size_t> class_of(count, count);
@@ -137,8 +137,8 @@ struct MovingElement {
   return class_of;
 }
 
-/// Returns classes of corners that share a normal at a crease angle in degrees; `point` has the point of each vertex.
-/// Faces must have normals at t = 0, and no angle may be within rounding of the crease angle.
+/// Returns the classes of corners that share a normal at a crease angle in degrees. `point` has the point of each
+/// vertex. Faces must have normals at t = 0, and no angle may be within rounding of the crease angle.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);

@@ -1,4 +1,4 @@
-/// Reads a report like a page: splits the container into its parts, and computes the error that a page shows for a
+/// Reads a report like a page. Splits the container into its parts, and computes the error that a page shows for a
 /// vertex of a sample, in double and from the container alone. Nothing here includes code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
@@ -58,7 +58,8 @@ class ReportFile {
                                 : keyframe_degrees(of, motion, place["sample"], place["vertex"]);
   }
 
-  /// Returns the number of a vertex in the file, or in its primitive.
+  /// Returns the number by which a page calls a vertex: its label if the part has labels, or else its index in its
+  /// primitive.
   [[nodiscard]] std::size_t label(const Json& of, std::size_t vertex) const {
     if (!of["labels"].is_null()) return numbers<std::uint32_t>(of["labels"])[vertex];
     for (const Json& primitive : of["primitives"])
@@ -172,7 +173,8 @@ class ReportFile {
     return result;
   }
 
-  // Adds the author's offset to a sum. The offset is an angle to the sum, and an azimuth around it.
+  // Adds the author's offset to a sum. The offset is an angle between the result and the sum, and an azimuth around the
+  // sum.
   [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
                                   const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
     const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),

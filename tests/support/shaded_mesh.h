@@ -128,8 +128,8 @@ struct ShadedMesh {
   return mesh;
 }
 
-/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted from the geometry's by up to `tilt` radians, and
-/// its targets have random deltas of positions and normals.
+/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted against the normals of the surface by up to
+/// `tilt` radians, and its targets have random deltas of positions and normals.
 [[nodiscard]] inline ShadedMesh random_sheet(std::uint64_t seed, std::size_t n, std::size_t target_count, double tilt) {
   fixtures::Random random(seed);
   ShadedMesh mesh;
@@ -158,7 +158,7 @@ struct ShadedMesh {
     }
   }
   const std::vector<double> none(target_count);
-  std::vector<float> normals;  // without normals, elements are distinguished by positions alone
+  std::vector<float> normals;  // set at the end, since mesh.normal() compares stored normals
   for (std::size_t v = 0; v < n * n; ++v) {
     const Vector geometry = unit_of(mesh.normal(v, none));
     const Vector stored = unit_of(plus(geometry, {random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), 0}));

@@ -34,7 +34,7 @@ struct Rows {
   }
 };
 
-/// Returns the product of matrices that applies b first, then a.
+/// Returns the product of two matrices, which applies b first and then a.
 [[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
   Rows result;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -152,9 +152,9 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
   return sum;
 }
 
-/// The errors on the screen: the angle between the rendered and the true normal of a vertex, both transformed by the
-/// blended matrix; and the angle between the geometry's normal, transformed in the same way, and the normal of the
-/// skinned surface.
+/// The errors on the screen. `shown` is the angle between the rendered and the true normal of a vertex, both
+/// transformed by the same rule. `skinning` is the angle between the normal of the surface before skinning, transformed
+/// by the blended matrix, and the normal of the skinned surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;
 };

@@ -1,4 +1,4 @@
-/// A stream that keeps only the keyframes in use, to measure how many its user needs.
+/// A stream that keeps only the keyframes in use, to measure how many keyframes its user needs.
 #ifndef CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 #define CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 

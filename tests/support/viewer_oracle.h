@@ -1,5 +1,5 @@
-/// Computes the normals that viewers render: plain loops over the formulas in their sources, in double and in integers,
-/// without using the library. Each viewer has its own code under its name.
+/// Computes the normals that viewers render, by plain loops over the formulas in the sources of the viewers, in double
+/// and in integers, without the library. Each viewer has its own code under its name.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 
@@ -94,7 +94,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
 }
 
-/// Returns the integer nearest to |value| times `most`, with the sign of the value. It is found by trying all integers.
+/// Returns the integer that is nearest to |value| times `most`, with the sign of the value. Finds it by trying all
+/// integers.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
   for (int k = 1; k <= most; ++k)
@@ -181,8 +182,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer plays from a track at a time between keys. `start` and `end` are those of the
-/// animation.
+/// Returns the weights that a viewer plays from a track at a time between keys. `start` and `end` are the times at
+/// which the animation starts and ends.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
                                                    std::size_t targets, double start, double end, double time) {
@@ -210,7 +211,7 @@ using Triple = std::array<double, 3>;
     return weights;
   }
   if (viewer == "playcanvas" && is_spline) {
-    // PlayCanvas's parser makes a separate track for each number of a key.
+    // The parser of PlayCanvas makes a separate track for each of the numbers that a key has.
     const std::size_t tracks = values.size() / times.size(), keys = times.size();
     std::vector<double> weights;
     for (std::size_t j = 0; j < targets; ++j) {

@@ -90,7 +90,7 @@ class WholePolynomial {
     return sgn(value);
   }
 
-  /// Tells whether the polynomial is linear; slope_at_root() returns the sign of the derivative of p at its root.
+  /// Tells whether the polynomial is linear. slope_at_root() then returns the sign of the derivative of p at its root.
   [[nodiscard]] bool is_linear() const { return a_.size() == 2; }
   [[nodiscard]] int slope_at_root(const WholePolynomial& p) const {
     const Whole root = -a_[0], unit = a_[1];  // t = root / unit
@@ -99,7 +99,7 @@ class WholePolynomial {
       slope = slope * root + static_cast<unsigned long>(k) * p.a_[k] * power;
       power *= unit;
     }
-    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // the power of `unit` by which slope was multiplied
+    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // whether slope has an odd power of `unit`
     return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
   }
 
@@ -157,7 +157,7 @@ class WholePolynomial {
     return result;
   }
 
-  // The quotient and the remainder of a pseudo-division.
+  // The quotient and the remainder of a division, scaled so that both have integer coefficients (pseudo-division).
   struct Division;
   [[nodiscard]] Division divided_by(const WholePolynomial& q) const;
   [[nodiscard]] WholePolynomial without_multiple_roots() const;
