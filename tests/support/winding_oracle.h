@@ -1,9 +1,9 @@
 /// Computes winding numbers and crossings of moving points in integers and rational numbers, to check containment.
 ///
-/// A winding number is counted along a slanted half-line, unlike in the product, with signs of integer determinants. If
-/// a determinant is zero because the half-line meets an edge or a vertex, the point is moved by a small step along x, a
-/// far smaller step along y, and a still smaller step along z, and the computation is repeated. Roots are isolated by
-/// Sturm's theorem in rational numbers.
+/// A winding number is counted along a slanted half-line, unlike in the product, with signs of integer determinants. A
+/// determinant is zero if the half-line meets an edge or a vertex. In this case the point is moved by a small step
+/// along x, a far smaller step along y and a still smaller step along z, and the winding number is computed again.
+/// Roots are isolated by Sturm's theorem in rational numbers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 
@@ -45,7 +45,7 @@ struct Fraction {
   }
 };
 
-/// Returns 2^(149 + 53) times a coordinate at t relative to a moving point, which is an integer.
+/// Returns a coordinate at t relative to a moving point, in units of 2^-(149 + 53), in which it is an integer.
 [[nodiscard]] inline Integers seen_at(const Vec3f& from, const Vec3f& to, const Vec3f& point_from,
                                       const Vec3f& point_to, const Fraction& t) {
   const mpz_class after = t.numerator, before = (std::int64_t{1} << 53) - t.numerator;
@@ -201,7 +201,8 @@ struct ExactCrossing {
   bool inward;
 };
 
-/// All crossings of faces by a point that meets no edge and touches no face; otherwise is_general is false.
+/// All crossings of faces by a point. If the point meets an edge or touches a face, is_general is false and the list is
+/// empty.
 struct ExactCrossings {
   bool is_general = true;
   std::vector<ExactCrossing> list;
@@ -218,7 +219,8 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // Uses the normal n instead of a vertical line: a point is inside the face if all three areas have the direction n.
+  // The coordinates in the face are measured along its normal n, and not along a vertical line: a point is inside the
+  // face if all three areas have the direction of n.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -1,6 +1,6 @@
 // A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is the
 // sum over all polygons around it, weighted by the angle at their corners. Some normals were edited by hand,
-// differently in each key, and some point to the other side.
+// differently in each key, and some of the edited normals point to the other side.
 import { writeFile } from './fixtures.mjs';
 import { randomNumbers } from './random.mjs';
 
@@ -11,7 +11,8 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const single = (a) => a.map(Math.fround);
 
-// Makes polygons over n x n points: corners counterclockwise, and the triangles into which an exporter cuts them.
+// Makes polygons over n x n points. Each polygon has its corners in counterclockwise order, and the triangles into
+// which an exporter cuts it.
 function polygonsOf(n, random) {
   const polygons = [], middle = n >> 1, quad = [[0, 1, 2], [0, 2, 3]], ears = [[5, 0, 1], [2, 3, 4], [5, 1, 2], [5, 2, 4]];
   const isNear = (i, j) => Math.max(Math.abs(i + 0.5 - middle), Math.abs(j + 0.5 - middle)) < 1;

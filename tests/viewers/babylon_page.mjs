@@ -53,7 +53,7 @@ export function setWeights({ scene }, weights) {
       weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
 }
 
-// Blends an animation group for each weight.
+// Blends several animation groups, each with its weight.
 export function blend({ scene }, weights) {
   weights.forEach((weight, k) => {
     const group = new AnimationGroup(`group ${k}`, scene);

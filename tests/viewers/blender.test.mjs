@@ -75,13 +75,14 @@ async function checkRoundTrip(context, original) {
     const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    // Blender has computed the normals of the second file anew: they are not a polynomial, so the bake fits them.
+    // In the second file, Blender has computed the normals anew. They are not a polynomial, so the bake can only fit
+    // them.
     const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
       `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
     assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
-    // The surface must improve as a whole; a single normal may become slightly worse.
+    // The surface must become better as a whole, but a single normal may become slightly worse.
     assert.ok(second.worst_degrees_after <= 1.2 * second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);

@@ -23,11 +23,11 @@ const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// The largest difference in degrees between two measurements of the same pose, which match corners and vertices in
-// different ways.
+// The largest difference in degrees between two measurements of the same pose: the panel and this test match corners
+// and vertices in different ways.
 const AGREE = 0.02;
 
-// The edges of `facets` become hard by their angle only in a deformed pose, which a morph target cannot represent.
+// In this model, edges become hard by their angle in deformed poses alone, which a morph target cannot represent.
 const HARD_IN_POSES = ['facets'];
 
 const PLAIN = /your plain export was kept/;
@@ -50,8 +50,8 @@ function write(name, text, mode) {
 }
 
 before(() => {
-  // All files are in a folder that every user may read. One task runs as another user, since root may write into every
-  // folder.
+  // All files are in a folder that every user may read. One task runs as another user, because root could write even
+  // into a folder that is closed to all.
   folder = mkdtempSync(join(tmpdir(), 'chronormal_addon_'));
   chmodSync(folder, 0o777);
   program = at('chronormal');
@@ -146,8 +146,8 @@ describe('The add-on', () => {
       if (jumps) assert.ok(Math.abs(jumps.said - jumps.there) < 1e-3 && jumps.ones === 2, JSON.stringify(jumps));
     }));
 
-  // Blender imports triangles with custom normals, which differ from the author's model. Therefore the baked file is
-  // compared with the plain file after importing and exporting both.
+  // Blender imports triangles with custom normals, so an imported file differs from the author's model. Therefore the
+  // baked file is compared with the plain file after both were imported and exported again.
   test('makes the corrections of a baked file idle when it is imported, and bakes the keys of its author again', async (context) => {
     const names = ['head', 'sharp_cylinder', 'triangles', 'mixed', 'weighted'];
     for (const name of names) chronormal('bake', at(`${name}.glb`), '-o', at(`${name}.baked.glb`), '--quiet');

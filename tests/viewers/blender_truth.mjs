@@ -28,8 +28,8 @@ const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
-// Finds for each vertex of an exported primitive the loop of Blender's mesh from which it was made: the loop at the
-// same position, in the base and at each key, that has the nearest normals.
+// Returns, for each vertex of an exported primitive, the loop of Blender's mesh from which it was made. The loop has
+// the same position in the base and at each key. If several loops do, the one with the nearest normals is taken.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];
@@ -52,7 +52,7 @@ export function truthOf({ truth }, instant, loops) {
   return Float32Array.from({ length: 3 * loops.length }, (_, i) => truth.normal(instant, loops[Math.floor(i / 3)])[i % 3]);
 }
 
-// Reads a model: {name, path, truth, exported, loops}. `path` has no extension; `loops` has an array for each
+// Reads a model: {name, path, truth, exported, loops}. `path` is without the extension. `loops` has an array for each
 // primitive.
 export async function readModel(path) {
   const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];

@@ -29,7 +29,7 @@ KEYFRAMES = [0, 12, 24, 36, 48]
 INSTANTS = [0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36, 39, 42, 45, 48]
 
 
-# Deformations. Each draws its parameters, and returns a function from the position of a vertex to another position.
+# Deformations. Each function draws its parameters, and returns a function that moves the position of a vertex.
 
 def bend(draw, _):
     across, along = draw.sample(range(3), 2)
@@ -85,7 +85,8 @@ def apply(o, kind, **settings):
 
 
 def split_at_sharp_edges(o, is_sharp):
-    """Marks edges as sharp, chosen by their BMesh edge. Normals are then split only there, in every pose."""
+    """Marks edges as sharp. is_sharp tells from a BMesh edge whether to mark it. Normals are then split only at these
+    edges, in every pose."""
     def mark(editable):
         for edge in editable.edges:
             edge.smooth = not is_sharp(edge)
@@ -130,7 +131,7 @@ def polygons(draw):
 
 
 def weighted(draw):
-    """Makes a bevelled block with custom normals by the modifier for weighted normals."""
+    """Makes a bevelled block with custom normals, which Blender's modifier for weighted normals computes."""
     bpy.ops.mesh.primitive_cube_add(size=1.4)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 3))
@@ -252,7 +253,7 @@ def darts(draw):
 
 
 def authored(draw):
-    """Makes a mesh with custom normals that lean away from the surface's own."""
+    """Makes a mesh with custom normals that lean away from the normals of the surface."""
     o = shade(ball(draw))
     lean = Vector([draw.uniform(-1, 1) for _ in range(3)])
     o.data.use_auto_smooth, o.data.auto_smooth_angle = True, math.pi
@@ -292,7 +293,7 @@ def add_keys(o, draw, deformations):
 
 
 def animate(o, keys, draw, how):
-    """Adds keyframes from the base to each key in turn, with shares of the other keys."""
+    """Adds keyframes that go from the base to each key in turn, with a share of the other keys."""
     for n, frame in enumerate(KEYFRAMES):
         for i, key in enumerate(keys):
             key.value = 0 if n == 0 else 1 if (n - 1) % len(keys) == i else draw.uniform(0, 0.7)

@@ -41,7 +41,7 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// Checks the audit of the animation, which samples all recorded times, and more.
+// Checks the audit of the animation. The audit samples all recorded times, and further times.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');
   const message = `audit ${mean} / ${worst} degrees, Blender ${times.mean} / ${times.worst}`;
@@ -79,7 +79,7 @@ describe("Blender's own normals", () => {
       assertSameBetween(audited, errors(model.exported, model));
     }));
 
-  // The edges of `facets` become hard by their angle in a deformed pose, but the exporter has decided in the base which
+  // In deformed poses, edges of `facets` become hard by their angle. The exporter has already decided in the base which
   // corners share a vertex.
   test('are shown at every time after a bake for a viewer that adds up deltas', (context) =>
     eachModel(context, async (model, own) => {

@@ -10,7 +10,7 @@ import puppeteer from 'puppeteer-core';
 const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-// Filament is a script that defines a global variable of this name, and loads its program when it starts.
+// The script filament.js defines the global variable `Filament`, which loads its wasm module when it starts.
 const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
 <script src="filament.js"></script><script src="page.js"></script>`;
 
@@ -51,8 +51,8 @@ async function listen(body) {
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-/** Serves a folder with index.html as its page. Like some servers, it can return `fallback` for all paths that do not
- * exist. */
+/** Serves a folder whose page is index.html. If `fallback` is given, it is returned for all paths that do not exist,
+ * as some servers do. */
 export function serveFolder(folder, fallback) {
   return listen((path) => {
     const file = join(folder, path === '' ? 'index.html' : path);

@@ -57,7 +57,8 @@ describe('what is baked is closer to the truth', () => {
   const bake = once((input, ...options) => {
     const name = [basename(input, extname(input)), 'baked', ...options].join('.');
     const output = join(folder, `${name}.glb`);
-    // The still meshes with the true normals use area weights, whatever weighting the author chose.
+    // The still files with the true normals use area weights. Therefore the bake uses area weights too, whatever the
+    // author chose.
     const how = options.includes('--encode') ? options : ['--encode', 'harmless', ...options];
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...how);
     return output;

@@ -23,25 +23,27 @@ const SIZE = { width: 320, height: 320 };
 const PICTURE = fileURLToPath(new URL('../../docs/pictures/closeups.jpg', import.meta.url));
 const SHOWN = 'mirrored';  // the model in the documents' picture
 const TORN = 10;         // jump of the error over an edge, in degrees, that counts as torn
-// The visible part of a model, and the neighbourhood of a vertex in which edges count, in units of the model.
+// The width of the visible part of a model, and of the neighbourhood of a vertex in which torn edges are counted, as a
+// share of the model's size.
 const NEAR = 0.35;
 
-// The share of the error that may remain in these pixels: in viewers that add up deltas, and in Filament, which keeps
-// unit normals. `facets` is left out, since its edges become hard by angles in a pose, which no file can represent.
+// The share of the error that may remain in these pixels. It is larger in Filament, which does not add up deltas but
+// keeps unit normals. `facets` is left out, since its edges become hard by angles in a pose, which no file can
+// represent.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
-const ROUNDING = 0.1;    // degrees of error by the eight bits of a texture, and by the viewer's own interpolation
+const ROUNDING = 0.1;    // degrees of error by eight bits per colour, and by the viewer's own interpolation
 const VIEWERS = Object.keys(KEPT);
 
 const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const minus = (a, b) => a.map((x, c) => x - b[c]);
 const unit = (a) => a.map((x) => x / (length(a) || 1));
 
-// Returns the instant and the place on the surface with the most torn edges around it, in a file as exported: {time,
-// at, from, radius}, where `from` is a direction.
+// Returns the instant and the place of an exported file at which the surface has the most torn edges around it: {time,
+// at, from, radius}. `from` is a direction.
 function mostTorn({ exported, truth, loops }) {
   let most = { count: -1 };
   truth.instants.forEach(({ time }, instant) => {
-    // At the end Filament starts from the beginning.
+    // At the end of an animation, Filament starts again from the beginning.
     if (time === undefined || time >= exported.animations[0].end) return;
     exported.meshes[0].primitives.forEach((primitive, p) => {
       const weights = nodeWeights(exported, 0, exported.animations[0], time);
@@ -73,7 +75,7 @@ function cameraAt({ at, from, radius }) {
 // Returns the model at an instant as a file that does not move, with Blender's normals.
 async function stillAt({ path, exported, truth, loops }, { time, instant }) {
   const io = newIO(), document = await io.read(`${path}.glb`), root = document.getRoot();
-  // Filament reads beyond its memory if targets are named that do not exist.
+  // Filament reads beyond its memory if the extras name targets that do not exist.
   root.listMeshes()[0].setWeights([]).setExtras({}).listPrimitives().forEach((primitive, p) => {
     const described = exported.meshes[0].primitives[p];
     const weights = nodeWeights(exported, 0, exported.animations[0], time);

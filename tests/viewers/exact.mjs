@@ -1,6 +1,6 @@
-// Computes the true normals of the vertices of a mesh from positions alone, in double: sums of cross products over the
-// faces around a point, turned by the smallest rotation that takes the geometry's normal of the base to the stored
-// normal.
+// Computes the true normals of the vertices of a mesh from positions alone, in double. A true normal is the sum of
+// cross products over the faces around a point, turned by the rotation that takes the normal of the base's geometry to
+// the stored normal.
 const SAME_NORMAL = Math.cos((0.1 * Math.PI) / 180);
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -14,8 +14,8 @@ export function angle(a, b) {
   return (Math.atan2(length(cross(a, b)), dot(a, b)) * 180) / Math.PI;
 }
 
-// Turns v by the smallest rotation that takes the direction of `from` to that of `to`. Returns v if either is zero, or
-// if they are opposite, since then no rotation is the smallest.
+// Turns v by the smallest rotation that takes the direction of `from` to the direction of `to`. Returns v if one of the
+// two is zero, or if they are opposite, since then no rotation is the smallest.
 function turned(v, from, to) {
   if (length(from) === 0 || length(to) === 0) return v;
   const a = scaled(from, 1 / length(from));
@@ -30,8 +30,8 @@ function turned(v, from, to) {
 
 export class ExactNormals {
   // Takes a mesh as reader.mjs describes it. Vertices at the same place in the base and in every target are one point,
-  // also across primitives, and share a normal if their stored normals agree. Primitives without normals are flat:
-  // viewers compute their normals.
+  // even in different primitives. They share a normal if their stored normals agree. Primitives without normals are
+  // flat: viewers compute their normals.
   constructor(mesh) {
     this.primitives = mesh.primitives.filter((primitive) => primitive.triangles);
     this.elements = 0;
@@ -73,9 +73,9 @@ export class ExactNormals {
     return sums;
   }
 
-  // Returns for each primitive null if it is flat, or else {directions, lengths}: the true normal of each vertex, not
-  // normalised, and the length of its sum of cross products. Both are zero for vertices in no triangle of the
-  // primitive.
+  // Returns for each primitive null if it is flat, or else {directions, lengths}. `directions` has the true normal of
+  // each vertex, not normalised; `lengths` has the length of its sum of cross products. Both are zero for vertices in
+  // no triangle of the primitive.
   at(weights) {
     const sums = this.sums(weights);
     return this.primitives.map((primitive, p) => {

@@ -17,7 +17,7 @@ export async function writeMovingFace(input, output) {
   writeFileSync(output, await newIO().writeBinary(document));
 }
 
-// Adds an animation in which the targets are activated one after the other, while the previous one fades to a half.
+// Adds an animation that activates the targets one after the other. The earlier targets stay active at a half.
 function addAnimation(document, node) {
   const count = node.getMesh().listPrimitives()[0].listTargets().length;
   const rows = Array.from({ length: count + 1 }, (_, key) =>

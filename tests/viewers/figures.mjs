@@ -1,5 +1,5 @@
-// Tests the panel of a face: compares its values with `compare --face` of the program, and its pictures with values
-// computed from these.
+// Tests the panel of a face. Compares its values with `compare --face` of the program, and its pictures with values
+// that are computed from this output.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

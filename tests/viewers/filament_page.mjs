@@ -53,7 +53,7 @@ async function loadAs(bytes, material) {
   return { asset, animator: asset.getInstance().getAnimator() };
 }
 
-// Returns a GLB in which everything has the same material, without textures.
+// Returns a GLB in which all meshes have the same material, without textures.
 function withMaterial(bytes, pbrMetallicRoughness) {
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(bytes.subarray(JSON_AT, JSON_AT + length)));
@@ -73,7 +73,7 @@ function withMaterial(bytes, pbrMetallicRoughness) {
   return result;
 }
 
-// Sets all objects to a time, by the animator, which starts again at the end.
+// Sets all objects to a time by the animator, which starts an animation again when it ends.
 export function play({ animator }, animation, time) {
   if (animation !== null) animator.applyAnimation(animation, time);
 }

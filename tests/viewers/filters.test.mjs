@@ -1,5 +1,6 @@
-// Compares the program's decoding of the filters of EXT_meshopt_compression with npm meshoptimizer, which runs in
-// browsers; for normals bit for bit. Each filter is applied to positions, since `chronormal convert` can write these.
+// Compares how the program and npm meshoptimizer, which runs in browsers, decode the filters of
+// EXT_meshopt_compression. Normals must agree bit for bit. Each filter is applied to positions, since `chronormal
+// convert` can write positions.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';
@@ -15,8 +16,8 @@ const BYTE = 5120;
 const SHORT = 5122;
 const FLOAT = 5126;
 
-// Returns every (x, y) of up to mostSteps steps along each side of the square, for each number of bits; with few bits
-// these are all possible values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
+// Returns coded vectors for each number of bits: every (x, y) on a grid of at most mostSteps steps along each side of
+// the square. With few bits, these are all possible values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {
   const elements = [];
   for (let bits = leastBits; bits <= mostBits; ++bits) {
@@ -35,8 +36,8 @@ function randomNumbers(seed) {
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
 }
 
-// Makes quaternions of three components, so that the omitted fourth is the largest; the two lowest bits of the last
-// number tell which one was omitted.
+// Makes quaternions without their largest component, which a decoder computes from the other three. The two lowest bits
+// of the last number tell which component is missing.
 function quaternions(count) {
   const random = randomNumbers(1);
   const elements = new Int16Array(4 * count);

@@ -75,8 +75,8 @@ function part(primitive, from, to) {
   return { ...primitive, indices: primitive.indices.slice(from, to) };
 }
 
-// Writes {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?, names?} as one
-// GLB.
+// Writes a GLB from {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?,
+// names?}.
 export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights, names }) {
   const document = new Document();
   const buffer = document.createBuffer();
@@ -173,7 +173,7 @@ export const fixtures = {
       nodes: [{ at: [-1.3, 0, 0] }, { at: [0, 0, 0] }, { at: [1.3, 0, 0], weights: [0.5] }],
       tracks: [linear([0, 1, 0]), linear([1, 0.25], 1, [0, 1.5])],
     }),
-  // An author has bent these base normals away from the geometry.
+  // The base normals lean away from the surface, as if an author had edited them.
   authored: (path) => {
     const primitive = twist();
     for (let v = 0; v < primitive.normals.length; v += 3) {
@@ -216,8 +216,8 @@ export function sequenceFrames() {
   });
 }
 
-// Writes a vase that gets flutes and twists, for the picture; with or without target normals, since many exporters omit
-// them.
+// Writes a vase that gets flutes and twists, for the picture. It may lack the normals of targets, since many exporters
+// leave these out.
 export function writeVase(path, { targetNormals }) {
   const profile = (y) => 0.45 + 0.13 * Math.sin(2.4 * y + 2);
   const fluted = (a, y) => {

@@ -23,15 +23,16 @@ export function moves(mesh) {
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
-// Returns an empty result in degrees over samples of a vertex and a state: {mean, max, where, pairs, excluded, flat,
-// drift}. `excluded` counts samples without a direction or a triangle; `flat` counts primitives without normals, which
-// viewers shade by themselves; `drift` is the largest distance between a vertex in `shown` and in `source`, relative to
-// the size of its mesh.
+// Returns an empty result over samples, each of a vertex in a state: {mean, max, where, pairs, excluded, flat, drift}.
+// `mean` and `max` are degrees. `excluded` counts samples without a direction or a triangle. `flat` counts primitives
+// without normals, which viewers shade by themselves. `drift` is the largest distance between a vertex in `shown` and
+// in `source`, as a share of the size of its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
 
-// Adds a mesh to a result, whose mean is a sum until all are added. A state is {name, weights, shownWeights}.
+// Adds a mesh to a result. The mean of the result is a sum until all meshes are added. A state is {name, weights,
+// shownWeights}.
 function addMesh(result, source, shown, states) {
   const exact = new ExactNormals(source);
   const shownPrimitives = shown.primitives.filter((primitive) => primitive.triangles);
@@ -94,7 +95,7 @@ function stands({ times, values, interpolation }) {
   return interpolation !== 'CUBICSPLINE' && values.every((value, i) => value === values[i % width]);
 }
 
-// Compares meshes that no animation moves, in a viewer that sets every target alone, and all targets together. The
+// Compares meshes that no animation moves, in a viewer that sets each target alone, and then all targets together. The
 // extras of the mesh tell how correction targets are driven.
 function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));

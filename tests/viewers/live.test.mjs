@@ -159,8 +159,8 @@ describe('three.js', () => {
       const track = new THREE.NumberKeyframeTrack('face.morphTargetInfluences', [0], weights);
       return new THREE.AnimationClip(name, 1, [track]);
     };
-    // The clips of a baked file: the weights of correction targets are right only if this clip is played alone, and one
-    // target is driven only by clips.
+    // These are the clips of a baked file. Their weights of correction targets are right only if one clip is played
+    // alone. One target is driven by clips alone.
     const clips = [clip('a', [1, 0, 0, 0, 0.5]), clip('b', [0, 0.5, 0, 0, 0])];
     const mixer = new THREE.AnimationMixer(mesh);
     clips.forEach((each) => mixer.clipAction(each).setEffectiveWeight(0.5).play());
@@ -179,7 +179,7 @@ describe('three.js', () => {
   });
 
   test('a mesh that has other targets by now is left alone', () => {
-    for (const count of [2, 18]) { // fewer or more targets, as after VRMUtils.combineMorphs() of three-vrm
+    for (const count of [2, 18]) { // fewer or more targets, as after VRMUtils.combineMorphs()
       const geometry = new THREE.BoxGeometry();
       geometry.morphAttributes.position = Array.from({ length: count }, () => geometry.attributes.position.clone());
       const mesh = new THREE.Mesh(geometry);
@@ -198,7 +198,7 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // Makes a mesh like the loader, below a node with the extras.
+  // Makes a mesh like the loader: the extras are at a node above the mesh.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);
     for (let k = 0; k < TARGETS; ++k) manager.addTarget(MorphTarget.FromMesh(mesh, `target ${k}`, 0));

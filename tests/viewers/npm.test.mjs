@@ -163,7 +163,8 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
-  // The program reads its inputs from its own folder /work (js/src/task.js) and writes its outputs to /work/out.
+  // These names are possible although the program runs in its own folder /work, which has the inputs, and writes to
+  // /work/out (js/src/task.js).
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
   }
@@ -217,7 +218,8 @@ test('where memory runs out, that is said, and the next call works', async () =>
 
 test('progress is said while it goes on, up to its end', async () => {
   const heard = [];
-  // No progress is reported in the first 0.3 s, so the audit has enough samples to take some seconds.
+  // In the first 0.3 s no progress is reported. The audit therefore takes so many samples that it runs for some
+  // seconds.
   await audit(face, { samples: 6001, onProgress: (progress) => heard.push(progress) });
   assert.ok(heard.length > 2, JSON.stringify(heard));
   for (const { label, percent } of heard) assert.ok(typeof label === 'string' && percent >= 0 && percent <= 100);

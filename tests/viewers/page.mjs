@@ -1,5 +1,5 @@
-// The entry point of the page: all viewers behind the same functions, and the comparison, so that pixels need not leave
-// the page.
+// The entry point of the page. It has all viewers behind the same functions. The page also compares pictures, so that
+// pixels need not leave it.
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
@@ -12,9 +12,9 @@ const viewers = { three, babylon, playcanvas, filament };
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
 
-// For each moment {time, truth, view}, compares the viewer's drawing of each file at that time of an animation with its
-// drawing of the still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at
-// each moment.
+// Compares drawings of a viewer at several moments {time, truth, view}: of each file at that time of an animation, and
+// of the still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at each
+// moment.
 window.compareInViewer = async (viewer, files, animation, moments, size) => {
   const { play, drawNormals, dispose } = viewers[viewer];
   const models = [];
@@ -36,9 +36,9 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   return results;
 };
 
-// Compares a viewer's drawing of each file at a time of an animation with its drawing of the still file `truth`.
-// Returns {compared, picture}: the results of compareNormals(), and all drawings beside the true one, lit alike, as a
-// PNG in a data URL.
+// Compares drawings of a viewer: of each file at a time of an animation, and of the still file `truth`. Returns
+// {compared, picture}. `compared` has the results of compareNormals(). `picture` has all drawings beside the true one,
+// lit in the same way, as a PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
   const draw = async (file, animated) => {
@@ -78,8 +78,8 @@ window.sheetOfCloseUps = async (pictures, { width, height }) => {
   return urlOf(sheet, 'image/jpeg');
 };
 
-// Returns the results of a function for each picture of normals that a viewer draws of a file, at times of its first
-// animation.
+// Draws a file in a viewer as pictures of normals, at times of its first animation. Returns the results of
+// made(picture).
 async function ofPictures(viewer, file, times, view, size, made) {
   const { play, drawNormals, dispose } = viewers[viewer];
   const model = await loaded(viewer, file);
@@ -100,9 +100,9 @@ window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
 window.middlesInViewer = (viewer, file, times, view, size) =>
   ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
 
-// Compares the viewer's picture of a file with the still file of the moment four times: after a program has set the
-// weights of the file's own targets, while our package drives the correction targets, after the package has stopped,
-// and after the program has driven them itself.
+// Compares pictures of a file in a viewer with the still file of the same moment, four times: after a program has set
+// the weights of the file's own targets, while our package drives the correction targets, after the package has
+// stopped, and after the program has driven the correction targets itself.
 window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, setWeights, drive, attach, detach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];
@@ -118,8 +118,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   return results;
 };
 
-// Compares in the same way while several clips are blended, whose sum gives the weights. In three.js the mixer of a
-// clone plays them.
+// Compares pictures as compareDriven() does, while several clips are blended whose sum gives the weights. In three.js,
+// the mixer of a clone plays the clips.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

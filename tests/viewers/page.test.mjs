@@ -1,5 +1,5 @@
-// Tests the page with the engine inside: dropped files show the same numbers as the program, bakes have the same bytes,
-// unreadable files get a helpful message, and the page makes no requests.
+// Tests the page with the engine inside. Dropped files must show the same numbers as the program, bakes must have the
+// same bytes, unreadable files must get a helpful message, and the page must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
@@ -62,8 +62,8 @@ async function downloaded(name) {
   }
 }
 
-// Returns the file that the program bakes, or its message if it writes none. A file that misses the tolerance is
-// written, too.
+// Returns the file that the program bakes, or the program's message if it writes no file. The program also writes a
+// file that exceeds the tolerance.
 function bakedByProgram(file) {
   const target = path('expected.glb');
   rmSync(target, { force: true });
@@ -126,7 +126,8 @@ const half = (side, camera) => page.evaluate((right, given) => {
   };
 }, side === 'right', camera);
 
-// Writes a file with the mesh of a file at some weights, with the exact normals there, and with an unused target.
+// Writes a still file: the mesh of another file at some weights, with the exact normals at these weights and a target
+// that does nothing.
 async function writeFrozen(target, source, weights) {
   const io = newIO(), document = await io.read(source), root = document.getRoot();
   const described = (await read(source)).meshes[0], truth = new ExactNormals(described).at(weights);

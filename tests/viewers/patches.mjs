@@ -1,12 +1,12 @@
-// Makes files whose pictures can be read as numbers: a board of squares that each have their own normal and deltas, and
-// a square that one target moves.
+// Makes files whose pictures can be read as numbers: a board of squares, each with its own normal and deltas, and a
+// single square that a target moves.
 import { linear, writeFile } from './fixtures.mjs';
 
 export const BOARD = 12;      // number of squares in a row, and of rows
 export const SIZE = { width: 192, height: 192 };
 const DISTANCE = 20;
 
-// Returns a camera in front of a square of some width around the origin, which then fills the picture.
+// Returns a camera in front of the origin. A square of this width around the origin fills its picture.
 function viewOf(width) {
   const degrees = (2 * Math.atan(width / 2 / DISTANCE) * 180) / Math.PI;
   return { eye: [0, 0, DISTANCE], at: [0, 0, 0], degrees, near: DISTANCE / 2, far: 2 * DISTANCE };
@@ -18,8 +18,8 @@ export const BOARD_VIEW = viewOf(BOARD);
 export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
   [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
 
-// Writes a board. `patches` has {normal, deltas} for each square: a vector, and a vector for each target, or null for
-// all squares if the target has no normals. `rows` has the weights at times 0, 1, 2, ...
+// Writes a board. `patches` has {normal, deltas} for each square: `normal` is a vector, and `deltas` has a vector for
+// each target, or null in all squares if the target has no normals. `rows` has the weights at the times 0, 1, 2, ...
 export function writeBoard(path, patches, rows) {
   const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
   const places = patches.flatMap((_, p) =>
@@ -42,8 +42,8 @@ export const MOVER_VIEW = viewOf(4 * REACH);
 // Returns the weight that moves the middle of the square to a pixel.
 export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
 
-// Writes a square, half a reach left of the middle, that one of several targets moves, by default the last one. `track`
-// is a track for writeFile().
+// Writes a square that stands half a reach left of the middle. One of several targets moves it, by default the last
+// one. `track` is a track for writeFile().
 export function writeMover(path, { targets = 1, moving = targets - 1, names, ...track }) {
   const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
   const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);

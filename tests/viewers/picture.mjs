@@ -1,4 +1,5 @@
-// Draws pictures of wrong beside true normals in the page: files side by side at the same moment, lit by a viewer.
+// Draws pictures with wrong normals beside pictures with true normals, in the page: files side by side at the same
+// moment, lit by a viewer.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import * as filament from './filament_page.mjs';
@@ -8,7 +9,7 @@ const BACKGROUND = '#f8fafc';
 const INK = ['#1e293b', '#64748b'];
 const FAMILY = '"DejaVu Sans", "Liberation Sans", sans-serif';
 const FONTS = [`600 17px ${FAMILY}`, `14px ${FAMILY}`];
-const SAMPLES = 2;  // factor of a larger rendering, in each direction
+const SAMPLES = 2;  // pictures are first drawn this many times larger in each direction
 
 // Draws `items`, each {bytes, caption} with a caption of two lines. Returns a PNG as a data URL.
 export async function drawPicture(viewer, items, animation, time, view, size) {

@@ -24,8 +24,8 @@ const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
 const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
-// The tools, and for each the degrees by which a baked file may be worse afterwards than a file with plain end-point
-// deltas.
+// The commands of the tools. The number is how many degrees worse a baked file may be after a command than a file with
+// plain end-point deltas.
 const PACK_12 = '-vn 12 -vtf -af 0';
 const LINES = [
   ['gltf-transform quantize head.glb web.glb', 1],
@@ -82,21 +82,23 @@ async function measure(line, name, kind) {
 async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
-  // Tools clamp components beyond 1. A vertex may keep such a delta from its author.
+  // Tools clamp components of deltas beyond 1, so a bake may not write such a component. Only the author's own deltas
+  // may have one.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    // A vertex that keeps its author's delta keeps the error of the original file. A bake may add keys, and audit takes
-    // equally many samples between any two keys, so a file with few keys is sampled more often to find the same errors.
+    // A vertex that keeps its author's delta keeps the error of the exported file. A bake may add keys, and audit takes
+    // the same number of samples between any two keys. Therefore a file with few keys is sampled more often, to find
+    // the same errors.
     const exported = await measure(line, name, 'exported');
     let worst = Math.max(plain.worst, exported.worst);
     if (kept.worst > worst + allowed) worst = Math.max(worst, audited(exported.path, '--samples', '81').worst);
     const text = (degrees) => `${degrees.mean.toFixed(3)} / ${degrees.worst.toFixed(2)}`;
     const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
     context.diagnostic(outcome);
-    // The surface must improve as a whole; a single normal may become slightly worse.
+    // The surface must become better as a whole, but a single normal may become slightly worse.
     if (!(kept.worst <= 1.05 * worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
   }
   assert.deepEqual(faults, []);
@@ -109,7 +111,7 @@ describe('a baked file is no worse than one with plain end-point deltas, after t
     test(name, { skip: NO_DATA }, (context) => assertKept(context, name, LINES));
 });
 
-// Checks that a bake after the tools is right, whatever the tools did to positions, base normals and tracks.
+// Checks that a bake after the tools gives true normals, whatever the tools did to positions, base normals and tracks.
 async function assertExactLast(name, lines) {
   for (const [line] of lines) {
     const { path } = await measure(line, name, 'exported');

@@ -25,8 +25,9 @@ export function middleOf(picture, { width, height }) {
   return count > 0 ? sum.map((c) => c / count) : null;
 }
 
-// Draws a picture of normals as a glossy surface under one lamp, as pixels of a canvas: tears look like in a viewer,
-// with the same light for all viewers. Normals are in world space if `view` is given, and otherwise in camera space.
+// Draws a picture of normals as a glossy surface under one lamp, as pixels of a canvas. Tears become visible as in a
+// viewer, with the same light for all viewers. Normals are in world space if `view` is given, and otherwise in camera
+// space.
 export function lit(picture, view, { width, height }) {
   const LAMP = unit([-0.45, 0.6, 0.66]), HALF = unit([LAMP[0], LAMP[1], LAMP[2] + 1]), BASE = [47, 127, 181], BACK = [248, 250, 252];
   const axes = view ? cameraAxes(view) : null, image = new ImageData(width, height);

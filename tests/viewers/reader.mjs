@@ -1,5 +1,5 @@
-// Reads a glTF file as plain arrays, and computes the result that every viewer must show at a time, by the formulas of
-// glTF 2.0, in float32 wherever viewers use float32. Correction targets get no special treatment.
+// Reads a glTF file as plain arrays, and computes what every viewer must show at a time by the formulas of glTF 2.0.
+// Uses float32 wherever viewers do. Correction targets are treated like all others.
 import { Logger, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
@@ -40,8 +40,8 @@ function readPrimitive(primitive) {
 }
 
 // Returns {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end,
-// tracks}]}. The nodes are those with a mesh, in the order of the file; a track names its node by the index in that
-// list.
+// tracks}]}. `nodes` has the nodes with a mesh, in the order of the file. A track names its node by its index in
+// `nodes`.
 export function describe(document) {
   const root = document.getRoot();
   const meshes = root.listMeshes();

@@ -1,5 +1,5 @@
-// Tests the page of `chronormal report`: its numbers equal the program's, its right half shows the true normals, and it
-// makes no requests.
+// Tests the page of `chronormal report`: its numbers must equal the program's, its right half must show the true
+// normals, and it must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
@@ -227,7 +227,7 @@ describe('in Chromium', () => {
     await page.select('.figures select', 'decasteljau:4');
     assert.equal(await page.$$eval('.figures [data-level]', (points) => points.length), 10, 'four nodes, three points, two and one');
     await assertShown(page, figures[0]);
-    // For a face without a figure, the panel names a face that has one.
+    // If a face has no figure, the panel names another face that has one.
     const input = await page.$('.number-field input');
     await input.click({ count: 3 });
     await input.type('7');

@@ -1,5 +1,5 @@
-// Tests how real viewers compute a normal from stored numbers, and a weight from a track: compares their pictures with
-// rules in double. docs/viewers.md has the findings. ctest runs this as `in_viewers`.
+// Tests how real viewers compute a normal from stored numbers, and a weight from a track, by comparing their pictures
+// with rules in double. docs/viewers.md has the findings. ctest runs this as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  all viewers and rules; otherwise only the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';
@@ -34,8 +34,8 @@ const rules = {
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };
 
-// The rule of each viewer, and its allowed error in degrees: PlayCanvas stores deltas and their sum as half floats, and
-// Filament stores directions as quaternions of 16 bits.
+// The rule of each viewer, and its allowed error in degrees. PlayCanvas has larger errors since it stores deltas and
+// their sum as half floats, and Filament since it stores directions as quaternions of 16 bits.
 const viewers = {
   three: { rule: 'sum', degrees: 0.001, splines: true },
   babylon: { rule: 'sum', degrees: 0.001, splines: true },
@@ -47,8 +47,9 @@ const anyWeights = (random) => [0, 1, 2].map(() => 3.5 * random() - 1.5);
 const targetsOfLength = (lengthOf) => (normal, random) =>
   [0, 1, 2].map(() => minus(scaled(randomDirection(random, 0.35), lengthOf(random)), normal));
 
-// The deltas of a square, computed from its normal, and the weights at a key of the track. `free` is the smallest error
-// of Filament in degrees if N + D_k does not have length 1: Filament then treats a frame as orthonormal that is not.
+// Boards: the deltas of a square, computed from its normal, and the weights at a key of the track. If `free` is given,
+// N + D_k does not have length 1, and Filament treats a frame as orthonormal that is not. Its error is then at least
+// `free` degrees.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -61,8 +62,8 @@ const boards = {
     weights: anyWeights,
     free: 90,
   },
-  // A target with a unit normal, and any vector D up to a length of 1.95 as two unit normals h + D/2 and h - D/2 with
-  // the weights s and -s, where h is perpendicular to D.
+  // The first target has a unit normal. The other two together give any vector D of length up to 1.95: the unit normals
+  // h + D/2 and h - D/2 have the weights s and -s, where h is perpendicular to D.
   'a pair of targets for any delta': {
     deltas: (normal, random) => {
       const any = scaled(randomDirection(random), 1.95 * random());
@@ -79,8 +80,8 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// Returns {rows, weights, patches}: the weights at the keys 0, 1, 2, 3 and at TIMES, and squares whose normal is never
-// short by any rule.
+// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, `weights` those at TIMES. By no
+// rule does the normal of a square in `patches` become short.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));
@@ -144,8 +145,8 @@ describe('a real viewer', () => {
   }
   if (!FULL) return;
 
-  // If only some targets have normals, three.js uses the base normal for the missing ones, Babylon.js renders only the
-  // base normal if the first target has none, and PlayCanvas uses only targets with normals.
+  // Viewers differ if only some targets have normals: for a missing normal, three.js uses the base normal. Babylon.js
+  // renders only the base normal if the first target has none. PlayCanvas uses only targets with normals.
   for (const viewer of Object.keys(viewers)) {
     const right = viewer === 'filament';
     test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${viewer}`, async () => {
@@ -192,8 +193,8 @@ describe('a real viewer', () => {
         if (viewer === 'filament') {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
-          // PlayCanvas splits each key into additional tracks for its tangents, and then looks for tangents in each of
-          // these tracks: after the first key there are none, and the target is no longer moved.
+          // PlayCanvas makes separate tracks of the tangents of each key, and then looks for tangents in each of these
+          // tracks. After the first key it finds none, and no longer moves the target.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }

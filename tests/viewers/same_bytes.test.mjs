@@ -1,5 +1,5 @@
-// Checks that the package and the native program write the same bytes and print the same text for every file of the
-// real data: for a few files in ./test --full npm, for all with CHRONORMAL_FULL=1.
+// Checks that the npm package and the native program write the same bytes and print the same text for the files of the
+// real data. ./test --full npm checks a few files; CHRONORMAL_FULL=1 checks all.
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { basename, extname, join, relative } from 'node:path';

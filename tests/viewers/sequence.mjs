@@ -14,7 +14,8 @@ function parse(text) {
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) };
 }
 
-// Makes one mesh whose targets are frames 1, 2, ... as deltas, driven by hat functions with a corner at each frame.
+// Makes one mesh whose targets are the deltas of frames 1, 2, ... The weight of each target is 1 at its own frame and 0
+// at all others, and linear in between.
 export function describeSequence(texts, framesPerSecond) {
   const frames = texts.map(parse);
   const [{ positions, indices }] = frames;

@@ -1,5 +1,5 @@
-// Makes a file that does not move from a moving file at one time, with the positions and the exact normals of the mesh
-// then. A viewer's picture of it is the expected picture of the moving file.
+// Makes a still file from a moving file at one time, with the positions and the exact normals that the mesh has at this
+// time. A viewer's picture of the still file is the expected picture of the moving file.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';

@@ -1,6 +1,6 @@
-// Tests morphs with a normal map, whose tangents `chronormal bake` recomputes, in Babylon.js, which adds up tangents of
-// targets. Compares with a still mesh whose tangents follow from the formula of its surface. ctest runs this as
-// `viewers`.
+// Tests tangents, which a normal map needs, in Babylon.js, which adds up the tangents of targets. `chronormal bake`
+// recomputes the tangents of a morph. The result is compared with a still mesh whose tangents follow from the formula
+// of its surface. ctest runs this as `viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
 //   CHRONORMAL_CHROMIUM  the browser, if it is not in its usual place

@@ -1,4 +1,4 @@
-// Tests the types of the npm package: they match the arguments of its functions and the contents of reports.
+// Tests the types of the npm package. They must match the arguments of its functions and the contents of reports.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
 //   tests/viewers/types.test.mjs
@@ -17,7 +17,7 @@ const { flagsOf } = await load('options.js');
 const COMMANDS = ['audit', 'bake', 'compare', 'inspect', 'sample'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
-// Options that only a call has, and options of the program that only make sense for people or for files of a system.
+// First, options that only a call has. Then, options of the program that only make sense for people or with files.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
 const FOR_PEOPLE = ['help', 'help-all', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table', 'format'];
 
@@ -102,7 +102,7 @@ test('every function takes the options of its command, by its types and when it 
 });
 
 test('what compilers refuse is refused when it runs, and nothing else', () => {
-  const random = randomNumbers(50); // seeds everything that follows
+  const random = randomNumbers(50); // the seed of all random numbers below
   const pick = (list) => list[Math.floor(list.length * random())];
   const names = [...new Set(COMMANDS.flatMap(optionsOf)), ...CALL.filter((name) => name !== 'signal'), 'tolernace', 'viewers', 'toString', 'json', 'output'];
   const words = ['three', 'all', 'gltf', 'slerp', 'lerp', 'flat', 'area', 'area-angle', 'exact', 'keys', 'smallest', 'linear', 'hermite', 'catmull-rom', 'faces',

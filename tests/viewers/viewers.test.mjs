@@ -41,7 +41,7 @@ function bake(input, ...options) {
   const key = [input, ...options].join(' ');
   if (!bakedBefore.has(key)) {
     const output = join(folder, `${basename(input, extname(input))}.${bakedBefore.size}.glb`);
-    // The true normals are area-weighted, whatever weighting the authors chose.
+    // The exact normals of this test are area-weighted, so the bake uses area weights, whatever the author chose.
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...options);
     bakedBefore.set(key, output);
   }
@@ -127,7 +127,7 @@ async function assertSequence(paths, output) {
 }
 
 describe('a fault is found where', () => {
-  // Each function introduces a fault into a description of twist.baked.
+  // Each of these functions makes one fault in a description of twist.baked.
   const faults = {
     'the extra target has no weight': ({ track: { values } }) => values.forEach((_, i) => i % 2 && (values[i] = 0)),
     'the tangents of a key are swapped': ({ track }) => {
@@ -186,8 +186,9 @@ async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) 
 // The weights that a program sets for two targets.
 const WEIGHTS = [0.8, 0.6];
 
-// Tests a mesh of several primitives that no animation moves: a program sets weights, and then sets the weights of the
-// correction targets by the formulas in the file (examples/drive.mjs). Without the second step, the normals are wrong.
+// Tests a mesh of several primitives that no animation moves. A program sets the weights of its targets, and then the
+// weights of the correction targets by the formulas in the file (examples/drive.mjs). Without this second step, the
+// normals are wrong.
 async function assertDriven(page, viewer, parts) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${viewer}.glb`));
   await writeStill(still, { parts });
@@ -195,7 +196,7 @@ async function assertDriven(page, viewer, parts) {
   await assertDrivenLike(page, viewer, still, moved, WEIGHTS);
 }
 
-// Tests in the same way a file whose mesh rests at some weights.
+// Tests, like assertDriven(), a file whose mesh rests at some weights.
 async function assertDrivenLike(page, viewer, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
@@ -221,7 +222,7 @@ async function assertSuzanneDriven(page, viewer) {
   await assertDrivenLike(page, viewer, still, moved, weights);
 }
 
-// Tests in the same way while several independent clips are blended.
+// Tests, like assertDriven(), a mesh while several independent clips are blended.
 async function assertBlended(page, viewer) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${viewer}.glb`));
   await writeStill(still, { parts: 2 });
@@ -285,8 +286,8 @@ describe('Chromium', () => {
       test(`shows right normals of ${name} in ${viewer}`, async () =>
         assertDrawn(browser.page, viewer, original(name)));
     }
-    // The largest error of the cube is 4.02 degrees, and the cube rests most of the time. The stress test has errors of
-    // 2.69 degrees at few vertices.
+    // The cube is at rest most of the time, and its largest error is 4.02 degrees. The stress test has errors of 2.69
+    // degrees at few vertices.
     for (const [name, how] of [
       ['AnimatedMorphSphere', {}],
       ['AnimatedMorphCube', { wrong: 2, count: 41 }],

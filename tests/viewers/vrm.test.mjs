@@ -1,5 +1,5 @@
-// Tests the avatars of docs/viewers.md with the code shown there: an avatar is baked and loaded by three-vrm, whose
-// expressions set the weights of targets; and a face tracker sets weights by name. This runs in Node.js;
+// Tests the avatars of docs/viewers.md with the code that is shown there. An avatar is baked and loaded by three-vrm,
+// whose expressions set the weights of targets. A face tracker sets weights by name. This test runs in Node.js;
 // viewers.test.mjs tests the pixels that are drawn with such weights.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

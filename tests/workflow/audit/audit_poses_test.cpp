@@ -50,14 +50,14 @@ TEST(AuditPoses, the_weights_of_every_node_are_a_subject_each_and_shut_the_gate)
   GltfBuilder builder = two_targets().file();
   builder.json["meshes"][0]["weights"] = {0.25, 0.0};
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});
-  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // another node with the same mesh
+  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // another node that shows the same mesh
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {0.0, 0.0}}});
   const Audit audit = audited(builder).value();
   const std::vector<AuditSubject> opening = subjects_of(audit, Kind::kOpening);
   ASSERT_EQ(opening.size(), 2U);
   EXPECT_EQ(opening[0].node, std::size_t{0});
   EXPECT_EQ(opening[1].node, std::size_t{1});
-  // A requested pose with the same weights has the same errors.
+  // If this pose is requested with the same weights, it has the same errors.
   for (std::size_t n = 0; n < 2; ++n) {
     AuditOptions options;
     options.is_posed = true;

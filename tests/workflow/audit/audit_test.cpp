@@ -50,8 +50,8 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
 // ---- by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
-  // Vertex 0 has only the resting face; 1 and 2 have the sum of an upward and a sideways normal; 3 has only the folding
-  // face.
+  // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. The normals of vertices 1 and
+  // 2 are the sum of an upward and a sideways normal.
   const Audit result = audit_of(hinge().file(), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const AuditSubject& subject = result.subjects[0];
@@ -118,7 +118,8 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
     EXPECT_EQ(subject.mesh, 0U);
     EXPECT_EQ(subject.samples, 1U);
     EXPECT_EQ(subject.vertices, 3U);
-    // Halfway, the error of the vertex of the folding face is 45 degrees; the errors at the edge are smaller.
+    // Halfway, the vertex that belongs only to the folding face has an error of 45 degrees. The errors at the edge are
+    // smaller.
     EXPECT_EQ(subject.error.judged, 3U);
     EXPECT_NEAR(subject.error.worst, 45, 1e-12);
     EXPECT_NEAR(subject.error.sum, 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi, 1e-12);
@@ -192,8 +193,8 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 }
 
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
-  // N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would write them, computed here from three
-  // normals of the oracle.
+  // The file stores N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would. This test computes them
+  // from three normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
   extra.positions.assign(mesh.positions.size(), 0);
@@ -325,8 +326,8 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
   const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
   fixtures::Random random(21);
   const std::vector<float> times = {0, 1, 1.5F, 4};
-  // Each key has in-tangents, weights, and out-tangents. At one key, so few targets are active that the audit does not
-  // interpolate.
+  // Each key has in-tangents, weights and out-tangents. At one of the keys, few targets are active, so that the audit
+  // does not interpolate there.
   std::vector<float> cubic, weights;
   for (std::size_t key = 0; key < times.size(); ++key) {
     for (std::size_t row = 0; row < 3; ++row) {
