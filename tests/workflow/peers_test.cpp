@@ -1,6 +1,6 @@
 // Tests processes that share a task, as threads. Their samples are one output with the bytes of a single process, which
-// appears only when all are done. Their audits have the bytes of a single process, though each processes only its own
-// segments.
+// appears only when all processes are done. Their audits have the bytes of a single process, although each processes
+// only its own segments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +28,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// Lets several threads exchange texts: each call adds a text to a list, and returns the list when all threads have
-// called.
+// A meeting of several threads, in which they exchange texts. Each call adds a text to a list, and returns the list
+// when all threads have called.
 class Meeting {
  public:
   explicit Meeting(std::size_t count) : count_(count), calls_(count) {}
@@ -84,7 +84,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard, peers);
 }
 
-// Lets every peer write its share in a thread. Returns the result of each.
+// Lets every peer write its share in a thread. Returns the results of all peers.
 std::vector<SampleSummary> write_together(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                           const SampleOutput& output, std::size_t count) {
   Meeting meeting(count);
@@ -216,8 +216,8 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
 }
 
-// Makes a sheet whose first half moves only in the first segment, where it becomes large, and whose second half moves
-// in the last one.
+// Makes a sheet of which the first half moves only in the first segment, where it becomes large. The second half moves
+// only in the last segment.
 Motion moving_by_turns() {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.resize(1);
@@ -272,7 +272,7 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard reads the first keyframe, and otherwise only the keyframes of its own segments.
+      // The last shard also reads the first keyframe. Apart from this, it reads only the keyframes of its own segments.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

@@ -443,7 +443,7 @@ TEST(Audit, takes_from_2_to_1000001_samples) {
 // ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
-  // The face of vertex 3 has no area at weight 1/2, where vertex 3 crosses the edge; after that it faces down.
+  // Vertex 3 crosses the edge at weight 1/2. There its face has no area, and after that the face points down.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   const Audit result = audit_of(mesh.file(), {.samples = 3});
@@ -451,8 +451,8 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
-  // Faces at vertices 1 and 2 have an area although their sum is zero, which no tolerance allows; the face of vertex 3
-  // is not drawn.
+  // The faces at vertices 1 and 2 have an area although their sum is zero, and this exceeds every tolerance. The face
+  // of vertex 3 has no area, so it is not drawn.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -461,7 +461,7 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_FALSE(result.is_within(180));
 }
 
-// Two strips of triangles with a hinge between them. At t = 1/2 they coincide where they are equally wide.
+// Two strips of triangles with a hinge between them. At t = 1/2 the strips coincide where they are equally wide.
 struct Hinges {
   std::vector<std::array<int, 3>> from, to;
   std::vector<std::uint32_t> corners;
@@ -529,7 +529,7 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
     const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
-    // A sequence is measured in blocks if the mesh has no stored normals, and output by output with slerp.
+    // A sequence without stored normals is measured in blocks. With slerp it is measured output by output.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
     Motion motion;
@@ -598,8 +598,8 @@ TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
 }
 
 TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_only_where_nothing_is_drawn) {
-  // The face of vertex 3 has no area at weight 1/2. At weight 1 it coincides with the other face: their normals cancel
-  // at the vertices 1 and 2, but both faces are drawn.
+  // The face of vertex 3 has no area at weight 1/2. At weight 1 it coincides with the other face. Their normals then
+  // cancel at the vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at 1
@@ -612,7 +612,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   EXPECT_EQ(error.no_normal, 2U);
   EXPECT_EQ(error.unlit, 1U);
   EXPECT_EQ(error.unlit_at.vertex, 1U);
-  // An infinite normal cannot be lit even there.
+  // An infinite normal cannot be lit, not even where the surface has no normal.
   mesh.normals[11] = 3e38F;
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
   error = audit_of(mesh.file(), {.samples = 3}).error;
@@ -659,8 +659,8 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
 // ---- faults
 
 TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
-  // At weight 1 the sum of both faces is (-4, 0, 4), and N + D is its unit vector; the normal of the free vertex goes
-  // from z to -x.
+  // At weight 1 the sum of both faces is (-4, 0, 4), and N + D is its unit vector. The normal of vertex 3 goes from z
+  // to -x.
   ShadedMesh mesh = hinge();
   const float h = std::sqrt(0.5F);
   mesh.targets[0].normals = {0, 0, 0, -h, 0, h - 1, -h, 0, h - 1, -1, 0, -1};
@@ -670,7 +670,7 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   EXPECT_GT(result.error.worst, 1);
   // Vertex 3 renders (-1, 0, 1) at weight 1.
   mesh.targets[0].normals[11] = 0;
-  // A weighting that differs from the author's.
+  // This weighting differs from the weighting of the author.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
@@ -678,7 +678,8 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
 }
 
 TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
-  // The targets stretch along x and y: separately they do not turn the plane x + z = 0, but shears by both together do.
+  // The targets stretch the mesh along x and y. Each target alone does not turn the plane x + z = 0, but shears by both
+  // together do.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -723,7 +724,7 @@ TEST(Audit, skins_and_baked_sequences_are_notes) {
   builder = hinge().file();
   builder.json["meshes"][0]["extras"]["chronormal"] = {{"version", 1}, {"encode", "exact"}, {"sequence", true}};
   Audit result = audit_of(builder);
-  EXPECT_TRUE(result.subjects.empty());  // its targets have no meaning alone
+  EXPECT_TRUE(result.subjects.empty());  // the targets of a sequence have no meaning alone
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked, Kind::kSequenceTargets}));
   builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   result = audit_of(builder);
@@ -901,7 +902,7 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
   ASSERT_EQ(result.offsets.size(), 1U);
   EXPECT_NEAR(result.offsets[0].worst, 45, 1e-9);
   EXPECT_EQ(result.offsets[0].vertices, 3U);
-  // Every growth of the offset is an error; here it grows from 45 to 60 degrees.
+  // An offset that grows is an error by the amount that it grows. Here it grows from 45 to 60 degrees.
   StoredNormals growing = tilted;
   const float t = std::tan(60 * std::numbers::pi_v<float> / 180);
   growing.of_keyframes[1] = thrice(t, -1, 0);

@@ -1,5 +1,5 @@
-// Compares the errors that an audit finds in each viewer with plain loops: weights as the viewer plays them, positions
-// and true normals at these weights, and the viewer's rendered normals.
+// Compares the errors that an audit finds in each viewer with plain loops. The loops compute the weights that the
+// viewer plays, the positions and true normals at these weights, and the normals that the viewer renders.
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,8 @@ struct Expected {
   std::vector<Real> errors;
   Real displaced = 0;
 
-  // Adds all vertices, at the weights that a viewer plays and at the different weights that the specification demands.
+  // Adds the errors of all vertices. The rendered normals have the weights that the viewer plays, and the true normals
+  // the weights of the specification.
   void add(const ShadedMesh& mesh, std::string_view viewer, const std::vector<double>& played,
            const std::vector<double>& specified) {
     const std::vector<double> none(played.size());
@@ -65,7 +66,7 @@ void expect_same(const ViewerAudit& viewer, Expected expected, const std::string
   Real sum = 0;
   for (const Real e : expected.errors) sum += e;
   std::sort(expected.errors.begin(), expected.errors.end());
-  // Numbers halfway between two representable ones may be rounded either way.
+  // A number halfway between two representable numbers may be rounded either way.
   constexpr double kMean = 0.002, kWorst = 0.1;
   EXPECT_NEAR(viewer.error.mean(), static_cast<double>(sum) / static_cast<double>(expected.errors.size()), kMean);
   EXPECT_NEAR(viewer.error.worst, static_cast<double>(expected.errors.back()), kWorst);
@@ -185,8 +186,8 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
 }
 
 TEST(AuditViewers, a_normal_that_a_viewer_cannot_light_is_counted_for_that_viewer) {
-  // N + D is (0, 0, 0.003) by the specification. Eight bits per component round it to zero, but a direction is kept
-  // exactly.
+  // By the specification, N + D is (0, 0, 0.003). Viewers with eight bits per component round it to zero. Viewers that
+  // keep directions keep it exactly.
   ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals.assign(12, 0);
   mesh.targets[0].normals[11] = -1 + 0.003F;

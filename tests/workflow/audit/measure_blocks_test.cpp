@@ -1,5 +1,5 @@
-// Checks that audits block by block give the same figures as audits vertex by vertex, which are used if single errors
-// are kept.
+// Checks that an audit gives the same figures block by block and vertex by vertex. An audit that keeps single errors
+// works vertex by vertex.
 #include "workflow/audit/measure_blocks.h"
 
 #include <gtest/gtest.h>

@@ -73,8 +73,8 @@ Trs random_place(fixtures::Random& random, double scale) {
   return place;
 }
 
-// Node 0 has the mesh. Nodes 1 and 2 are joints, and 2 is a child of 1; node 3 is a joint and a child of node 4, which
-// has a matrix. The transform of the mesh's own node does not matter.
+// The nodes of a rig. Node 0 has the mesh, and its own transform must not matter. Node 1 is a joint, and node 2 is a
+// joint and a child of node 1. Node 3 is a joint and a child of node 4, which has a matrix.
 struct Rig {
   Trs one, two, three;
   Rows four = {{{{1, 0.25, 0, 2}, {0, 1, 0.5, 0}, {0.125, 0, 1, -1}}}};
@@ -272,7 +272,7 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
     const std::size_t animation = builder.add_animation("talk");
     const std::vector<float> times = {0.25F, 1, 1.5F};
     std::vector<float> keys = {0, 0.5F, 1, 0.25F, 0.5F, 1};
-    if (seed % 2 == 0) keys = {0, 0.5F, 1, 0.25F, 1, 0.25F};  // only joints move between the last two keys
+    if (seed % 2 == 0) keys = {0, 0.5F, 1, 0.25F, 1, 0.25F};  // between the last two keys, only joints move
     builder.add_track(animation, 0, times, keys);
     const Channel turn(random, "rotation", kinds[seed % 3]), grow(random, "scale", kinds[(seed + 1) % 3]),
         move(random, "translation", kinds[(seed + 2) % 3]), other(random, "rotation", kinds[(seed + 1) % 3]);
@@ -359,7 +359,7 @@ TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing
   const MotionError& error = result.subjects[0].error;
   EXPECT_EQ(error.judged, 6U);
   EXPECT_NEAR(error.worst, 90, 1e-12);
-  // At the edge n is (-1, 0, 1), and its z is halved on the screen.
+  // At the edge, n is (-1, 0, 1). On the screen its z is halved.
   const double edge = std::atan2(1, 0.5) * 180 / std::numbers::pi;
   EXPECT_NEAR(error.mean(), (edge + edge + 90) / 6, 1e-12);
   // The skinned surface turns the other way: its normal is (-0.5, 0, 1).
@@ -377,8 +377,8 @@ TEST(SkinnedAudit, what_a_joint_makes_vanish_is_not_judged) {
   EXPECT_EQ(error.faint, 0U);
   EXPECT_EQ(error.no_normal, 3U * 21);
   EXPECT_EQ(result.subjects[0].skinning->judged, 0U);
-  // A joint that is flat in z keeps only the x of the true normal at the edge, and nothing of the rendered
-  // normal (0, 0, 1).
+  // A joint that is flat in z keeps of the true normals at the edge only their x. Of the rendered normal (0, 0, 1) it
+  // keeps nothing.
   const Audit flat = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0}}}), {.samples = 2});
   EXPECT_EQ(flat.subjects[0].error.unlit, 3U);
   EXPECT_EQ(flat.subjects[0].error.no_normal, 3U);

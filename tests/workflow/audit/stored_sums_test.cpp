@@ -19,8 +19,8 @@ struct Fixture {
   std::vector<JudgedOutput> outputs;
 };
 
-// Every third vertex has a zero normal. Target 0 turns all vertices, 1 none, 2 the last one, 3 some in the middle, 4
-// has no normals, and 5 turns every second vertex.
+// Every third vertex has a zero normal. Target 0 turns all vertices, target 1 none, target 2 the last one, target 3
+// some in the middle, and target 5 every second vertex. Target 4 has no normals.
 Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   Fixture result;

@@ -31,8 +31,8 @@ PointRows rows_of(const Motion::Keyframe& keyframe) {
   return rows;
 }
 
-// A sum of some terms, and the sum of their absolute values. The sum counts as 0 if it is below the rounding error of
-// that many terms.
+// A sum of some terms, and the sum of their absolute values. If the sum is below the rounding error of so many terms,
+// it counts as 0.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;

@@ -1,6 +1,6 @@
-// Checks the errors that the smallest candidate leaves on the captured face between the keys, at instants that were
-// used neither for fitting nor for judging. The environment variable CHRONORMAL_DATA names the folder of the face;
-// CHRONORMAL_FULL tests all of its keys instead of the first few.
+// Checks the errors that the smallest candidate leaves on the captured face. The test looks at instants between the
+// keys that the bake used neither for fitting nor for judging. The environment variable CHRONORMAL_DATA names the
+// folder of the face; with CHRONORMAL_FULL, all of its keys are tested instead of the first few.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ constexpr std::size_t kTargets = 57, kMostTargets = 112, kMostTargetsAlone = 80,
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
-// Replaces the output of the only sampler, and keeps the given number of keys.
+// Returns the GLB with only its first `keys` keys, in which target i has the weights of target from[i].
 std::string with_track(const GltfPlayer& player, const std::string& glb, const std::vector<std::size_t>& from,
                        std::size_t keys) {
   auto json = player.json;
@@ -82,8 +82,8 @@ struct Errors {
   }
 };
 
-// Returns the errors of all vertices in some poses, given as weights before and after the bake. Normals shorter than a
-// thousandth of the base's are left out.
+// Returns the errors of all vertices in some poses, given as weights before and after the bake. Leaves out samples
+// whose normal is shorter than a thousandth of the normal in the base.
 Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<double>, std::vector<float>>>& poses) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<Vector> base = truth.normals_at(std::vector<double>(kTargets, 0.0));

@@ -1,4 +1,4 @@
-// Tests deltas that all kinds of viewers render alike, and the guarantee that a bake makes nothing worse.
+// Tests deltas that all kinds of viewers render in the same way, and the guarantee that a bake makes nothing worse.
 
 #include <gtest/gtest.h>
 
@@ -70,7 +70,7 @@ std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   return result;
 }
 
-// Returns each target alone, with the weights of correction targets by the rule of docs/formats.md.
+// Returns the weights for each target alone, with correction targets by the rule of docs/formats.md.
 std::vector<Weights> alone(const Baked& baked) {
   std::vector<Weights> result;
   const Json& mesh = baked.mesh();
@@ -274,7 +274,7 @@ TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_g
         GltfBuilder builder = test::hills_document(2, seed);
         builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
         builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
-        BakeOptions geometric;  // the true normals are the oracle's, not the author's
+        BakeOptions geometric;  // the true normals of this test follow from areas alone, not from the author's normals
         geometric.weighting = Weighting::kArea;
         geometric.encoding = encoding;
         const Baked result = baked(builder, geometric);
@@ -303,7 +303,8 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-// Correction targets are short and weights are long unless viewers that keep unit normals become worse by that.
+// A bake prefers short correction targets with long weights. It does not use them if viewers that keep unit normals
+// would become worse.
 TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     BakeOptions plain;
@@ -360,7 +361,7 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
   }
 }
 
-// The correction of a single target must be right halfway, where its weight is largest.
+// A correction of a single target must give true normals halfway, where the weight of the correction is largest.
 TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
   for (const Lengths lengths : {Lengths::kUnit, Lengths::kShort, Lengths::kFree}) {
     GltfBuilder builder = test::hills_document(1, 5);

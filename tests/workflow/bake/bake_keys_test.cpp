@@ -52,7 +52,7 @@ std::vector<VectorD> positions_at(const Motion& motion, double time) {
 }
 
 // The largest angle in degrees between the normals of the file and the vertex normals of the motion, and the largest
-// distance of a vertex; the mesh has a size of about 1.
+// distance of a vertex in the file from the motion. The mesh has a size of about 1.
 struct Off {
   double degrees = 0, distance = 0;
 };
@@ -157,7 +157,7 @@ TEST(BakeKeys, no_key_could_be_spared) {
   const double tolerance = 0.5;
   const Keys keys = keys_of(motion, tolerance);
   ShownGlb glb(keys.glb);
-  // If any key is removed, a line over the two intervals has an error beyond the tolerance at some normal.
+  // Every key is needed: without it, one line over both of its intervals exceeds the tolerance at some normal.
   const std::vector<float> times = glb.times;
   ASSERT_GT(times.size(), 3U);
   for (std::size_t k = 1; k + 2 < times.size(); ++k) {

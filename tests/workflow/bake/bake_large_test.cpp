@@ -23,8 +23,8 @@ void append_word(std::string& text, std::uint32_t value) {
 }
 void append_float(std::string& text, float value) { append_word(text, std::bit_cast<std::uint32_t>(value)); }
 
-// A GLB of a bumpy grid with normals, all of whose vertices morph: each of four targets lifts a quarter, and an
-// animation drives all four.
+// A GLB of a bumpy grid with normals, in which all vertices morph. Each of four targets lifts a quarter of the grid,
+// and an animation drives all four.
 class MorphingGrid {
  public:
   explicit MorphingGrid(std::uint32_t side) : side_(side), count_(side * side) {

@@ -55,7 +55,7 @@ std::vector<test::Pose> poses_alone(std::size_t target) {
   return poses;
 }
 
-// Returns the error of deltas over the track of another file with the same targets.
+// Returns the error of the deltas of one file over the track of another file with the same targets.
 ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform = false) {
   test::GltfTruth truth(*track.before, 0);
   truth.uniform = uniform;
@@ -72,7 +72,7 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     add_dance(builder);
     const Baked fitted = bake_misled(builder, endpoint());
     ASSERT_EQ(fitted.error, "");
-    if (!alone.report.changed || !fitted.report.changed) continue;  // a normal that turns over gets a larger error
+    if (!alone.report.changed || !fitted.report.changed) continue;  // skips seeds in which a normal turns over
     ++seeds;
     EXPECT_EQ(fitted.report.added_targets, 0U);
     EXPECT_GE(fitted.report.meshes[0].fitted_elements, 24U);
@@ -104,7 +104,7 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
   const test::GltfTruth truth(*baked.before, 0);
   std::vector<std::vector<float>> deltas;
   for (const auto& target : baked.mesh()["primitives"][0]["targets"]) deltas.push_back(baked.numbers(target["NORMAL"]));
-  // The fit minimises the component of the rendered normal that is perpendicular to the true one.
+  // The fit minimises the component of the rendered normal that is perpendicular to the true normal.
   const auto across = [&](std::size_t vertex) {
     double sum = 0;
     for (const test::Pose& pose : poses) {
@@ -156,7 +156,7 @@ TEST(BakeLines, the_error_of_weights_beyond_0_and_1_is_stated) {
     builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{-0.5F, 1, 1.5F});
     const Baked baked = bake_misled(builder, endpoint());
     ASSERT_EQ(baked.error, "");
-    if (!baked.report.changed) continue;  // a normal that turns over gets a larger error
+    if (!baked.report.changed) continue;  // skips seeds in which a normal turns over
     ++seeds;
     const double worst = error_on_track(baked, baked).worst, stated = baked.report.meshes[0].largest_error;
     EXPECT_LE(worst, stated + 1e-3);
@@ -217,7 +217,7 @@ TEST(BakeLines, without_an_animation_each_target_is_for_itself) {
 }
 
 TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
-  // One file has weights of a billionth; in the other, two targets have almost the same weights, up to a
+  // In one file, the weights are about a billionth. In the other, two targets have the same weights up to a
   // ten-thousandth.
   GltfBuilder tiny = test::hills_document(3, 6), alike = test::hills_document(3, 6);
   tiny.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{1e-9F, 2e-9F, 0, 0, 1e-9F, 1e-9F});
@@ -229,7 +229,7 @@ TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
                              with_alike = deltas_of(of_alike, k);
     for (std::size_t i = 0; i < deltas.size(); ++i) {
       EXPECT_NEAR(with_tiny[i], deltas[i], 1e-3);
-      EXPECT_NEAR(with_alike[i], deltas[i], 1.5);  // half of the difference that both together must correct
+      EXPECT_NEAR(with_alike[i], deltas[i], 1.5);  // half of the difference that both deltas together must correct
     }
   }
 }

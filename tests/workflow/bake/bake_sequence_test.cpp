@@ -75,7 +75,7 @@ Surface split_surface(const ShownGlb& glb) {
   return surface;
 }
 
-// Computes n of every group by cross products of the positions in the file.
+// Returns n of every group at a time, by cross products of the positions in the file.
 std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, double time) {
   const std::vector<double> weights = glb.weights(time);
   std::vector<VectorD> positions, groups(surface.group.size(), VectorD{});
@@ -203,7 +203,7 @@ TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
   }
 }
 
-// Returns the normal of a viewer that keeps only the direction of N + D: N + sum w (unit(N + D) - N).
+// Returns the normal in a viewer that keeps only the directions of the normals N + D: N + sum w (unit(N + D) - N).
 VectorD unit_rule(const ShownGlb& glb, std::size_t v, const std::vector<double>& weights) {
   VectorD base{}, sum{};
   for (std::size_t c = 0; c < 3; ++c) base[c] = sum[c] = glb.normals[3 * v + c];
@@ -357,7 +357,8 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // With a hard edge they separate at the crease without additional vertices, since each half has its own already.
+  // With a hard edge, the two halves separate at the crease. No vertices are added, since each half already has its
+  // own.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
   EXPECT_EQ(hard.vertices(), 8U);
@@ -425,12 +426,12 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
   const ShownGlb glb(file);
   EXPECT_EQ(baked.warnings.size(), 1U);
-  // Positions are base + delta, and the sphere has shrunk to half a millionth, so the rounding of positions is part of
-  // the surface.
+  // The stored positions are base + delta. The sphere has shrunk to half a millionth of its size, so the rounding of
+  // the positions is part of the surface.
   expect_exact(glb, smooth_surface(motion));
 }
 
-// The last keyframe has elements that the first segment gives no information about.
+// In the last keyframe, elements shrink or appear about which the first segment tells nothing.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {
@@ -509,7 +510,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // The error must be smaller than with unit normals at the keys.
+  // With the bends, the error must be smaller than with unit normals at the keys alone.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);
@@ -693,7 +694,7 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// Formats a figure like the documents, which print "below" the last digit if a number rounds to zero.
+// Formats a figure like the documents. If a number rounds to zero, the documents print "below" and the last digit.
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

@@ -1,5 +1,5 @@
-// Checks that the smallest candidate is judged by the normals behind the skin: the tolerance holds with joints that
-// squash, and in viewers with different rules for skinned normals. Joints that rotate and scale uniformly change
+// Checks that the smallest candidate is judged by the normals behind the skin. The tolerance must hold with joints that
+// squash, and in viewers with different rules for skinned normals. Joints that rotate and scale uniformly must change
 // nothing.
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ const BakedCandidate& chosen(const Baked& baked) {
   return baked.report.meshes.at(0).candidates.at(0);
 }
 
-// Makes hills whose targets all have the same weights, one second after each other.
+// Makes hills with a track of poses that are one second apart. In each pose, all targets have the same weight.
 GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(kTargets, seed);
   std::vector<float> times, values;
@@ -128,8 +128,8 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     float weight;
     double tolerance, height;
   };
-  std::size_t would_not_do = 0;  // number of choices without the skin that miss the tolerance
-  // In the last four cases, no candidate within the tolerance before skinning is within it behind the joint.
+  std::size_t would_not_do = 0;  // number of choices without the skin that exceed the tolerance
+  // In the last four cases, every candidate that is within the tolerance before skinning exceeds it behind the joint.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},
                         {5, 0.2F, 1, 0.25},
@@ -267,7 +267,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // A joint flattens normals for viewers of one kind, and stretches them for viewers of the other.
+  // This joint flattens normals for viewers of one kind, and stretches them for viewers of the other kind.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -279,7 +279,7 @@ TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
 }
 
 TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
-  // If a matrix lowers the mesh, its inverse transpose raises it.
+  // If the blended matrix lowers the mesh, its inverse transpose treats normals like a matrix that raises the mesh.
   const auto viewers_of = [](Real height, const std::vector<Viewer>& viewers) {
     GltfBuilder builder = played_hills(3, {0, 0.4F});
     add_skin(builder, skin_of(false), scaled(1, 1, height));
@@ -290,7 +290,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   const std::vector<ViewerChange> both = viewers_of(0.25, {kThree, kBevy});
   const ViewerChange raised = viewers_of(4, {kThree}).at(0), even = viewers_of(1, {kThree}).at(0);
   ASSERT_EQ(both.size(), 2U);
-  for (std::size_t kind = 0; kind < 2; ++kind) {  // deltas of the file, or random ones
+  for (std::size_t kind = 0; kind < 2; ++kind) {  // 0: with the deltas of the file, 1: with random deltas
     const ShownErrors &lowered = both[0].poses[kind].before, &bevy = both[1].poses[kind].before;
     EXPECT_GT(even.poses[kind].before.judged, 0U);
     EXPECT_GT(lowered.mean, 1.2 * even.poses[kind].before.mean);
@@ -333,7 +333,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
 }
 
 TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
-  // Node 0 has no skin, and node 3 has a skin that flattens: the tolerance holds for both.
+  // Node 0 has no skin, and node 3 has a skin that flattens. The tolerance must hold for both.
   const Trs flat = scaled(1, 1, 0.25);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), flat);
@@ -347,7 +347,7 @@ TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
   EXPECT_LT(seen_error(baked, skin_of(false), standing(flat)).worst, 1.02 * kTolerance);
   EXPECT_LT(seen_error(baked, skin_of(false), standing({})).worst, 1.02 * kTolerance);
   EXPECT_TRUE(chosen(baked).within);
-  // If the joint stretches, errors on the node without a skin are larger than on the skinned one.
+  // If the joint stretches, the node without a skin has larger errors than the node with the skin.
   builder.json["nodes"][1]["scale"] = {1, 1, 8};
   const Baked raised = test::bake_document(builder, smallest());
   EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
@@ -379,8 +379,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
-  // The deltas of the file are exact plus noise, so for some vertices a delta that is better before skinning is worse
-  // after it.
+  // The deltas of the file are exact plus noise. Therefore some vertices have deltas that are better before skinning
+  // and worse after it.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

@@ -1,6 +1,6 @@
-// Tests the smallest candidate of a bake: correction targets that only the animations of the file drive, within a
-// tolerance and a limit; and its guarantees for long files, for files that were baked before, and for primitives that
-// share arrays.
+// Tests the smallest candidate of a bake, whose correction targets are driven only by the animations of the file,
+// within a tolerance and a limit. Also tests its guarantees for long files, for files that were baked before, and for
+// primitives that share arrays.
 
 #include <gtest/gtest.h>
 
@@ -190,9 +190,9 @@ TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_product
     track.keys.values = {0, 0.001 * static_cast<double>(t % 7), 0.001 * static_cast<double>(t % 11), 0, 0, 0};
   }
   tracks[77].keys.values[2] = 0.3;   // a single weight, the largest one
-  tracks[78].keys.values[5] = -0.2;  // the other weight
-  // In the middle of one track both targets move at once, but neither is at its maximum. In another track they move one
-  // after the other, so their product never reaches the product of their maxima.
+  tracks[78].keys.values[5] = -0.2;  // the largest absolute weight of the other target
+  // In the middle of track 311, both targets are active at once, but neither is at its maximum. In track 402, they are
+  // active one after the other, so their product never reaches the product of their maxima.
   tracks[311].keys.values[2] = tracks[311].keys.values[3] = 0.1;
   tracks[402].keys.values = {0.15, 0, 0, 0, 0, 0.15};
   EXPECT_EQ(telling_tracks(tracks, 500).size(), 500U);
@@ -220,7 +220,7 @@ TEST(BakeSmallest, is_not_beaten_by_exact_in_bytes_and_error_at_once_whatever_th
       exact.encoding = BakeEncoding::kExact;
       const Baked ours = test::bake_document(builder, smallest(0.5)), theirs = test::bake_document(builder, exact);
       ASSERT_TRUE(ours.ok() && theirs.ok()) << ours.error << theirs.error;
-      constexpr std::size_t kNames = 8;  // number of places where the name "smallest" is longer than "exact"
+      constexpr std::size_t kNames = 8;  // bytes by which the name "smallest" makes the file longer than "exact" does
       const bool is_smaller = theirs.bytes.size() + kNames < ours.bytes.size();
       const double error = test::track_error(ours).worst, of_exact = test::track_error(theirs).worst;
       EXPECT_FALSE(is_smaller && 1.01 * of_exact < error)

@@ -188,7 +188,7 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
       RecordProperty(std::string(name_of(encoding)) + std::to_string(keyframes), std::to_string(run.peak_growth));
     }
     EXPECT_GT(bytes[1], 5 * bytes[0]);
-    // Linux counts the pages of a thread in batches of 64, so each of the two peaks may be wrong by one batch.
+    // Linux counts the pages of a thread in batches of 64. Each of the two peaks may therefore be wrong by one batch.
     constexpr std::size_t kBatches = 2 * 64 * 4096;
     EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
     EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // the peak would show if all output were kept in memory
@@ -207,9 +207,9 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   options.kept_bytes = 0;
   const std::size_t before = folder.entry_count();
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint, BakeEncoding::kHarmless}) {
-    // The callback of progress cuts the input file, before or after some arrays are written.
+    // The callback of progress shortens the input file, before or after some arrays are written.
     for (const std::size_t step : {0U, 2U, 4U, 12U}) {
-      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // at that step they have read everything
+      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // by then, these encodings have read everything
       folder.write("walk.pc2", whole);
       Result<Input> input = open_input(options);
       ASSERT_TRUE(input.ok());
@@ -249,7 +249,7 @@ TEST(BakeStream, a_keyframe_that_cannot_be_read_ends_it_in_whatever_pass) {
           },
           0);
       const Result<SequenceBake> baked = bake_sequence(stream, way.options, folder / "out.glb", false);
-      if (baked.ok()) {  // the damaged part was read in advance and not needed
+      if (baked.ok()) {  // the damaged part had been read in advance, or was not needed
         EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb) << way.name << failing;
         std::filesystem::remove(folder / "out.glb");
         continue;

@@ -1,6 +1,6 @@
-// Tests tangents of normal-mapped morphs for viewers that add them up: where a target has weight 1, a tangent must have
-// length 1, be perpendicular to the true normal, and follow the texture. The oracle transports texture coordinates in
-// long double.
+// Tests tangents of normal-mapped morphs for viewers that add up tangents. Where a target has weight 1, a tangent must
+// have length 1, be perpendicular to the true normal, and follow the texture. The oracle transports texture coordinates
+// in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,8 +36,8 @@ Vector tangent_of(const ShadedMesh& mesh, std::size_t v) {
   return {mesh.tangents[4 * v], mesh.tangents[4 * v + 1], mesh.tangents[4 * v + 2]};
 }
 
-// Returns the true normal of a vertex at weight 1: the geometry's normal, turned by the rotation of the stored normal
-// in the base.
+// Returns the true normal of a vertex at weight 1. It is the normal of the geometry, turned by the rotation that takes
+// the geometry's normal of the base to the stored normal.
 Vector right_normal(const ShadedMesh& mesh, std::size_t v, std::size_t target) {
   std::vector<double> none(mesh.targets.size()), one = none;
   one[target] = 1;

@@ -38,7 +38,7 @@ std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::siz
     pose.before[target] = i / 100.0;
     pose.after.assign(after["primitives"][0]["targets"].size(), 0.0F);
     pose.after[target] = static_cast<float>(i / 100.0);
-    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // the mesh stays flat
+    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // the mesh stays flat-shaded
       poses.push_back(std::move(pose));
       continue;
     }
@@ -197,7 +197,7 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
-  // Bakes of other files do not change.
+  // A bake of another file rescales nothing and keeps the base normals.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
   EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
@@ -391,7 +391,8 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
 }
 
 TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
-  // There are more keys than poses that are measured, so the loss of omitted terms is bounded by a sum.
+  // There are more keys than poses that the bake measures, so it bounds the loss of the terms that it leaves out by a
+  // sum.
   GltfBuilder builder;
   test::Hills hills(9);
   std::vector<std::vector<float>> deltas;
@@ -429,8 +430,8 @@ TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
 }
 
 TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_over) {
-  // n = (1 + w0 + w1 + w2)^2 n(0) is 0.16 n(0) at weights of -0.2. No single square or product changes the length as
-  // much as all together.
+  // n = (1 + w0 + w1 + w2)^2 n(0), which is 0.16 n(0) if all weights are -0.2. No single square or product changes the
+  // length as much as all together.
   GltfBuilder builder;
   test::Hills hills(8);
   const std::vector<float>& grow = hills.positions;
@@ -492,8 +493,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // In between, and when three targets are active, the result is a fit, which is closer to the requested weighting than
-  // area-weighted normals are.
+  // In between, and when three targets are active, the result is only a fit. It must be closer to the requested
+  // weighting than area-weighted normals are.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {

@@ -1,4 +1,4 @@
-// Tests every demand of viewers and of the specification on correction targets, besides true normals.
+// Tests, besides true normals, every demand that viewers and the specification make on correction targets.
 
 #include <gtest/gtest.h>
 
@@ -232,7 +232,7 @@ TEST(BakeTraps, cubic_splines_get_keys_and_a_stated_error) {
   const test::ShownError error = test::track_error(result);
   test::expect_exact(error);
   EXPECT_LE(error.worst, result.report.meshes[0].resampling_error + 1e-3) << "but for float32";
-  // The existing weights must not change.
+  // The bake must not change the weights of the file's own targets.
   for (int i = 0; i <= 100; ++i) {
     const auto before = result.before->weights_at(0, 0, i / 100.0), after = result.after->weights_at(0, 0, i / 100.0);
     for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(before[k], after[k], 1e-6F);
@@ -352,7 +352,7 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
-// A triangle falls over to one side, and its base normal points to the other side, as in double-sided viewers.
+// A triangle falls over to one side. Its base normal points to the other side, as in double-sided files.
 TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
   for (const float tilt : {0.0F, 1e-3F}) {
     GltfBuilder builder;
@@ -457,7 +457,7 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
     EXPECT_EQ(result.mesh()["primitives"][0]["attributes"][key], value);
   for (const Json& accessor : result.before->json["meshes"][0]["primitives"][0]["attributes"])
     EXPECT_EQ(result.numbers(accessor), result.before->accessor(accessor.get<std::size_t>()));
-  // New items come after the existing ones.
+  // New items of the lists must come after the existing items.
   for (const Json::json_pointer& list : {Json::json_pointer("/accessors"), Json::json_pointer("/bufferViews"),
                                          Json::json_pointer("/meshes/0/primitives/0/targets")}) {
     Json& items = patched[list];

@@ -1,5 +1,5 @@
-// Tests rigs that nothing drives. Their correction targets have weights that are quadratics of the other weights.
-// Compares the file with cross products in random poses, and evaluates its formulas independently.
+// Tests rigs that nothing drives. The weights of their correction targets are quadratics of the weights of the other
+// targets. Compares the file with cross products in random poses, and evaluates its formulas independently.
 
 #include <gtest/gtest.h>
 
@@ -132,7 +132,7 @@ TEST(BakeUndriven, a_plan_says_what_more_and_more_extra_targets_gain) {
 }
 
 TEST(BakeUndriven, poses_that_are_given_decide_what_is_corrected) {
-  // The targets 0 and 1 are the only ones that are active together.
+  // Only the targets 0 and 1 are ever active together.
   const auto poses = parse_poses("[[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [1, 1, 0, 0, 0, 0]]", "poses.json");
   ASSERT_TRUE(poses.ok());
   BakeOptions options = smallest();
@@ -173,8 +173,8 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// The warning about a mesh that nothing drives must fit this bake: correction targets were written, or would gain
-// nothing.
+// A bake warns about a mesh that nothing drives. The warning must be true of this bake: either correction targets were
+// written, or they would gain nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {
     const auto& warnings = baked.report.warnings;

@@ -1,5 +1,5 @@
-// Compares the results of a bake's judge with a list of all errors: the average, the worst, the 99.9 % quantile and the
-// torn edges. Also checks that a target alone is judged at its end.
+// Compares the results of a bake's judge with a list of all errors: the average, the worst error, the 99.9 % quantile
+// and the torn edges. Also checks that each target alone is judged at its end.
 #include "workflow/bake/judge/judge.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Compares the search for the largest angle, which evaluates few elements and poses, with an evaluation of all of them.
+// Tests the search for the largest angle, which evaluates only a few elements and poses. Compares the result with an
+// evaluation of all of them.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
@@ -41,8 +42,8 @@ class Field {
   [[nodiscard]] std::vector<Vec3d> normals(const std::vector<double>& pose) const {
     return normals_from_positions(shading_, pose);
   }
-  // Returns the difference between both targets together and the sum of their separate effects, from normals at weights
-  // 0 and 1. For a target with itself, this is the quadratic part in its weight.
+  // Returns how much the normals with both targets at weight 1 differ from the sum of the separate effects of the
+  // targets. For a target with itself, returns the quadratic part in its weight.
   [[nodiscard]] std::vector<Vec3d> term(std::size_t i, std::size_t j) const {
     std::vector<double> none(kTargets, 0.0), a = none, b = none, both = none;
     a[i] += 1;

@@ -42,7 +42,7 @@ TEST(PoseMemory, takes_no_more_than_it_may) {
   PoseMemory memory(3 * kEach + 1);
   for (int i = 0; i < 10; ++i) {
     memory.keep(Pose{0, 1.0 * i}, vectors_of(i));
-    memory.keep(Pose{0, 0}, vectors_of(i));  // is already there, and takes no additional memory
+    memory.keep(Pose{0, 0}, vectors_of(i));  // this pose is kept already, so it takes no additional memory
   }
   for (int i = 0; i < 10; ++i) EXPECT_EQ(memory.find(Pose{0, 1.0 * i}) != nullptr, i < 3) << i;
   PoseMemory none(0);

@@ -23,7 +23,7 @@ double stated_error(const std::vector<ExtraWeight>& extras) {
 }
 
 TEST(Tracks, errors_of_extra_weights_add_up) {
-  // All corrections may turn the same normal in the same direction.
+  // The worst case is that all corrections turn the same normal in the same direction.
   const std::vector<ExtraWeight> extras = {{0, 0, 1, -1, 0.5}, {0, 1, 0, 1, 0.7}, {1, 1, 1, -1, 0.2}};
   double sum = 0;
   for (const ExtraWeight& extra : extras) {
@@ -72,7 +72,7 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
   MeshWeights weights{
       {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
   for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-    // The tolerance requires exactly this number of pieces: the error decreases with its square.
+    // The error falls with the square of the number of pieces, so this tolerance requires exactly so many pieces.
     const auto count = static_cast<double>(pieces);
     Candidate form;
     form.own = {columns[0]};

@@ -30,7 +30,7 @@ using test::Real;
 using test::ShadedMesh;
 using Json = GltfBuilder::Json;
 
-constexpr double kNoise = 1e-4;       // degrees, for rounding normals and their deltas to float32
+constexpr double kNoise = 1e-4;       // largest error in degrees by rounding normals and their deltas to float32
 constexpr double kExactLimit = 1e-6;  // radians
 
 Result<BlendComparison> try_comparing(const GltfBuilder& builder, const BlendCompareOptions& options) {
@@ -117,7 +117,7 @@ Motion star_of(const BlendSet& set) {
 TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     ShadedMesh mesh = random_sheet(seed, 7, 3, 0.4);
-    // The target moves other vertices than its normals change.
+    // The vertices that the target moves are not those whose normals it changes.
     for (std::size_t i = 0; i < 90; ++i) mesh.targets[1].positions[i] = 0;
     for (std::size_t i = 0; i < 60; ++i) mesh.targets[1].normals[i] = 0;
     const BlendComparison result = compared(mesh.file(), {.rows = 4, .seed = seed});
@@ -260,7 +260,7 @@ TEST(BlendCompare, end_points_are_right_for_each_target_alone_at_weight_one_and_
 }
 
 TEST(BlendCompare, least_squares_are_over_other_random_weights_but_over_those_of_an_animation) {
-  // There are as many poses as targets, so a fit to the judged poses would have almost no error.
+  // There are as many poses as targets, so a fit to the poses that are judged would have almost no error.
   const Motion star = star_of(test::random_blend_set(6, {.targets = 12, .reach = 0.7}));
   const BlendErrors random = compared(star, {.rows = 3, .active = 6}).subjects[0].errors[0];
   EXPECT_GT(degrees(quality(random, BlendDeltas::kLeastSquares).mean()), 0.2);
@@ -343,8 +343,7 @@ TEST(BlendCompare, meshes_without_normals_and_those_that_stand_still_are_counted
 }
 
 TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_lit_is_off_by_180_degrees) {
-  // The deltas cancel the base normal: at weight 1 the file renders a zero normal, although the geometry has a normal
-  // there.
+  // The deltas cancel the base normal. At weight 1 the file renders a zero normal, although the geometry has a normal.
   ShadedMesh mesh = random_sheet(5, 5, 1, 0.1);
   mesh.targets[0].normals.clear();
   for (const float c : mesh.normals) mesh.targets[0].normals.push_back(-c);
@@ -363,7 +362,7 @@ TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_l
 }
 
 TEST(BlendCompare, normals_that_collapse_are_left_out) {
-  // The target folds a triangle onto a line, so there is no normal at weight 1 only.
+  // The target folds a triangle onto a line, so only at weight 1 there is no normal.
   GltfBuilder builder;
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};

@@ -36,8 +36,8 @@ const SchemeComparison& row(const Comparison& comparison, const std::string& sch
 }
 
 TEST(Compare, one_face_by_hand) {
-  // The normal turns from +z to +x by 90 degrees. Halfway, at t = 1/2, linear interpolation is compared with the exact
-  // cross product.
+  // The normal turns by 90 degrees from +z to +x. Linear interpolation is compared with the exact cross product at t =
+  // 1/2.
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
@@ -304,8 +304,8 @@ TEST(Compare, every_weighting_agrees_with_the_oracle) {
         for (std::size_t i = 0; i < kSamples; ++i) {
           const Real t = static_cast<Real>(i) / (kSamples - 1);
           const auto exact = reference::exact_unit_normal(element, t);
-          // For other weightings, the scheme polynomial is the quadratic through three normals, whose lengths only the
-          // library knows.
+          // For weightings other than area, `polynomial` is a quadratic through three normals. Only the library knows
+          // the lengths of these normals, so the oracle takes the exact normal.
           const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
           sum += reference::angle(exact.value(), found.value());
         }
@@ -337,7 +337,8 @@ TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
-  // The elements are 240 corners in 42 points, but the largest error is reported for its own vertex.
+  // The 240 corners are in 42 points. Each corner is a separate vertex, and the largest error must be reported for a
+  // vertex, not for a point.
   Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.01, 22));
   for (std::size_t v = 0; v < 240; ++v) {  // only the point of vertex 239 moves far
     bool same = true;
@@ -401,7 +402,7 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// Normals of faces that cancel are judged if they exist; integers tell where they do not.
+// Where the normals of faces cancel, a vertex is judged only if its normal exists. Integers tell where it does not.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;
@@ -524,8 +525,8 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// The normal of a vertex equals the normal of its only polygon, both for small polygons, which are computed at each
-// corner, and for larger ones.
+// A vertex with a single polygon must have the normal of the polygon, for small polygons, whose normals are computed at
+// each corner, and for larger ones.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
     for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {

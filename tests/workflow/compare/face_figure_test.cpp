@@ -55,7 +55,8 @@ void expect_near(const Vec3d& found, const Vector& expected, const std::string& 
   EXPECT_LT(reference::length(reference::subtract(real(found), expected)), kNear) << what;
 }
 
-// Checks that every point of de Casteljau's levels is on its arc, by the literal recursion.
+// Checks by the literal recursion that every point of de Casteljau's levels is on the arc between two points of the
+// level before.
 void expect_levels(const SchemeFigure& scheme, const reference::Triangle& triangle, std::size_t sample, Real t) {
   const auto nodes = reference::exact_nodes(triangle, scheme.nodes.size());
   if (!nodes) return;
@@ -132,7 +133,7 @@ TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
           const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 has too few digits there
           if (!expected || is_tiny || name->kind == "quaternion:optimal") continue;
           const Vector normal = real(scheme.normals[i]);
-          // A choice between branches, which oracle_test.cpp tests.
+          // The scheme has taken another branch than the oracle. oracle_test.cpp tests this choice.
           if (reference::angle(normal, *expected) > 5 * kNear) continue;
           ++held[scheme.scheme];
           EXPECT_NEAR(scheme.angles[i], double(reference::angle(normal, *exact)), 1e-6) << scheme.scheme;

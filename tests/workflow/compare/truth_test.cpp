@@ -78,8 +78,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// The rule for faces, computed independently: nlerp of the ends, and the cross product of the blended positions,
-// compared with the face of the frame that was left out.
+// The errors of faces by independent code: the normals of nlerp between the ends, and the cross products of the blended
+// positions, are compared with the face of the frame that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

@@ -40,8 +40,8 @@ TEST(InspectGltf, targets_with_and_without_normals_are_counted) {
 }
 
 TEST(InspectGltf, normals_that_differ_at_one_place_are_split_and_wrong_lengths_are_counted) {
-  // Vertex 2 is at the position of 0 with the same normal, 3 has another normal, and 4 one that differs only by
-  // rounding.
+  // Vertices 2, 3 and 4 are at the position of vertex 0. Vertex 2 has the same normal, vertex 3 another normal, and
+  // vertex 4 a normal that differs only by rounding.
   GltfBuilder builder;
   const std::vector<float> places = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0F, 0, 0, 1, 0};
   const std::vector<float> normals = {0, 0, 1, 0, 0, 1.2F, 0, 0, 1, 0, 1, 0, 0, 1e-4F, 1, 0, 0, 0};

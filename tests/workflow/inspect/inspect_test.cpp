@@ -223,7 +223,7 @@ TEST(Inspect, vertices_that_part_later_are_doubled_at_the_start_only) {
   EXPECT_EQ(found.surface.pieces, 1U);
   EXPECT_EQ(found.surface.edges, 6U);
 
-  // If the bodies are separate, these are two triangles that only coincide.
+  // If the bodies are separate, the coinciding vertices belong to two triangles that share nothing.
   motion.body_of_vertex = {0, 0, 0, 1, 1, 1, 1};
   const Inspection apart = inspect(motion);
   EXPECT_EQ(apart.doubled.count, 0U);

@@ -1,4 +1,5 @@
-// Parts of comparisons and audits are merged into the text of a single run, and parts that do not fit are refused.
+// Tests parts of comparisons and audits. Merged parts must have the text of a single run, and parts that do not fit
+// together must be refused.
 #include "workflow/json/parts.h"
 
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard);
 }
 
-// Returns the text of a part with a replacement, and with a checksum that fits.
+// Returns the text of a part with one replacement, and with a checksum that fits the new text.
 std::string edited(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -163,7 +164,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
 }
 
-// Ends a run after some segments, and passes its results to another run.
+// Ends a run after some segments. Another run gets its results and goes on.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
   MotionStream stream(motion);
@@ -508,8 +509,8 @@ TEST(Parts, no_damage_gives_other_bytes) {
   }
 }
 
-// A random keyframe changes between shards, whose number is random, too. If the motion is in memory, every shard sees
-// all of it; otherwise, only keyframes that two shards read are compared.
+// A random keyframe changes between two shards. The number of shards is random, too. If the motion is in memory, every
+// shard sees all of it. Otherwise, only keyframes that two shards read can be compared.
 TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together) {
   constexpr unsigned kSeed = 20261126;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -568,7 +569,7 @@ TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_togethe
   }
 }
 
-// An audit reads a keyframe in one pass, and again in another pass after it has changed.
+// An audit reads keyframes in two passes. One keyframe changes between the passes.
 TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
   const Motion motion = bending();
   std::vector<int> reads(9);

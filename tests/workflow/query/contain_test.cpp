@@ -45,8 +45,8 @@ PointPaths some_paths(const Motion& motion, std::size_t count) {
   return paths;
 }
 
-// Checks that the initial set plus the sum of crossings is the set of points inside at the end, which a query about the
-// last instants returns.
+// Checks that the points inside at the start, changed by the crossings, are the points inside at the end. A query about
+// the last instants returns the latter.
 void expect_sums(const Motion& motion, const PointPaths& paths) {
   const QueryAnswer answer = query_contain(motion, paths).value();
   const auto& points = column<std::int64_t>(answer, "crossing", "point");

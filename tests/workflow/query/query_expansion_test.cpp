@@ -1,5 +1,5 @@
-// Checks that query results of unknown size respect the limit on expansion while they grow, and not only when all rows
-// are in memory.
+// Checks that results of queries, whose size is unknown in advance, respect the limit on expansion while they grow, and
+// not only when all rows are in memory.
 
 #include <gtest/gtest.h>
 
@@ -31,8 +31,8 @@ Motion to_and_fro(Topology topology, const std::vector<Point>& from, const std::
   return motion;
 }
 
-// Makes a strip of random triangles in a plane, each of which turns over and collapses to a line in between: a collapse
-// and a change of side in every segment.
+// Makes a strip of random triangles in a plane. Each triangle turns over, and on the way collapses to a line. So there
+// is a collapse and a change of side in every segment.
 Motion turning_triangles() {
   constexpr std::size_t kFaces = 4'000;
   fixtures::Random random(20261125);
@@ -55,8 +55,8 @@ Motion sweeping_tetrahedron() {
   return to_and_fro(fixtures::make_triangles(4, {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0}), from, to);
 }
 
-// Calls ask(span, progress) with the usual limit and without. With the limit, the query must end with the error of
-// Expansion long before the last segment; without, it must find more rows than the limit allows.
+// Calls ask(span, progress) with the usual limit and without a limit. With the limit, the query must end with the error
+// of Expansion long before the last segment. Without a limit, it must find more rows than the limit allows.
 template <class Ask>
 void expect_bounded(const Ask& ask) {
   QuerySpan span;

@@ -1,4 +1,4 @@
-// Compares the front sides in a whole motion with rational numbers.
+// Checks when faces of a whole motion show their front, in rational numbers.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 

@@ -78,8 +78,9 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
   return {};
 }
 
-// Lists the faces whose sum is a normal, by coordinates alone: faces with a vertex at the same point in all keyframes.
-// Two fans of corners that only touch in a point must stay separate, so corners use their own vertex alone.
+// A vertex or a corner, and the faces whose sum is its normal, found by coordinates alone. For vertices, these are all
+// faces with a vertex at the same point in all keyframes. For corners, only faces at the same vertex count, since two
+// fans of corners that merely touch in a point must stay separate.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
@@ -178,7 +179,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
             EXPECT_LE(high - low, kWidestBracket);
             if (low > 0) instants.push_back(std::nextafter(low, 0));
             if (high < 1) instants.push_back(std::nextafter(high, 1));
-            const bool is_inside = 0 < high && low < 1;  // and not an end of the segment
+            const bool is_inside = 0 < high && low < 1;  // and the bracket is not at an end of the segment
             if (is_inside && low < high) {
               EXPECT_GE(f.count_roots(low, high), 1U);
             }
@@ -250,7 +251,7 @@ TEST(QueryVertices, means_over_a_shutter_are_those_of_dense_sums) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       EXPECT_EQ(segments[r], 0);
       const Output& output = outputs[std::size_t(rows[r])];
-      // Uses Simpson's rule, which is exact for the mean of n; the mean of the unit normal requires that n(t) stays
+      // Simpson's rule is exact for the mean of n. For the mean of the unit normal it is accurate only if n(t) stays
       // away from zero.
       constexpr int kParts = 4000;
       std::array<long double, 3> sum{}, unit_sum{};

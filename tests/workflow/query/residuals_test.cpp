@@ -1,5 +1,5 @@
-// Compares a mesh near the origin with the same mesh so far away that float32 cannot represent its coordinates and
-// keyframes have residuals. All results must be equal.
+// Compares a mesh near the origin with the same mesh at a place far away. There float32 cannot represent its
+// coordinates, so keyframes have residuals. All results must be equal.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -48,7 +48,7 @@ Twins random_twins(Random& random, bool is_soup) {
   const bool is_lattice = random.below(3) == 0;
   for (Motion::Keyframe& keyframe : twins.near.keyframes) {
     for (float& x : keyframe.positions) {
-      // A coarse lattice causes many faces without area and corners on a line.
+      // On a coarse lattice, many faces have no area, and many corners are on a line.
       constexpr double kOdd = 349525;  // far away, no point of the lattice is a float
       const double units = is_lattice ? kOdd * std::round(2 * double{x}) : std::round(double{x} / 4 * (kSize / kUnit));
       x = static_cast<float>(kUnit * units);
@@ -247,7 +247,8 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
   std::cout << "seed " << kSeed << '\n';
   for (int i = 0; i < kMeshes; ++i) {
     Random random(kSeed + static_cast<std::uint64_t>(i));
-    // The surfaces have only ordinary faces, since collapsing faces are judged relative to the size of the coordinates.
+    // The surfaces have only ordinary faces, since collapses are judged relative to the size of the coordinates, which
+    // differs between the two places.
     Twins twins;
     for (const int k : {0, 1, 2}) {
       const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);

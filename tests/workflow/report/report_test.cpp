@@ -1,5 +1,5 @@
-// Tests the content of a report as a page reads it: tests/support/report_file.h computes the error at each worst place
-// from the container alone.
+// Tests the content of a report as a page reads it. tests/support/report_file.h computes the error at each of the worst
+// places from the container alone.
 
 #include "workflow/report/report.h"
 
@@ -41,7 +41,7 @@ Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) 
   return report(opened.value(), options);
 }
 
-// Makes an input from bytes, which must outlive it.
+// Makes an input from the bytes of a GLB. The bytes must outlive the input.
 InputOptions input_of_glb(const std::string& glb) {
   InputOptions input;
   input.files = {"a.glb"};
@@ -477,7 +477,7 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   const nlohmann::json& part = file.part(0);
   EXPECT_GT(part["coarse"]["count"], 0);
   EXPECT_LT(part["vertices"], 80 * 80);
-  // Labels still name the vertex in the file.
+  // Labels name the same vertices as in the file, although vertices were left out.
   for (std::size_t i = 0; i < found.worst.size(); ++i)
     EXPECT_EQ("mesh 0, primitive 0, vertex " + std::to_string(file.label(part, found.worst[i].vertex)),
               found.worst[i].label);
@@ -485,7 +485,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_TRUE(whole.thinned.empty());
   ASSERT_EQ(whole.worst.size(), found.worst.size());
   for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
-  // Every vertex that is still judged has all of its triangles. (Each vertex of the sheet is a separate element.)
+  // If a vertex is still judged, all of its triangles are still there. (Each vertex of the sheet is a separate
+  // element.)
   const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);

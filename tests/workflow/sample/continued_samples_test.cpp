@@ -43,7 +43,7 @@ TEST(ContinuedSamples, count_the_normals_of_all_rows) {
   EXPECT_EQ(all.value().normals, whole.normals);
   EXPECT_EQ(all.value().zeros, whole.zeros);
   EXPECT_TRUE(test::read_whole(folder / "out.npy") == test::read_whole(folder / "whole.npy"));
-  // The output is complete, and only its journal still exists.
+  // The output is complete now, and its journal is still there.
   const Result<SampleSummary> again = sampled(folder, 1, output);
   ASSERT_TRUE(again.ok()) << again.error().text();
   EXPECT_EQ(again.value().normals, whole.normals);

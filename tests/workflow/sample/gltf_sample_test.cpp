@@ -108,7 +108,7 @@ struct File {
 };
 
 // Makes fans of triangles with edges down to a thousandth, and slivers, all over the unit cube. Targets move each fan
-// as a whole and its vertices slightly against each other; vertices of a sliver move along its line.
+// as a whole, and also its vertices slightly against each other. The vertices of a sliver move along its line.
 File random_file(Random& random, std::size_t nodes) {
   File file;
   std::vector<std::size_t> fan_of_vertex;

@@ -80,8 +80,8 @@ std::vector<std::vector<reference::Corner>> corners_of_outputs(const reference::
   return outputs;
 }
 
-// Returns the largest angle between the normals and the oracle's; if the oracle has no normal, there must be none
-// either.
+// Returns the largest angle between the normals and those of the oracle. Where the oracle has no normal, there must be
+// no normal.
 double largest_error(const reference::Mesh& mesh, const std::vector<std::vector<reference::Corner>>& outputs,
                      const std::vector<float>& normals, const std::string& weighting, Real t) {
   EXPECT_EQ(normals.size(), 3 * outputs.size());
@@ -168,7 +168,7 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   }
 }
 
-// The number of times decides by which method normals are computed, but must not change the result.
+// The number of times decides how normals are computed. It must not change the results.
 TEST(NormalSampler, normals_at_a_time_are_right_whatever_is_asked_beside_it) {
   fixtures::Random random(4949);
   for (const auto& family : test::hard_motions()) {
@@ -235,7 +235,7 @@ TEST(NormalSampler, length_area_is_n_itself) {
   }
 }
 
-// Makes a base and two targets far from the origin, with faces of a thousandth of the distance.
+// Makes a base and two targets far from the origin. The size of the faces is a thousandth of the distance.
 Motion star(double offset) {
   Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.2, 11);
   const Motion other = fixtures::shaken(fixtures::icosphere(1), 0.3, 12);
@@ -499,7 +499,7 @@ TEST(Sampler, a_face_that_never_has_area_has_no_normal) {
       EXPECT_NE(std::vector<float>(pose.normals.begin() + 3, pose.normals.end()), std::vector<float>(3)) << time;
     }
   }
-  // Vertex 2 belongs only to that face, and the other vertices have the direction of the other face.
+  // Vertex 2 belongs only to the face without area. The other vertices have the direction of the other face.
   for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle, Weighting::kUniform}) {
     SampleOptions options = options_of(ElementKind::kVertices, weighting), of_faces = options_of(ElementKind::kFaces);
     NormalSampler sampler = sampler_of(motion, options), faces = sampler_of(motion, of_faces);

@@ -1,5 +1,5 @@
-// Tests the normals of a scheme that `sample --scheme` writes: every scheme against the oracle of
-// tests/support/reference.h, on faces and on vertices, and the drift when a scheme is played step by step.
+// Tests the normals that `sample --scheme` writes. Compares every scheme with the oracle of tests/support/reference.h,
+// on faces and on vertices, and checks the drift when a scheme is played step by step.
 #include "workflow/sample/scheme_normals.h"
 
 #include <gtest/gtest.h>
@@ -182,7 +182,7 @@ TEST(SchemeNormals, steps_lead_through_all_segments_and_drift_as_far_as_is_said)
             largest =
                 std::max(largest, static_cast<double>(reference::angle(vector_of(expected, e), vector_of(found, e))));
         }
-        // Times are rounded, but steps are not.
+        // The drift is measured at exact multiples of the step, while the times of this test are rounded.
         EXPECT_NEAR(stepped.drift().largest, largest, 3e-7) << name;
         EXPECT_GT(stepped.drift().largest, 0) << name;
         drifts[anchor_interval == 0 ? 0 : 1] = stepped.drift().largest;

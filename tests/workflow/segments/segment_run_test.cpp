@@ -1,5 +1,5 @@
-// Checks that a run processes each segment of its share once and in order, with its keyframes in memory, for every
-// division of the motion, every end of an earlier run, and every number of segments at a time.
+// Checks that a run processes each segment of its share once and in order, with the keyframes of the segment in memory.
+// Tests every division of the motion, every end of an earlier run, and every number of segments at a time.
 #include "workflow/segments/segment_run.h"
 
 #include <gtest/gtest.h>

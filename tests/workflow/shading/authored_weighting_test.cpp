@@ -1,5 +1,5 @@
-// Checks that the weighting of an author is recognised in the stored normals, against an independent oracle for each
-// weighting, and that none is found if the normals do not tell.
+// Checks that the weighting of an author is recognised in the stored normals, and that none is found if the normals do
+// not tell. Compares with an independent oracle for each weighting.
 #include "workflow/shading/authored_weighting.h"
 
 #include <gtest/gtest.h>
@@ -139,7 +139,8 @@ TEST(AuthoredWeighting, survives_eight_bits_and_normals_that_an_author_bent) {
 
 TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
   for (const std::string weighting : {"area", "angle"}) {
-    // A wave crosses columns of growing width, so that large quads are beside small ones; all are nearly flat.
+    // A wave crosses columns of growing width, so that large quads are beside small quads. All of the quads are nearly
+    // flat.
     ShadedMesh mesh = sheet(weighting);
     for (std::size_t v = 0; v < mesh.vertices(); ++v) {
       float* const p = mesh.positions.data() + 3 * v;

@@ -36,8 +36,8 @@ std::string error_of(const GltfBuilder& builder, const GltfShadingOptions& optio
   return shading.ok() ? "" : shading.error().text();
 }
 
-// Returns one triangle of the hinge as a primitive, so that the two have separate vertices along the edge: 0 1 2 and 3
-// 4 5.
+// Returns one triangle of the hinge as a primitive with its own vertices: 0 1 2 or 3 4 5. The two triangles then have
+// separate vertices along their common edge.
 ShadedMesh half(std::size_t which) {
   const ShadedMesh whole = hinge();
   ShadedMesh part;
@@ -346,7 +346,7 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
   EXPECT_EQ(has(with("/extras/0/factors", {1}), at + "/extras/0/factors"), "");
   EXPECT_EQ(has(error_of(marked("none")), at), "");
   EXPECT_EQ(has(error_of(marked(Json::array())), at), "");
-  // Here a correction target moves vertices.
+  // In this mark, a correction target is a target that moves vertices.
   Json mark = good_mark();
   mark["extras"] = {{{"target", 1}, {"factors", {0, 0}}}};
   EXPECT_EQ(has(error_of(marked(mark)), at + "/extras/0/target"), "");

@@ -233,7 +233,8 @@ TEST(AuthorTruth, triangles_back_to_back_whose_vertices_store_one_normal_are_no_
   std::mt19937 random(kSeed + 20);
   std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
   for (int draw = 0; draw < 6; ++draw) {
-    // A polygon of the wall and the cap share three points of the rim, and both are cut so that these are a triangle.
+    // The wall has a polygon that shares three points of the rim with the cap. Both polygons are cut in such a way that
+    // these points are a triangle of each.
     const std::size_t n = 7 + random() % 4;
     Authored mesh;
     add_rings(mesh, 2, n, [&] { return hill(random); });
@@ -250,7 +251,7 @@ TEST(AuthorTruth, triangles_back_to_back_whose_vertices_store_one_normal_are_no_
                                                  mesh.sums("angle", {0, 1})};
     const std::vector<double> weights = {0.4, 0.3};
     std::vector<Vector> right = mesh.sums("angle", weights);
-    // The cap has vertices of its own, as at a seam of a texture.
+    // The cap gets vertices of its own, as at a seam of a texture.
     for (std::size_t c = of_wall; c < mesh.file.corners.size(); ++c)
       mesh.file.corners[c] += static_cast<std::uint32_t>(n);
     for (std::size_t v = n; v < 2 * n; ++v) {
@@ -317,7 +318,7 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
       EXPECT_LT(degrees_between(truth.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
     }
-    // If no normal was edited, the intended normals follow the rule at all weights.
+    // Normals that were not edited follow the rule at all weights.
     const std::vector<Vector> right = mesh.sums("angle", {0.6, 0.7});
     for (std::size_t v = 1; v < right.size(); v += 3)
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0.6, 0.7}), right[v]), 0.02) << v;
@@ -337,8 +338,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   RecordProperty("seed", static_cast<int>(kSeed + 8));
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
-    // Both targets only scale five rows, so the directions of their sums do not change, whatever edge azimuths are
-    // measured from.
+    // Both targets only scale these five rows, so they do not change the directions of the sums. The choice of the edge
+    // from which azimuths are measured then makes no difference.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -377,7 +378,7 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows are flat, and only a neighbour of the edited vertex moves there, within the plane.
+  // Five rows are flat. Only one vertex moves there, a neighbour of the edited vertex, and it moves within the plane.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
@@ -564,7 +565,7 @@ TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of
 TEST(AuthorTruth, keys_of_a_bake_that_no_author_made_tell_nothing) {
   std::mt19937 random(kSeed + 7);
   Authored mesh = quads(random);
-  // The file follows area weights and its own triangles, so nothing can be learned from the author.
+  // The normals follow area weights over the file's own triangles, so they tell nothing about other polygons.
   mesh.polygons.clear();
   for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
     mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});

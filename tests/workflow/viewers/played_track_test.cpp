@@ -82,8 +82,9 @@ TEST(PlayedTrack, says_whether_it_is_as_specified) {
 }
 
 TEST(PlayedTrack, filament_multiplies_tangents_by_the_part_that_has_gone_by) {
-  // The weight goes from 0 to 0 within an eighth of a second with a slope of 3 per second. In the middle it is an
-  // eighth of the slope times the interval, but in Filament an eighth of the slope times a half.
+  // The weight goes from 0 to 0 within an eighth of a second, with a slope of 3 per second. By the specification, the
+  // weight in the middle is the slope times the interval, divided by eight. Filament takes a half instead of the
+  // interval.
   const Track track{GltfInterpolation::kCubicSpline, {0, 0.125F}, {0, 0, 0, 0, 3, 3, 0, 0, 0, 0, 0, 0}};
   EXPECT_NEAR(played(viewer_named("three"), track, {0, 0.125}, 0.0625)[0], 3 * 0.125 / 8, 1e-12);
   EXPECT_NEAR(played(viewer_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8 / 2, 1e-12);

@@ -115,7 +115,7 @@ TEST(Viewers, each_shows_what_the_formulas_of_its_source_say) {
       if (std::fabs(plain[0]) + std::fabs(plain[1]) + std::fabs(plain[2]) < 0.05) continue;
       worst = std::max(worst, degrees_between(shown_of(viewer, normal, deltas, weights), expected));
     }
-    // A component halfway between two representable ones may be rounded either way in float32, but this is rare.
+    // In float32, a component halfway between two representable numbers may be rounded either way, but this is rare.
     EXPECT_LT(worst, viewer.keeps_halves() ? 0.2 : 0.02) << viewer.name << ", seed " << kSeed;
   }
 }
@@ -149,8 +149,8 @@ TEST(Viewers, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_k
 }
 
 TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
-  // Filament 1.53.4 renders this up to its eight bits: N + D = (0, 0, 3) gets the frame (0, -3, -8), (24, 0, 0), which
-  // is no rotation.
+  // Filament 1.53.4 renders this normal, up to its eight bits per colour. N + D = (0, 0, 3) gets the frame (0, -3, -8),
+  // (24, 0, 0), which is no rotation.
   const Vec3f along = kept_normal(viewer_named("filament"), {0, 0, 1});
   EXPECT_NEAR(along.z, 1, 1e-6);
   const Vec3f longer = kept_normal(viewer_named("filament"), {0.6F, 0, 2.4F});
