@@ -7,7 +7,7 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/chronormal)
 set(config_folder ${PROJECT_BINARY_DIR}/package)
 set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # so that a package may be moved
+file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # relative, so a package may be moved
 
 # chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the description of a library for pkg-config.
 function(chronormal_install_pkg_config target requires libraries)

@@ -41,7 +41,7 @@ struct Count {
   std::size_t linear_wrong = 0;
   std::size_t exact_wrong = 0;
   std::size_t hidden = 0;       // (face, segment) pairs that are back-facing at both ends
-  std::size_t seen_inside = 0;  // of these, front-facing for some t between
+  std::size_t seen_inside = 0;  // pairs among these that are front-facing for some t between
   std::size_t refuted = 0;      // answers of find_facing() that the reference contradicts
 
   void add(const Count& c) {

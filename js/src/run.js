@@ -31,7 +31,7 @@ async function compileWith(platform) {
 export function compile(platform) {
   if (!compiled) {
     compiled = compileWith(platform);
-    compiled.catch(() => { compiled = undefined; }); // so that the next call tries again
+    compiled.catch(() => { compiled = undefined; }); // the next call tries again
   }
   return compiled;
 }

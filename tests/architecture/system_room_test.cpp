@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 const std::string kRoom = "src/io/system/";
 
-// These files of the core may call Linux and POSIX threads directly, under #if conditions, since the core cannot
-// include the room of the system.
+// Files of the core that may call Linux and POSIX threads directly, under #if conditions, since the core cannot include
+// the room of the system.
 const std::array<std::string, 2> kCore = {"src/core/memory.cpp", "src/core/parallel.cpp"};
 
 constexpr std::string_view kHeaders[] = {"unistd.h",   "fcntl.h",   "glob.h",    "poll.h",    "dirent.h", "termios.h",

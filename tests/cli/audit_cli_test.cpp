@@ -473,8 +473,8 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // Nothing drives the target in a file without animations, so the target can have only one delta, before and after a
-  // bake.
+  // Without an animation, the weight of the target is not driven, so the target can have only one delta, before and
+  // after a bake.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();

@@ -245,8 +245,8 @@ TEST(ExactDirections, are_right_in_files_that_broke_them) {
   EXPECT_GE(files, 8u);
 }
 
-// These curves have only control normals in double, and no positions. Near a zero of n(t) the direction is therefore
-// uncertain, and the result counts such elements.
+// The curves of this test have only control normals in double, and no positions. Near a zero of n(t) the direction is
+// therefore uncertain, and the result counts such elements.
 TEST(UncertainDirections, are_counted_where_there_are_no_positions) {
   const Vec3d z{0, 0, 1};
   const ControlNormals turning{z, {}, -z}, steady{z, z, z};

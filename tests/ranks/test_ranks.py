@@ -174,7 +174,7 @@ class RanksTest(unittest.TestCase):
         self.assertEqual((run.returncode, run.stdout), (0, alone.stdout))
 
     def test_mpi_is_not_started_without_mpirun(self):
-        broken = {**os.environ, "OMPI_MCA_pml": "none", "OMPI_MCA_ess": "none"}  # these settings make MPI_Init() fail
+        broken = {**os.environ, "OMPI_MCA_pml": "none", "OMPI_MCA_ess": "none"}  # MPI_Init() fails with these settings
         command = [PROGRAM] + "compare small.obj small.pc2 --json --no-times".split()
         run = subprocess.run(command, capture_output=True, text=True, timeout=60, env=broken)
         self.assertEqual((run.returncode, run.stderr), (0, ""))

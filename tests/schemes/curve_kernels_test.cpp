@@ -81,7 +81,7 @@ class Layout {
   static constexpr int kCount = 5;
 
   Layout(int layout, std::size_t count) : values_(8 * count + 16, kUntouched) {
-    float* p = values_.data() + 1;  // not aligned
+    float* p = values_.data() + 1;  // unaligned
     switch (layout) {
       case 0:
         view_ = VectorView<float>::packed(p, count);

@@ -99,7 +99,7 @@ class WholePolynomial {
       slope = slope * root + static_cast<unsigned long>(k) * p.a_[k] * power;
       power *= unit;
     }
-    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // whether slope has an odd power of `unit`
+    const bool is_odd = p.a_.size() >= 2 && p.a_.size() % 2 == 1;  // true if slope has an odd power of `unit`
     return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
   }
 

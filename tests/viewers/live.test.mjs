@@ -159,8 +159,8 @@ describe('three.js', () => {
       const track = new THREE.NumberKeyframeTrack('face.morphTargetInfluences', [0], weights);
       return new THREE.AnimationClip(name, 1, [track]);
     };
-    // These are the clips of a baked file. Their weights of correction targets are right only if one clip is played
-    // alone. One target is driven by clips alone.
+    // The clips of a baked file have weights of correction targets that are right only if one clip is played alone. One
+    // target is driven by clips alone.
     const clips = [clip('a', [1, 0, 0, 0, 0.5]), clip('b', [0, 0.5, 0, 0, 0])];
     const mixer = new THREE.AnimationMixer(mesh);
     clips.forEach((each) => mixer.clipAction(each).setEffectiveWeight(0.5).play());

@@ -28,7 +28,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  bool is_self_contained = true;  // whether a reader notices every file that was cut off
+  bool is_self_contained = true;  // true if every file that was cut off is an error
 };
 
 const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() {

@@ -256,7 +256,7 @@ TEST(GroupNormals, duplicate_faces_count_as_often_as_they_are_there_and_opposite
   const auto one = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2}), points));
   const auto two = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2, 0, 1, 2}), points));
   EXPECT_EQ(two[1].n0, 2.0 * one[1].n0);
-  // These faces are the two sides of a sheet, and begin with different corners. Their sum must be exactly zero, not a
+  // The two faces are the two sides of a sheet, and begin with different corners. Their sum must be exactly zero, not a
   // rounding error that has a direction.
   for (const std::vector<std::uint32_t>& other : {std::vector<std::uint32_t>{0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
     std::vector<std::uint32_t> corners = {0, 1, 2};

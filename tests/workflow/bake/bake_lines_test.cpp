@@ -285,7 +285,7 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
   std::vector<float> times, values;
   for (int key = 0; key < 8000; ++key) {
     times.push_back(static_cast<float>(key));
-    const bool wink = key == 4323;  // not one of the 2,000 samples of the fit
+    const bool wink = key == 4323;  // this key is not among the 2,000 samples of the fit
     values.push_back(wink ? 1.0F : 0.01F);
     values.push_back(wink ? 1.0F : 0.01F);
   }

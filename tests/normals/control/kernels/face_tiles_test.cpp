@@ -151,7 +151,7 @@ std::vector<Motion> motions_of_every_degree() {
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
-  // These changes are near the tolerance within which a degree counts as equal.
+  // The last motion has changes near the tolerance within which a degree counts as equal.
   motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));
   return motions;
 }
