@@ -135,7 +135,7 @@ function(chronormal_add_product suffix flags)
   endif()
 
   if(EMSCRIPTEN)
-    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # writes numbers as text
+    target_link_libraries(chronormal${suffix} PRIVATE fmt::fmt)  # fmt writes numbers as text
     target_compile_options(chronormal${suffix} PRIVATE -msimd128)
   endif()
 

@@ -23,7 +23,7 @@ using namespace chronormal;
 constexpr int kBalls = 100;
 
 struct Ball {
-  Vec3d position, velocity;  // at t = 0; lengths, lengths per segment
+  Vec3d position, velocity;  // at t = 0; in units of length, and of length per segment
 };
 
 /// A moving vertex: a line from one end of the segment to the other.

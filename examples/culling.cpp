@@ -37,7 +37,7 @@ double time_seen(const Facing& facing) {
 }
 
 struct Count {
-  std::size_t decisions = 0;  // (face, segment, sample) triples
+  std::size_t decisions = 0;  // number of (face, segment, sample) triples
   std::size_t linear_wrong = 0;
   std::size_t exact_wrong = 0;
   std::size_t hidden = 0;       // (face, segment) pairs that are back-facing at both ends

@@ -50,7 +50,7 @@ int main() {
     groups.value().copy_to_outputs(VectorView<const float>::packed(different.data(), curves.size()),
                                    VectorView<float>::packed(normals.data(), corners));
     std::printf("%.2f", t);
-    for (const std::size_t corner : {1U, 4U, 5U, 8U})  // the corners of faces 0, 1, 1 and 2 at the edges
+    for (const std::size_t corner : {1U, 4U, 5U, 8U})  // one corner of face 0, two of face 1, one of face 2
       std::printf("   (%5.2f, %5.2f)", normals[3 * corner], normals[3 * corner + 2]);
     std::printf("\n");
   }

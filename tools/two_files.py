@@ -39,7 +39,8 @@ def floor_of(path):
 
 
 def sources_of_headers():
-    """Returns for each header the sources that define its functions: a source includes its own header first."""
+    """Returns, for each header, the sources that define its functions. The first header that a source includes is its
+    own."""
     sources = {}
     for path in sorted((ROOT / "src").rglob("*.cpp")):
         first = re.search(r'^#include "([^"]+)"', path.read_text(), re.M)

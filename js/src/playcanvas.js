@@ -40,7 +40,7 @@ export function attach(app, ...assets) {
   const update = () => {
     for (let d = 0; d < driven.length; ++d) {
       const { meshInstance: { morphInstance }, formulas, w } = driven[d];
-      if (!morphInstance) continue; // destroyed in the meantime
+      if (!morphInstance) continue; // the instance was destroyed in the meantime
       for (let i = 0; i < w.length; ++i) w[i] = morphInstance.getWeight(i);
       for (let k = 0; k < formulas.length; ++k) {
         const { target } = formulas[k], weight = weightOf(formulas[k], w);

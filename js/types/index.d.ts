@@ -46,9 +46,9 @@ export interface ReadOptions extends CallOptions {
   loop?: boolean;
   strict?: boolean;
   /**
-   * The paths of vertices between the keyframes of a sequence (.npz, for example, but not glTF). Default: straight lines. Curves
-   * are cut into straight pieces whose normals are within 0.01 degrees of the curve's normals, or within the tolerance that
-   * follows the name.
+   * The paths of vertices between the keyframes of a sequence (.npz, for example, but not glTF). Default: straight
+   * lines. Curves are cut into straight pieces whose normals are within 0.01 degrees of the curve's normals, or within
+   * the tolerance that follows the name.
    */
   path?: PathName | `${'catmull-rom' | 'hermite'}:${number}`;
 }

@@ -66,7 +66,7 @@ void Turns::unlock() {
 
 void hear_of_forks() {
   const py::module_ system = py::module_::import("os");
-  if (!py::hasattr(system, "register_at_fork")) return;  // a system without fork()
+  if (!py::hasattr(system, "register_at_fork")) return;  // this system has no fork()
   system.attr("register_at_fork")(
       py::arg("before") = py::cpp_function([] { gate.begin_fork(); }, py::call_guard<py::gil_scoped_release>()),
       py::arg("after_in_parent") = py::cpp_function([] { gate.end_fork(); }),

@@ -206,7 +206,7 @@ class PickleTest(unittest.TestCase):
     def test_what_keeps_no_positions_is_neither_pickled_nor_copied_and_says_so(self):
         for name, made in objects().items():
             if name == "Motion":
-                continue  # tests/test_arrays.py tests these
+                continue  # tests/test_arrays.py pickles motions
             ways = [lambda made=made, p=p: pickle.dumps(made, p) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
             ways += [lambda: copy.copy(made), lambda: copy.deepcopy(made), lambda: made.__reduce__(), lambda: made.__reduce_ex__(0)]
             for way in ways:

@@ -278,7 +278,7 @@ RC_GTEST_PROP(Theorems, reversed_motion_swaps_the_end_normals_and_keeps_the_midd
 
 RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   const Motion motion = grid_soup();
-  Motion split = motion;  // 0 -> 1/2 and 1/2 -> 1
+  Motion split = motion;  // two segments: from 0 to 1/2, and from 1/2 to 1
   Motion::Keyframe half = motion.keyframes[0];
   half.time = 0.5;
   for (std::size_t i = 0; i < half.positions.size(); ++i) {

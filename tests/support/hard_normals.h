@@ -159,7 +159,7 @@ struct HardFamily {
          const double bend = r.below(2) == 0 ? 0 : std::ldexp(1, -static_cast<int>(24 + r.below(8)));
          return ControlNormals{n0, 0.5 * (n0 + n1) + bend * random_vector(r), n1};
        }},
-      {"around a wide cone",  // in the middle of the segment the three vectors cancel except along the axis
+      {"around a wide cone",  // halfway, the three vectors cancel except along the axis
        [](Random& r) {
          const double height = r.uniform(0.3, 0.6) * random_power(r, 8);
          const auto turned = [axis = r.below(3)](const Vec3d& v) {

@@ -79,7 +79,7 @@ using Triple = std::array<double, 3>;
   Triple t = {-n[2] * n[0] * a, -n[2], 1 - n[2] * n[2] * a};
   if (n[1] < -0.9999999) t = {-1, 0, 0};
   const Triple b = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  double w = 0, x = 0, y = 0, z = 0;  // four times each component, times the largest component
+  double w = 0, x = 0, y = 0, z = 0;  // each component times four times the largest one
   if (t[0] + b[1] + n[2] > 0) {
     w = 1 + t[0] + b[1] + n[2], x = b[2] - n[1], y = n[0] - t[2], z = t[1] - b[0];
   } else if (t[0] >= b[1] && t[0] >= n[2]) {

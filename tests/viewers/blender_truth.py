@@ -183,7 +183,7 @@ def mixed(draw):
 
 
 def mixed_split(draw):
-    """Makes triangles, quads and flat faces; normals are split at flat faces."""
+    """Makes triangles, quads and flat faces. The normals of smooth faces are split where they meet flat faces."""
     o = mixed(draw)
     split_at_sharp_edges(o, lambda edge: False)
     return o

@@ -134,7 +134,8 @@ export function nearOf({ normals, schemes }) {
   return { zoom: Math.max(0.75 / spread, 1), middle };
 }
 
-// Returns lines on the sphere through points, as great circles between them; lines in front and behind are separate.
+// Returns lines on the sphere through points, as arcs of great circles. Lines in front of the sphere and lines behind
+// it are separate.
 function spherePath(points, view) {
   const fine = [];
   points.forEach((p, i) => {

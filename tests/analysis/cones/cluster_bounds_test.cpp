@@ -85,7 +85,7 @@ struct Meshlets {
   }
 };
 
-// Builds the meshlets of the first keyframe.
+// Builds meshlets from the positions at the start of a segment.
 Meshlets meshlets_of(Motion motion, std::size_t segment) {
   constexpr std::size_t kVertices = 32, kTriangles = 32;
   const auto corners = motion.topology.corners();

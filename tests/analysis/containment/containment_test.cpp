@@ -154,7 +154,7 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
         from = scene.segment().from[random.below(scene.segment().from.count)];
         to = scene.segment().to[random.below(scene.segment().to.count)];
         break;
-      case 2:  // begins at this position
+      case 2:  // the point begins at this position
         from = 0.5F * twice;
         break;
       default:;

@@ -115,7 +115,7 @@ Vec3d reference(const std::vector<float>& from, const std::vector<float>& to, do
 
 TEST(ReferenceNormals, are_cross_products_of_interpolated_vertices) {
   const std::vector<float> from = {0, 0, 0, 1, 0, 0, 0, 1, 0}, to = {0, 0, 2, 1, 0, 2, 0, 1, 4};
-  const Vec3d n = reference(from, to, 0.5);  // (0,0,1) (1,0,1) (0,1,2)
+  const Vec3d n = reference(from, to, 0.5);  // the corners are (0,0,1), (1,0,1) and (0,1,2) then
   EXPECT_EQ(n, (Vec3d{0, -1, 1}));
 }
 

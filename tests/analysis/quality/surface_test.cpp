@@ -69,7 +69,7 @@ TEST(Surface, third_face_at_an_edge_makes_it_non_manifold) {
   EXPECT_EQ(surface.edges, 7U);
   EXPECT_EQ(surface.non_manifold_edges, (Found{1, 0}));
   EXPECT_EQ(surface.open_edges.count, 6U);
-  EXPECT_EQ(surface.turned_edges.count, 0U);  // the test is only about two faces at an edge
+  EXPECT_EQ(surface.turned_edges.count, 0U);  // only edges with exactly two faces are examined
 }
 
 TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itself) {

@@ -156,7 +156,7 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       const Vec3d p = random.below(2) == 0 ? lattice() : clamped(a + somewhere(1)), q = somewhere(3);
       return View::of_moving_eye(p, q, LocalTime::between(0, before, all), LocalTime::between(0, before + here, all));
     }
-    case 8:  // closer to a corner than any other float
+    case 8:  // the eye is closer to a corner than any float
       return View::of_eye(a + std::ldexp(1.0, -static_cast<int>(random.below(300))) * somewhere(1));
     default:
       return View::of_moving_eye(clamped(a + somewhere(1)), clamped(c + somewhere(1)));

@@ -87,7 +87,7 @@ TEST(SystemNames, a_name_begins_behind_the_last_separator) {
   EXPECT_EQ(folder_of("\xC3\xA4/b"), "\xC3\xA4");
   EXPECT_EQ(folder_of("b"), "");
   const std::string no_utf8 = "a/\xFF\xC3.obj";
-  EXPECT_EQ(utf8_of(path_of(no_utf8)), no_utf8);  // a name on a POSIX system is any bytes
+  EXPECT_EQ(utf8_of(path_of(no_utf8)), no_utf8);  // on a POSIX system, a name may have any bytes
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ Evaluated evaluate(BlendNormals& normals, std::span<const double> weights, Threa
 struct Errors {
   double largest = 0;     // radians
   std::size_t far = 0;    // elements with an error above 1e-6 rad
-  std::size_t zeros = 0;  // (0, 0, 0) written
+  std::size_t zeros = 0;  // normals that are (0, 0, 0)
 };
 
 Errors errors_of(const Evaluated& done, const std::vector<exact::Vector>& expected) {
@@ -279,7 +279,7 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
 // of positions accounts for the error. With many corners, this error outweighs the triangle beside it, which is the
 // only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
-  constexpr float kFar = 1.5F * 0x1p52F;  // an ulp is 1 there
+  constexpr float kFar = 1.5F * 0x1p52F;  // an ulp of double is 1 at this distance
   for (const int turns : {0, 10}) {
     BlendSet set;
     set.base = {0, 0, 0, 150, 0, 0, 0, 150, 0, -0.49F, -0.49F, 0, 0, 0.49F, 0, 0.49F, -0.49F, 0};

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 // A mesh file with the parts that the product's reader ignores: the normal of each corner, and the smoothing group of
 // each face.
 struct Golden {
-  Motion motion;  // the mesh as both keyframes
+  Motion motion;  // both of its keyframes are the mesh
   std::vector<float> normal_of_corner;
   std::vector<std::uint32_t> group_of_face;
 };

@@ -200,7 +200,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
   Motion motion = fixtures::smooth_morph(7);
   std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
   corners[1] = corners[0];                                  // face 0 has no area
-  for (std::size_t i = 9; i < 12; ++i) corners[i] = 63;     // nor has face 3
+  for (std::size_t i = 9; i < 12; ++i) corners[i] = 63;     // face 3 has no area either
   motion.topology = fixtures::make_triangles(65, corners);  // vertex 64 belongs to no face
   for (auto& keyframe : motion.keyframes) keyframe.positions.insert(keyframe.positions.end(), {1, 2, 3});
   std::size_t zeros = 0;

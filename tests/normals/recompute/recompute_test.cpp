@@ -407,7 +407,7 @@ TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
   };
   for (const std::size_t swaps : {1U, 7U, 40U, 1000U}) {
     SCOPED_TRACE(swaps);
-    std::vector<std::size_t> order = as_it_is(count);  // some elements one by one
+    std::vector<std::size_t> order = as_it_is(count);  // single faces are swapped over long distances
     for (std::size_t i = 0; i < swaps; ++i) std::swap(order[3 * i], order[count - 1 - 5 * i]);
     expect_same(order);
   }

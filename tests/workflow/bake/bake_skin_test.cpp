@@ -319,7 +319,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   even.translation = {1, 2, 3};
   even.rotation = {0.6, 0, 0, 0.8};
   even.scale = {0.01, 0.01, 0.01};
-  Skin two = skin_of(false);  // rows of vertices follow one of the two joints
+  Skin two = skin_of(false);  // each row of vertices follows one of the two joints
   for (std::size_t v = 0; v < kVertices; ++v) two.joints[0][4 * v] = static_cast<std::uint8_t>(v / kSide % 2);
   GltfBuilder builder = played_hills(2, {0, 0.4F});
   add_skin(builder, two, even);

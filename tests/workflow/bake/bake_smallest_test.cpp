@@ -189,7 +189,7 @@ TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_product
     track.keys.times = {0, 1, 2};
     track.keys.values = {0, 0.001 * static_cast<double>(t % 7), 0.001 * static_cast<double>(t % 11), 0, 0, 0};
   }
-  tracks[77].keys.values[2] = 0.3;   // a single weight, the largest one
+  tracks[77].keys.values[2] = 0.3;   // the largest weight of the first target
   tracks[78].keys.values[5] = -0.2;  // the largest absolute weight of the other target
   // In the middle of track 311, both targets are active at once, but neither is at its maximum. In track 402, they are
   // active one after the other, so their product never reaches the product of their maxima.

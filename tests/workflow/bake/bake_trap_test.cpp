@@ -297,7 +297,7 @@ TEST(BakeTraps, a_sampler_that_other_meshes_use_is_left_to_them) {
   test::Hills other(9);
   const std::vector<float> still(other.positions.size());
   builder.add_node(builder.add_mesh(other.primitive(builder, {still, still})));  // node 1 does not move
-  // Node 2 needs fewer correction targets.
+  // Node 2 needs fewer correction targets than node 0.
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas(), still})));
   for (const int node : {1, 2})
     builder.json["animations"][0]["channels"].push_back(
@@ -411,7 +411,7 @@ TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {
     }
     return false;
   };
-  EXPECT_TRUE(warns(baked(moving_hills())));  // 5 targets with positions and normals
+  EXPECT_TRUE(warns(baked(moving_hills())));  // 10 attributes: positions and normals of 5 targets
   GltfBuilder one = test::hills_document(1);
   one.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
   EXPECT_FALSE(warns(baked(one)));

@@ -313,7 +313,7 @@ TEST(BlendCompare, an_animation_gives_no_more_poses_than_asked_for_and_each_curv
   EXPECT_EQ(once, 33U);
   EXPECT_EQ(compared(builder, {.rows = 7, .animation = "walk"}).subjects[0].errors[0].rows, 7U);
   Json channel = builder.json["animations"][animation]["channels"][0];
-  channel["target"]["node"] = 1;  // keeps the sampler
+  channel["target"]["node"] = 1;  // another node, driven by the same sampler
   builder.json["animations"][animation]["channels"].push_back(channel);
   EXPECT_EQ(compared(builder, {.rows = 1000, .animation = "walk"}).subjects[0].errors[0].rows, once);
 }

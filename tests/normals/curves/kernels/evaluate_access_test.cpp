@@ -19,7 +19,7 @@
 namespace chronormal::evaluate_access_test {
 namespace {
 
-constexpr std::size_t kMost = 208;  // most elements, a multiple of whole blocks
+constexpr std::size_t kMost = 208;  // largest number of elements, which fill whole blocks
 constexpr std::size_t kGuard = 64;  // words around the results that must not change; the number keeps arrays aligned
 constexpr std::uint32_t kMark = 0xDEADBEEF;
 constexpr std::array kKinds = {BlockKind::kUnit,        BlockKind::kUnitLength,  BlockKind::kLinear16,
