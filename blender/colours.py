@@ -19,7 +19,7 @@ _hidden: list[tuple[str, numpy.ndarray]] = []
 # The number of degrees at the end of the colour scale.
 _top = 10.0
 
-# The colour attribute that was active before ours, by the name of the mesh.
+# The colour attribute of each mesh that was active before paint() added its own, by the name of the mesh.
 _active_before: dict[str, str] = {}
 
 

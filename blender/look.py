@@ -279,7 +279,7 @@ def paint(context: bpy.types.Context, o: bpy.types.Object, found: Found) -> None
 
 
 class _Looking:
-    """The code that the operators share."""
+    """The code that the operators of the panel share."""
 
     bl_options = {"REGISTER", "UNDO"}
 

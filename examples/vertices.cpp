@@ -31,7 +31,8 @@ int main() {
   motion.keyframes = {strip(0, 1), strip(1, 0)};
   motion.connect_as_sequence();
 
-  // Say once who shares a normal: vertices that coincide in all keyframes, but not across edges of over 40 degrees.
+  // Say once which vertices share a normal: vertices that coincide in all keyframes, but not across edges of over 40
+  // degrees.
   const auto groups = NormalGroups::by_crease_angle(motion, weld_coincident(motion), 40);
   if (!groups.ok()) {
     std::fprintf(stderr, "%s\n", groups.error().text().c_str());

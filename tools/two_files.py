@@ -68,7 +68,8 @@ def value_of(directive):
 
 def decided(lines):
     """Returns the lines without the branches whose conditions are known to be false."""
-    # For each open condition: whether it is known, whether a branch was taken, whether the current one is.
+    # Three values for each open condition: whether it is known, whether one of its branches was taken, and whether the
+    # current branch is taken.
     result, stack = [], []
     for line in lines:
         directive = line.strip()

@@ -54,7 +54,7 @@ export interface MotionError {
   unlit: number;
   /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the samples. Only for glTF files. */
   torn_edges?: [number, number, number];
-  /** The largest number of edges beyond 10 degrees at one sample. */
+  /** The largest number of edges at one moment over which errors jump by more than 10 degrees. */
   most_torn_edges?: number;
 }
 

@@ -67,8 +67,8 @@ def machines(page):
 
 
 def frames(page, run):
-    """The number of frames per segment from which on preparing curves takes less time than computing normals anew in
-    each frame."""
+    """Writes a table of the number of frames per segment from which on preparing curves takes less time than computing
+    normals anew in each frame."""
     def cell(group, size, curves, anew):
         saved = run.ns(group, anew, size) - run.ns(group, f"{curves} to float3", size)
         return "never" if saved <= 0 else str(math.ceil(run.ns(group, f"prepare {curves}", size) / saved))

@@ -216,8 +216,8 @@ PLAYED = ["polynomial", "linear", "quadratic", "cubic", "slerp", OPTIMAL, "circl
 
 
 def drift(part, scheme, steps, anchor):
-    """Returns the largest angle to random access, in radians, and the largest difference of a length from 1, of a
-    scheme that is played step by step."""
+    """Plays a scheme step by step. Returns the largest angle to the normals by random access, in radians, and the
+    largest difference of a length from 1."""
     times = np.linspace(0, 1, steps + 1)
     command = [PROGRAM, "sample", "-", "--scheme", scheme, "--elements", "faces", "-o", "-", "--step", f"{steps}:{anchor}"]
     run = subprocess.run(command, input=part.bytes, check=True, capture_output=True)
@@ -450,8 +450,8 @@ def draw_angle(page):
 # Section 6 of docs/paper.md.
 
 def quaternions_of(tangent, binormal, normal):
-    """Returns the quaternions of matrices by the largest of the four squares. A matrix that is not a rotation gives
-    the same values as in common code."""
+    """Returns the quaternions of matrices by the largest of the four squares. A matrix that is not a rotation gives the
+    values that common implementations give."""
     a, b, c = tangent.T, binormal.T, normal.T
     squares = np.stack([1 + a[0] + b[1] + c[2], 1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2]])
     x, y, z, xy, xz, yz = b[2] - c[1], c[0] - a[2], a[1] - b[0], b[0] + a[1], c[0] + a[2], c[1] + b[2]

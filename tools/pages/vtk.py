@@ -35,8 +35,8 @@ def read_morph(program, name):
 
 
 def half_way(keyframes, faces):
-    """Returns the results of both filters in the middle of the first segment, with stored normals that are right at
-    its ends."""
+    """Returns the results of both filters in the middle of the first segment, with stored normals that are true at its
+    ends."""
     steps = Steps(lambda time: mesh(keyframes[int(time)], faces), times=(0.0, 1.0))
     results = []
     for filter_class in FILTERS:

@@ -10,7 +10,7 @@ import { GRAPH, SPHERE, TRIANGLE, cornersInPicture, errorFigure, frameOf, inksOf
 export const FIGURE_SCHEMES = ['linear', 'quadratic', 'cubic', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal'];
 const FIRST_SHOWN = ['linear', 'slerp', 'decasteljau:4', 'quaternion:matrix'];
 const STEP = 6; // pixels of the picture by which an arrow key moves a corner; five times as many with Shift
-const TURN = 0.01; // radians per pixel
+const TURN = 0.01; // radians that the picture turns for each pixel of a drag
 
 const letterOf = (i) => String.fromCharCode(97 + (i % 26));
 

@@ -236,7 +236,8 @@ export function graphFigure(figure, title, unitName, lines, sample, inks) {
 }
 
 /** Draws Figure 2: the lengths of interpolated normals before they are made unit vectors. The length of the exact
- * normal, twice the area, is a share of its maximum, also for schemes that compute this normal. */
+ * normal, which is twice the area, is drawn as a share of its maximum. So are the lengths of schemes that compute
+ * this normal. */
 export function lengthFigure(figure, { sample, shown, inks }) {
   const most = Math.max(...figure.lengths) || 1;
   const lines = figure.schemes.filter(({ scheme, lengths }) => shown.has(scheme) && lengths).map(({ scheme, lengths }) => {

@@ -141,8 +141,8 @@ export function normalsOf(part, { polygons: given, terms } = {}) {
   };
 }
 
-// Returns a function that rotates the sums of some elements as their author did. The author's rotations relative to the
-// surface move with the surface.
+// Returns a function that rotates the sums of some elements like an author who edited normals. The author's rotations
+// are relative to the surface, and move with it.
 function offsetsOf({ elements, sides, first, edges, references, turned, base, targets }) {
   const now = new Float64Array(base.length);
   return (p, weights, normals) => {

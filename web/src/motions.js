@@ -49,7 +49,7 @@ export function momentOf(motion, sample) {
   return `${name ? `${name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
 }
 
-/** Returns the name of a motion for people. */
+/** Returns a name of the motion that people understand. */
 export function nameOf(motion) {
   if (motion.kind === 'target') return motion.name || `target ${motion.target}`;
   if (motion.kind === 'track') return `animation ${motion.name || motion.animation}`;

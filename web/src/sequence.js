@@ -35,8 +35,8 @@ function turned(from, to, v) {
   return sum(sum(scaled(cosine, v), cross(sine, v)), scaled((1 - cosine) * dot(axis, v), axis));
 }
 
-// Returns a direction, turned like the author's stored normal relative to the geometry's normal at a keyframe, but by
-// at most `allowed` radians.
+// Returns `direction`, turned by the rotation from the geometry's normal at a keyframe to the author's stored normal,
+// but by at most `allowed` radians.
 function offsetBy(geometry, stored, allowed, direction) {
   if (isZero(geometry) || isZero(stored) || allowed === undefined) return direction;
   if (anglesBetween(geometry, stored) <= allowed) return turned(geometry, stored, direction);
