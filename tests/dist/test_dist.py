@@ -132,7 +132,7 @@ class Program(Unpacked):
     def test_needs_no_library_and_no_loader(self):
         self.assertNotIn("NEEDED", run("objdump", "-p", self.root / "chronormal"))
         self.assertNotIn("INTERP", run("readelf", "-lW", self.root / "chronormal"))
-        # Position-independent, so it may be loaded at any address.
+        # The program is position-independent, so the system may load it at any address.
         self.assertIn("DYN", run("readelf", "-hW", self.root / "chronormal"))
 
     def test_runs_in_an_empty_root(self):
@@ -338,7 +338,7 @@ class Wheel(Unpacked):
         self.assertIn("zlib", {path.name for path in (self.folder / "chronormal/THIRD_PARTY").iterdir()})
 
     def test_computes_in_a_fresh_environment(self):
-        # The system's packages include NumPy.
+        # The environment also has the system's packages, which include NumPy.
         run(sys.executable, "-m", "venv", "--system-site-packages", self.folder / "venv")
         python = self.folder / "venv/bin/python"
         run(python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", artefact("*.whl"))

@@ -24,7 +24,7 @@ if(FROM STREQUAL "package")
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
   list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)
 elseif(FROM STREQUAL "folder")
-  # The project in docs/cpp.md, with this repository as its folder.
+  # Takes the project in docs/cpp.md, which has this repository as a folder.
   set(project ${folder}/project)
   set(programs first_steps)
   file(READ ${SOURCE}/docs/cpp.md page)

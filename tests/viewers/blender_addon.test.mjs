@@ -18,7 +18,8 @@ import { read, shownNormals } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
-// The largest errors in degrees, as in blender_truth.test.mjs: at the base and at keys, and at times of the animation.
+// The largest errors in degrees, as in blender_truth.test.mjs: AT_KEYS at the base and at keys, MEAN and WORST at times
+// of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;

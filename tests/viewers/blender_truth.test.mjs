@@ -14,8 +14,8 @@ import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
-// The allowed errors in degrees: at the base and at each key alone, and on average and at worst at times of the
-// animation.
+// The allowed errors in degrees. AT_KEYS is for the base and for each key alone. The other two are for times of the
+// animation: the average error, and the worst error.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;

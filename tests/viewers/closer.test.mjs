@@ -28,7 +28,7 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/head.png', import.met
 const PICTURE_TIME = 1.25;
 const VIEWERS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
-// Smaller differences in degrees are ignored: PlayCanvas loses as much by half floats.
+// Differences below this many degrees are ignored, since PlayCanvas loses as much by rounding to half floats.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', () => {

@@ -162,7 +162,7 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
        {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
         fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
     for (std::size_t first = 0; first < each; first += 400) {
-      // The motion is certified in parts, so that the times of the largest errors differ.
+      // The motion is certified in parts. The time of the largest error then differs from part to part.
       Motion part = motion;
       part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
       for (Motion::Keyframe& keyframe : part.keyframes) {

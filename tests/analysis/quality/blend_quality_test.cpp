@@ -135,7 +135,7 @@ TEST(BlendQuality, rows_that_tell_nothing_leave_the_endpoint_deltas) {
     const DeltaNormals best = best_deltas(normals, weights);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(best.deltas[k].deltas, ends.deltas[k].deltas);
   }
-  // One row can be met exactly, and every delta is finite.
+  // A single row of weights can be met exactly. Every delta must be finite.
   const std::vector<double> one = {0.5, 1, 0};
   const DeltaNormals best = best_deltas(normals, one);
   EXPECT_LT(delta_quality(best, normals, one).max, 1e-4);

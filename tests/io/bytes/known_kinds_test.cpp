@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::string_literals;
 
-// The first bytes of files of these kinds by their specifications, and words that the message must have.
+// A kind of file: the bytes with which its files begin by its specification, and words that the message must have.
 struct Sample {
   std::string bytes, kind;
 };

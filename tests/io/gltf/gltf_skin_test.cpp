@@ -228,7 +228,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned), spoilt.error);
-    // The shape can still be read.
+    // The shape can still be read without the skin.
     const GltfFixture fixture(skinned.builder);
     ASSERT_TRUE(fixture.ok()) << spoilt.error;
     EXPECT_TRUE(fixture->geometry(0, 0, {true, true}).ok()) << spoilt.error;

@@ -115,7 +115,7 @@ TEST(CompactCurves, keep_the_tolerance_among_neighbours_of_any_size_kind_and_deg
     while (normals.size() < 3000) {
       const auto& family = test::hard_families()[random.below(test::hard_families().size())];
       const double scale =
-          // Scales from 1e-271 to 1e301.
+          // The scale is 1, or anywhere from 1e-271 to 1e301.
           random.below(4) == 0 ? std::ldexp(1, static_cast<int>(random.below(1900)) - 900) : 1;
       for (std::size_t left = random.below(3) == 0 ? random.below(90) : 1; left > 0; --left)
         normals.push_back(random.below(40) == 0 ? ControlNormals{} : test::scaled_by(scale, family.make(random)));

@@ -24,7 +24,7 @@ using test::ShadedMesh;
 
 constexpr unsigned kSeed = 51;
 
-// A sheet of hills: triangles of point numbers.
+// A sheet of hills, whose triangles are given by the numbers of points.
 struct Sheet {
   std::size_t side = 5;
   std::vector<Point> points;

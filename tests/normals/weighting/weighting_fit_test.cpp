@@ -177,7 +177,7 @@ TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in
         EXPECT_LT(angle_between(normal_at(fit.normals[e], t), truth[e]), 1e-12);
     }
   }
-  // The normal of a vertex with a single face has the same direction and length by every weighting, namely by area.
+  // A vertex with a single face has the normal of this face by every weighting, with the length that area weights give.
   const Motion lone = fixtures::moderate_soup(50);
   const auto exact = all_group_control_normals(lone.segment(0), vertices_of(lone));
   for (const Weighting weighting : kFitted) {

@@ -668,7 +668,7 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
-  // Vertex 3 renders (-1, 0, 1) at weight 1.
+  // At weight 1, the rendered normal of vertex 3 is parallel to (-1, 0, 1).
   mesh.targets[0].normals[11] = 0;
   // This weighting differs from the weighting of the author.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
@@ -810,7 +810,7 @@ TEST(Audit, other_rules_join_the_normals_of_the_keys) {
     const double t = i / 4.0, right = angle(t, 1 - t);
     lerp_sum += std::fabs(angle(3 * t, 1 - t) - right);
     slerp_sum += std::fabs(90 * t - right);
-    step_sum += i < 4 ? right : 0;  // with steps, the next keyframe is shown from its time on
+    step_sum += i < 4 ? right : 0;  // by the rule step, the next keyframe is shown from its time on
   }
   EXPECT_NEAR(sum(AuditRule::kGltf), lerp_sum, 1e-4);
   EXPECT_NEAR(sum(AuditRule::kLerp), lerp_sum, 1e-4);

@@ -321,7 +321,7 @@ TEST(BakeSequence, normals_are_those_of_polygons_and_not_of_their_triangles) {
     EXPECT_TRUE(std::equal(fan.begin(), fan.end(), glb.corners.begin() + static_cast<std::ptrdiff_t>(6 * f)));
   }
   expect_exact(glb, smooth_surface(motion));
-  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the normals of the triangles alone are different
+  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // by triangles alone, normals differ
 }
 
 TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
@@ -340,7 +340,8 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 }
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
-  // The two halves of a roof both have the ridge: 0 1 2 3 and 2' 3' 4 5.
+  // The halves of a roof are two quads with separate vertices at the ridge: vertex 4 is at the place of 3, and 5 at the
+  // place of 2.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);

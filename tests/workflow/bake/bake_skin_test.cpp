@@ -232,7 +232,7 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
 
 TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_rule) {
   const std::vector<float> weights = {0.1F, 0.2F, 0.4F};
-  std::vector<std::vector<Rows>> worlds;  // at the keys
+  std::vector<std::vector<Rows>> worlds;  // the matrices of the joints at each key
   std::vector<float> turns;
   for (const double degrees : {0.0, 70.0, 140.0}) {
     Trs turned;

@@ -68,7 +68,7 @@ class Field {
   std::vector<PairMeter::Pair> pairs_;
 };
 
-// The correction target of a target with itself has the weight w (1 - w).
+// Returns the weight of a pair's correction target. For a pair of a target with itself, this is w (1 - w).
 double weight_of(const PairMeter::Pair& pair, const std::vector<double>& pose) {
   const auto [i, j] = pair;
   return i == j ? pose[i] * (pose[i] - 1) : pose[i] * pose[j];

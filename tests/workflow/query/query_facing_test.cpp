@@ -46,7 +46,7 @@ TEST(QueryFacing, every_change_lies_in_its_bracket_for_the_eye_that_was_asked_fo
   fixtures::Random random(kSeed);
   std::size_t changes = 0;
   for (int i = 0; i < 40; ++i) {
-    // Every second motion is slow, so that f changes little in a segment and brackets must be narrowed.
+    // Every second motion is slow, so that n . w changes little in a segment and brackets must be narrowed.
     const bool is_slow = i % 2 == 0;
     const std::size_t face_count = is_slow ? 3000 : 40;
     Motion motion = fixtures::large_soup(face_count, static_cast<std::uint64_t>(i));

@@ -1,2 +1,2 @@
-// Replaces the chronormal_core.h of tools/two_files.py, using the library.
+// Stands in for the chronormal_core.h that tools/two_files.py writes: it includes the library instead.
 #include "chronormal/chronormal.h"
