@@ -32,7 +32,7 @@ constexpr double kDegreesPerRadian = 57.29577951308232;
 class SampleCli : public testing::Test {
  protected:
   SampleCli() {
-    // A right angle opens, with a seam: vertices 2 and 4 are one point, and so are 3 and 5.
+    // Two quads fold to a right angle, with a seam between them: vertices 2 and 4 are one point, and so are 3 and 5.
     folder_.write("a.obj",
                   std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n") + kFaces);
     folder_.write("b.obj",
@@ -69,8 +69,8 @@ TEST_F(SampleCli, vertices_across_a_seam_are_exact_by_hand) {
   const test::ArrayFile array = array_of("a.obj b.obj --times 0,0.5,1");
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, 8, 3}));
   const auto normals = array.as<float>();
-  // The second quad moves from (1, 0, 0) to (0, 0, 1), so its normal at t is (-t, 0, 1 - t). At the seam, (0, 0, 1) is
-  // added.
+  // An edge of the second quad moves from (1, 0, 0) to (0, 0, 1), so the normal of this quad at t is (-t, 0, 1 - t). At
+  // the seam, the normal (0, 0, 1) of the first quad is added.
   for (const auto& [time, t] : {std::pair{0U, 0.0}, std::pair{1U, 0.5}, std::pair{2U, 1.0}}) {
     const double length = std::sqrt(t * t + (2 - t) * (2 - t));
     for (const std::size_t v : {2U, 3U, 4U, 5U}) {

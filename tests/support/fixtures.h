@@ -301,8 +301,8 @@ enum class Shape { kTriangle, kLine, kPoint };
                                             std::uint64_t seed = 9) {
   Random random(seed);
   const auto coordinate = [&random] { return static_cast<double>(random.below(2001)) - 1000; };
-  // On a line, c divides a b in the ratio `along`. If the ratio were equal at both ends, the corners would always be on
-  // a line.
+  // On a line, corner c divides the edge from a to b in the ratio `along`. If this ratio were equal at both ends, the
+  // corners would always be on a line.
   const auto append = [&](std::vector<Point>& points, Shape shape, double along) {
     std::array<Point, 3> corners{};
     for (Point& corner : corners) {

@@ -328,7 +328,7 @@ def evaluated(o):
 
 
 class Truth:
-    """Blender's evaluation of an object at instants, which are recorded one by one."""
+    """A record of Blender's evaluation of an object. note() adds the instant that the scene is at."""
 
     def __init__(self, o, keys):
         self.object, self.keys, self.instants, self.loops = o, keys, [], []

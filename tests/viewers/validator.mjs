@@ -5,7 +5,7 @@ import validator from 'gltf-validator';
 
 const WARNING = 1;
 
-// Formats each complaint as "CODE at POINTER: message".
+// Returns the validator's complaints about a file, each as "CODE at POINTER: message".
 export async function complaints(path) {
   const report = await validator.validateBytes(new Uint8Array(await readFile(path)), {
     uri: path,

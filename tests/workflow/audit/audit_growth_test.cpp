@@ -47,7 +47,7 @@ GltfBuilder clips(std::size_t count, bool are_shared) {
 
 TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
   if (!test::AllocationCounter::works()) GTEST_SKIP() << "operator new is a sanitizer's";
-  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // bytes; the bins of a histogram alone would have 36 kB
+  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // in bytes; bins of a histogram would take 36 kB
   for (const GltfBuilder& builder : {clips(kMany, true), clips(kMany, false), triangle(kMany)}) {
     const test::GltfFixture fixture(builder);
     ASSERT_TRUE(fixture.ok()) << fixture.error();

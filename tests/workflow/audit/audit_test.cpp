@@ -602,7 +602,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   // cancel at the vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
-  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at 1
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at weight 1
   MotionError error = audit_of(mesh.file(), {.samples = 3}).error;
   EXPECT_EQ(error.no_normal, 3U);
   EXPECT_EQ(error.unlit, 0U);

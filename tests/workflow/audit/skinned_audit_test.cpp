@@ -377,8 +377,8 @@ TEST(SkinnedAudit, what_a_joint_makes_vanish_is_not_judged) {
   EXPECT_EQ(error.faint, 0U);
   EXPECT_EQ(error.no_normal, 3U * 21);
   EXPECT_EQ(result.subjects[0].skinning->judged, 0U);
-  // A joint that is flat in z keeps of the true normals at the edge only their x. Of the rendered normal (0, 0, 1) it
-  // keeps nothing.
+  // A joint that is flat in z keeps only the x of the true normals at the edge, and nothing of the rendered normal (0,
+  // 0, 1).
   const Audit flat = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0}}}), {.samples = 2});
   EXPECT_EQ(flat.subjects[0].error.unlit, 3U);
   EXPECT_EQ(flat.subjects[0].error.no_normal, 3U);

@@ -43,7 +43,7 @@ TEST(ResultJson, passes_only_within_the_tolerance) {
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {2}))["passed"], true);
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
   EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, {}))["passed"].is_null());
-  found.viewers.resize(2);  // with several viewers, the limits apply to each viewer
+  found.viewers.resize(2);  // from here on, the errors of the viewers decide
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], true);
   found.viewers[1].beyond = 1;
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
