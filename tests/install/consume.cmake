@@ -32,7 +32,7 @@ elseif(FROM STREQUAL "folder")
   file(WRITE ${project}/CMakeLists.txt "${CMAKE_MATCH_1}")
   file(COPY ${SOURCE}/examples/first_steps.cpp DESTINATION ${project})
   file(CREATE_LINK ${SOURCE} ${project}/chronormal SYMBOLIC)
-  foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt hwy)  # these packages count as not installed
+  foreach(package ZLIB pugixml nlohmann_json meshoptimizer draco CLI11 fmt hwy)  # packages that count as not installed
     list(APPEND options -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
 else()

@@ -262,7 +262,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // In some blocks, an end value is so small that its sign is barely certain.
+        // In every fourth lane, an end value is so small that its sign is barely certain.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
