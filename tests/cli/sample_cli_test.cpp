@@ -288,7 +288,7 @@ TEST_F(SampleCli, options_that_do_not_go_together_are_usage_errors) {
   const std::string input = "a.obj b.obj --times 0 -o n.npy ";
   expect_error(input + "--elements edges", 2, "--elements: ");
   expect_error(input + "--weighting sine", 2, "area-angle");
-  expect_error(input + "--length long", 2, "unit or area");
+  expect_error(input + "--length long", 2, "must be unit (1) or area");
   expect_error(input + "--length area --weighting angle", 2, "--length");
   expect_error(input + "--elements faces --weighting angle", 2, "--weighting");
   expect_error(input + "--elements faces --no-weld", 2, "--no-weld");
