@@ -5,7 +5,9 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <cstring>
+#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -108,16 +110,18 @@ class Build {
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
-    std::vector<std::atomic<std::size_t>> ends(parts_.size());
-    for (auto& end : ends) end = kNotKnown;
+    std::vector<std::size_t> ends(parts_.size(), kNotKnown);
+    std::mutex mutex;  // of `ends`. std::atomic's wait() may miss its notification in libstdc++ for Windows.
+    std::condition_variable known;
     std::atomic<std::size_t> next = 0;
     parallel_for(std::min(thread_count(), parts_.size()), [&](std::size_t) {
       auto source = make_source();
       AlignedBytes near(part_ * kWorst);
       for (std::size_t p = next++; p < parts_.size(); p = next++) {
-        const auto end_at = [&end = ends[p]](std::size_t bytes) {
-          end = bytes;
-          end.notify_all();
+        const auto end_at = [&, p](std::size_t bytes) {
+          const std::lock_guard lock(mutex);
+          ends[p] = bytes;
+          known.notify_all();
         };
         try {
           parts_[p].begin = near.data();
@@ -129,9 +133,14 @@ class Build {
           throw;
         }
         // Some thread has begun every earlier part.
-        if (p > 0) ends[p - 1].wait(kNotKnown);
-        std::byte* const to = curves_.blocks.data() + (p > 0 ? ends[p - 1].load() : 0);
-        end_at(static_cast<std::size_t>(to - curves_.blocks.data()) + parts_[p].bytes);
+        std::size_t begin = 0;
+        if (p > 0) {
+          std::unique_lock lock(mutex);
+          known.wait(lock, [&] { return ends[p - 1] != kNotKnown; });
+          begin = ends[p - 1];
+        }
+        std::byte* const to = curves_.blocks.data() + begin;
+        end_at(begin + parts_[p].bytes);
         std::memcpy(to, near.data(), parts_[p].bytes);
         parts_[p].begin = to;
       }
