@@ -51,6 +51,11 @@ if(CHRONORMAL_MPI)
 else()
   list(FILTER cli_sources EXCLUDE REGEX "/ranks/mpi\\.cpp$")
 endif()
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+  # GCC 12 for 64-bit ARM ends with an internal error in vect_transform_reduction.
+  set_source_files_properties(src/workflow/bake/sequence/fewest_keys.cpp
+                              PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize SKIP_UNITY_BUILD_INCLUSION ON)
+endif()
 # The headers of Windows define macros with common names, so windows.cpp is compiled alone.
 set_source_files_properties(src/io/system/windows.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 set_source_files_properties(src/io/gltf/glb/glb_builder.cpp src/workflow/json/json.cpp
