@@ -127,8 +127,15 @@ std::optional<FileStatus> status_from(HANDLE handle) {
   }
   BY_HANDLE_FILE_INFORMATION found{};
   if (::GetFileInformationByHandle(handle, &found) == 0) {
-    (void)fail();
-    return std::nullopt;
+    // Wine has no more than these two for a file that is standard input.
+    LARGE_INTEGER size{};
+    if (::GetFileSizeEx(handle, &size) == 0 || ::GetFileTime(handle, nullptr, nullptr, &found.ftLastWriteTime) == 0) {
+      (void)fail();
+      return std::nullopt;
+    }
+    found.nFileSizeHigh = static_cast<DWORD>(size.HighPart);
+    found.nFileSizeLow = size.LowPart;
+    found.nNumberOfLinks = 1;
   }
   if ((found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0) status.kind = FileStatus::Kind::kFolder;
   status.size = joined(found.nFileSizeHigh, found.nFileSizeLow);
@@ -461,11 +468,11 @@ namespace {
 
 Endings watched{};  // set before the handlers are
 
-// Runs in a thread of its own. Returning FALSE lets the system end the process, as it does where nobody watches.
+// Runs in a thread of its own, and ends the process with the code that Windows uses. Wine would use 0.
 BOOL WINAPI end_by_request(DWORD event) {
   const bool is_key = event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT;
   watched.by_request(is_key ? "interrupted (Ctrl-C)" : "ended, since its console was closed");
-  return FALSE;
+  return ::TerminateProcess(::GetCurrentProcess(), STATUS_CONTROL_C_EXIT);
 }
 
 LONG WINAPI end_by_exception(EXCEPTION_POINTERS* what) {
