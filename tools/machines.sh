@@ -76,6 +76,17 @@ compile_two_files() {
     -P tests/install/two_files/run.cmake
 }
 
+# test_machine SYSTEM EMULATOR...: builds the program for a system (a preset), and compares it with that of build/release.
+test_machine() {
+  local system=$1 suffix=
+  shift
+  [ "$system" != windows ] || suffix=.exe
+  build_cross "$system" bits
+  WINEPREFIX=$root/build/$system/wine CHRONORMAL_SYSTEM=$system CHRONORMAL_PROGRAM=$root/build/release/chronormal \
+    CHRONORMAL_OTHER="$* $root/build/$system/chronormal$suffix" CHRONORMAL_BITS="$* $root/build/$system/bits$suffix" \
+    /usr/bin/python3 tests/machines/test_machine.py
+}
+
 part_machines() {
   part_build
   run_ctest release two_files -L two_files
@@ -85,6 +96,7 @@ part_machines() {
   compile_two_files "GCC for 64-bit ARM" aarch64-linux-gnu-g++ "" "qemu-aarch64-static -L /usr/aarch64-linux-gnu"
   # Debian's Emscripten looks for modules of Node.js in Debian's folder, as in tools/wasm.sh.
   NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ "" "node --no-experimental-fetch"
+  test_machine windows wine
   build_for_arm64
   rm -rf build/arm64/results
   qemu-aarch64-static -L /usr/aarch64-linux-gnu build/arm64/tests --gtest_brief=1 --gtest_output=xml:build/arm64/results/tests.xml

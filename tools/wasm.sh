@@ -1,5 +1,5 @@
-# Sourced by ./run and ./test: builds the program as a wasm module with Debian's Emscripten, and makes the npm package
-# from it. The package also needs tools/web.sh to be sourced.
+# Sourced by ./run and ./test: builds the program for other systems over Debian's sources of libraries, including a wasm
+# module by Debian's Emscripten, and makes the npm package from that. The package also needs tools/web.sh to be sourced.
 
 # fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] from Debian's
 # archive into FOLDER, unless they are already there.
@@ -23,6 +23,17 @@ LIST
   fi
   rm -f "$folder"/*.tar.* "$folder"/*.dsc
   printf '%s\n' "$listed" >"$folder/.fetched"
+}
+
+# build_cross PRESET [TARGET...]: builds the program and the C library for another system (cmake/PRESET.cmake), in
+# build/PRESET, and these targets.
+build_cross() {
+  local preset=$1
+  shift
+  fetch_sources "$root/build/wasm-sources" || return 1
+  build_report_page || return 1
+  [ -e "$root/build/$preset/build.ninja" ] || (cd "$root" && cmake --preset "$preset") >&2
+  cmake --build "$root/build/$preset" --target chronormal_cli chronormal_c "$@" >&2
 }
 
 # build_wasm PRESET [TARGET...]: configures and builds in build/PRESET.
