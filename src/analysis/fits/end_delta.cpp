@@ -106,6 +106,13 @@ double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexce
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
+// Returns the largest key of the samples.
+double largest_key(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
+  double largest = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) largest = std::max(largest, line_key(from, to, samples[i]));
+  return largest;
+}
+
 // Finds the largest angle between the line and the exact normal over w, by golden section around the highest local
 // maxima of the samples.
 Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
@@ -295,12 +302,12 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   if (all_zero(normals)) return {};
   const Vec3d u0 = unit_normal_at(normals, 0).vector, u1 = unit_normal_at(normals, 1).vector;
   Samples samples(normals);
-  const double key_of_one = highest_peak(samples, u0, u1).key;
-  const EndDelta plain{u1 - u0, 1, angle_of_key(key_of_one)};
+  const Samples first = samples;
+  const auto plain = [&] { return EndDelta{u1 - u0, 1, angle_of_key(highest_peak(first, u0, u1).key)}; };
   // The sine of the smallest angle at which two directions are told apart. Below it they count as equal or antipodal,
   // since rounding would decide which one is ahead.
   constexpr double kSmallestSine = 1e-10;
-  if (length(cross(u0, u1)) < kSmallestSine) return plain;
+  if (length(cross(u0, u1)) < kSmallestSine) return plain();
 
   // Round 0 tries the s that is exact for an element of degree 1. A search would only approximate this s.
   double log_scale = log_of_degree_1(normals), lowest_possible = 0;
@@ -323,7 +330,7 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
     for (std::size_t i = 0; i < samples.size(); ++i) search.add(samples[i]);
     log_scale = search.best_log_scale(log_scale, lowest_possible);
   }
-  if (!(best.key < key_of_one)) return plain;
+  if (!(best.key < largest_key(first, u0, u1)) && !(best.key < highest_peak(first, u0, u1).key)) return plain();
   return {best_scale * u1 - u0, best_scale, angle_of_key(best.key)};
 }
 

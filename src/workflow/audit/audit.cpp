@@ -106,6 +106,7 @@ std::size_t FineBins::operator[](std::size_t number) const noexcept {
 
 void FineBins::add(std::size_t number, std::uint64_t count) {
   if (count == 0) return;
+  if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));  // mostly
   const auto at =
       std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
   if (at != bins_.end() && at->number() == number)

@@ -176,9 +176,10 @@ double JudgedPart::rounding_of(std::span<const Vec3d> positions, std::size_t ele
 }
 
 Vec3d JudgedPart::face_normal(std::span<const Vec3d> positions, std::size_t face) const {
-  const auto at = [&](std::size_t c) { return positions[face_vertices_[face_offsets_[face] + c]]; };
+  const std::uint32_t* const vertices = face_vertices_.data() + face_offsets_[face];
+  const auto at = [&](std::size_t c) -> const Vec3d& { return positions[vertices[c]]; };
   const std::size_t corners = face_offsets_[face + 1] - face_offsets_[face];
-  return twice_vector_area(corners, at);
+  return corners == 3 ? twice_vector_area(3, at) : twice_vector_area(corners, at);
 }
 
 Vec3d JudgedPart::term(std::span<const Vec3d> positions, std::size_t face, std::size_t corner,

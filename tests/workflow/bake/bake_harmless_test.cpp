@@ -377,7 +377,7 @@ TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
     const RightNormals rights(shading, terms, shading.normals, plan.largest);
     const MeshWeights weights = read_weights(*file, shading).value();
     const std::array<Viewer, 1> viewer = {kViewers[0]};
-    const Judge judge(source, rights, weights, viewer, false);
+    const Judge judge(source, rights, weights, viewer, 1, false);
     const Candidate made = products_candidate({source, rights, weights, judge, viewer, lengths, 1e-6, 100});
     ASSERT_GT(made.extras.size(), 0U);
     const auto worst_at = [&](double w, bool with_extras) {

@@ -60,7 +60,7 @@ TEST(Judge, finds_the_errors_and_tears_of_a_list_of_all_pairs) {
 
   // The deltas are arbitrary.
   const std::array<Viewer, 1> viewer = {kViewers[0]};
-  const Judge judge(source, rights, weights, viewer, true);
+  const Judge judge(source, rights, weights, viewer, 1, true);
   Candidate candidate;
   candidate.own.resize(kTargets);
   for (VertexVectors& column : candidate.own) {

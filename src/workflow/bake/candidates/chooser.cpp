@@ -22,9 +22,10 @@ constexpr double kAlike = 1e-3;
 // smaller tolerance, at most this many times.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// A glance measures a candidate in only a few of the poses. If it shows a mean error this many times that of the best
-// candidate, the candidate is not examined further.
-constexpr double kHopeless = 2;
+// A glance measures a candidate in only a few of the poses. If it shows a mean error kHopeless times that of the best
+// candidate, the candidate is not examined further. If the best candidate lacks nothing but the tolerance, kFarther
+// times is enough for a candidate that is beyond the tolerance as well.
+constexpr double kHopeless = 2, kFarther = 1.25;
 // With at most kFewExtras correction targets, a file may grow more. A correction target takes about kBytesOfExtra bytes
 // for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
@@ -85,7 +86,7 @@ class Chooser {
         prefers_bytes_(source.plan.encoding == BakeEncoding::kSmallest),
         tangent_bytes_(tangent_bytes) {
     viewers_.insert(viewers_.end(), options.spared.begin(), options.spared.end());
-    judge_.emplace(source, rights_, weights, viewers_, options.animations_only);
+    judge_.emplace(source, rights_, weights, viewers_, options.viewers.size(), options.animations_only);
     stored_ = stored_candidate(source);
     before_ = judge_->measure(stored_, Judge::Depth::kAll);
     if (!has_new_base(source)) consider(stored_);
@@ -118,10 +119,7 @@ class Chooser {
     judged.is_affordable = bytes <= most_bytes() && candidate.drivers.size() <= most_extras(options_, targets);
     judged.is_bearable = bytes <= bearable_bytes(candidate.drivers.size());
     const bool is_stored = candidate.name == stored_.name;
-    if (best_ && !options_.plan) {
-      const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
-      if (mean_of(glance) > kHopeless * std::fmax(best_glance_, tolerance_ / 2)) return bytes;
-    }
+    if (is_hopeless(candidate)) return bytes;
     const std::vector<ErrorsOfKinds> after = is_stored ? before_ : judge_->measure(candidate, Judge::Depth::kAll);
     judge(after, judged);
     const bool is_best = !best_ || is_better(judged, of_best_);
@@ -138,11 +136,15 @@ class Chooser {
   // Returns true if a glance shows that a candidate is beyond the tolerance. Returns false for a plan, which must
   // measure all candidates.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
-    if (options_.plan) return false;
+    return !options_.plan && is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
+  }
+  // Returns whether a glance shows that a candidate cannot be the best. A plan asks for all candidates.
+  [[nodiscard]] bool is_hopeless(const Candidate& candidate) const {
+    if (!best_ || options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
-    const auto is_beyond = [&](const ErrorsOfKinds& errors) { return errors[0].spread.worst > tolerance_; };
-    return std::any_of(glance.begin(), glance.begin() + static_cast<std::ptrdiff_t>(options_.viewers.size()),
-                       is_beyond);
+    const double mean = mean_of(glance);
+    if (mean > kHopeless * std::fmax(best_glance_, tolerance_ / 2)) return true;
+    return serves_all() && of_best_.is_bearable && mean > kFarther * of_best_.mean && is_beyond(glance);
   }
 
   [[nodiscard]] std::size_t most_bytes() const {
@@ -166,8 +168,8 @@ class Chooser {
   // Returns true if the best candidate is accurate enough and has at most this many bytes, so that others need not be
   // tried. Returns false for a plan, which must measure all candidates.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
-    return best_ && of_best_.choice.within && of_best_.better + of_best_.unharmed == viewers_.size() &&
-           of_best_.choice.bytes - tangent_bytes_ <= bytes && !options_.plan;
+    return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
+           !options_.plan;
   }
   [[nodiscard]] bool plans() const noexcept { return options_.plan; }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
@@ -188,22 +190,43 @@ class Chooser {
     ChosenCandidate result;
     candidates_[of_choice_].chosen = true;
     result.viewers = of_best_.choice.viewers;
-    const bool is_rounding = std::any_of(viewers_.begin(), viewers_.end(),
-                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; });
-    if (is_rounding) candidates_[of_choice_].rounded = rounded_worst();
-    if (is_rounding)
-      result.viewers = changes(judge_->measure(stored_, Judge::Depth::kGlance, true),
-                               judge_->measure(*best_, Judge::Depth::kGlance, true), result.viewers);
+    if (std::any_of(viewers_.begin(), viewers_.end(), is_rounding)) {
+      const std::vector<ErrorsOfKinds> before = judge_->measure(stored_, Judge::Depth::kRounded),
+                                       after = judge_->measure(*best_, Judge::Depth::kRounded);
+      for (std::size_t v = 0; v < viewers_.size(); ++v) {
+        if (!is_rounding(viewers_[v])) continue;
+        for (std::size_t k = 0; k < kPoseKinds; ++k)
+          result.viewers[v].poses[k] = {before[v][k].errors(), after[v][k].errors()};
+        if (v >= options_.viewers.size()) continue;
+        double& worst = candidates_[of_choice_].rounded;
+        worst = std::fmax(worst, after[v][static_cast<std::size_t>(PoseKind::kFile)].spread.worst);
+      }
+    }
     result.candidate = std::move(*best_);
     result.candidates = std::move(candidates_);
     return result;
   }
 
  private:
-  // Returns the errors that decide: those in the poses that the file plays or, without an animation, in all poses.
+  static bool is_rounding(const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; }
+
+  // Returns the errors that decide.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
-    return weights_.is_driven ? kinds[static_cast<std::size_t>(PoseKind::kFile)].errors()
-                              : errors_of_all(kinds).errors();
+    JudgedErrors all;
+    for (std::size_t k = 0; k < kPoseKinds; ++k)
+      if (judge_->decides(static_cast<PoseKind>(k))) all.add(kinds[k]);
+    return all.errors();
+  }
+
+  // Returns whether the best candidate is affordable, better in all named viewers, and no worse in the others.
+  [[nodiscard]] bool serves_all() const {
+    return of_best_.is_affordable && of_best_.better + of_best_.unharmed == viewers_.size();
+  }
+
+  // Returns whether some error in a named viewer is beyond the tolerance.
+  [[nodiscard]] bool is_beyond(const std::vector<ErrorsOfKinds>& errors) const {
+    return std::any_of(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(options_.viewers.size()),
+                       [&](const ErrorsOfKinds& of_viewer) { return of_viewer[0].spread.worst > tolerance_; });
   }
 
   // Returns the mean error in the named viewer where it is smallest, because a candidate may help some viewers and harm
@@ -212,17 +235,6 @@ class Chooser {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
     return least;
-  }
-
-  // Returns the changes of all viewers: measured again for viewers whose files are rounded by compressors, and the
-  // known changes for all other viewers.
-  [[nodiscard]] std::vector<ViewerChange> changes(const std::vector<ErrorsOfKinds>& before,
-                                                  const std::vector<ErrorsOfKinds>& after,
-                                                  std::vector<ViewerChange> known) const {
-    for (std::size_t v = 0; v < viewers_.size(); ++v)
-      if (viewers_[v].normals == NormalRule::kClamped || known.size() <= v)
-        for (std::size_t k = 0; k < kPoseKinds; ++k) known[v].poses[k] = {before[v][k].errors(), after[v][k].errors()};
-    return known;
   }
 
   void judge(const std::vector<ErrorsOfKinds>& after, Judged& judged) const {
@@ -287,17 +299,6 @@ class Chooser {
     return is_alike ? judged.choice.bytes < than.choice.bytes : judged.mean < than.mean;
   }
 
-  // Returns the worst error of the chosen candidate after compression, over the named viewers whose files compressors
-  // round.
-  [[nodiscard]] double rounded_worst() const {
-    double worst = 0;
-    const std::vector<ErrorsOfKinds> rounded = judge_->measure(*best_, Judge::Depth::kGlance, true);
-    for (std::size_t v = 0; v < options_.viewers.size(); ++v)
-      if (viewers_[v].normals == NormalRule::kClamped)
-        worst = std::fmax(worst, rounded[v][static_cast<std::size_t>(PoseKind::kFile)].spread.worst);
-    return worst;
-  }
-
   const DeltaSource& source_;
   const MeshWeights& weights_;
   const BakeOptions& options_;
@@ -353,12 +354,11 @@ bool has_few_products(const Making& making, const MeshWeights& weights) {
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Tries deltas that change the length of normals. Viewers that add up deltas as stored then render true normals, and in
-// many files the other viewers get no worse than before.
-void look_at_any_lengths(Making making, const MeshWeights& weights, Chooser& chooser) {
-  making.lengths = Lengths::kFree;
-  if (making.rights.are_by_area()) chooser.consider(own_candidate(making.source, making.rights, making.lengths));
-  if (!chooser.is_found() && has_few_products(making, weights)) chooser.consider(products_candidate(making));
+// Makes own deltas of any length that look about like own_candidate(), without the search for the best lengths.
+Candidate similar_to_own(const DeltaSource& source, const RightNormals& rights) {
+  MeshPlan plan = source.plan;
+  plan.is_line.assign(plan.is_line.size(), false);
+  return own_candidate({source.shading, source.terms, plan, source.base_normals}, rights, Lengths::kFree);
 }
 
 void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Making& making, Chooser& chooser,
@@ -374,8 +374,19 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(20);
   if (chooser.is_found()) return;
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
-  if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers))
-    look_at_any_lengths(making, weights, chooser);
+  std::optional<Candidate> similar;  // to own deltas of any length that wait
+  if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
+    // Viewers that add deltas as stored render the truth with deltas of any length, and in many files the others get no
+    // worse than before.
+    Making of_any = making;
+    of_any.lengths = Lengths::kFree;
+    if (making.rights.are_by_area()) {
+      if (has_extras) similar = similar_to_own(source, making.rights);
+      if (similar && !chooser.is_far(*similar)) similar.reset();
+      if (!similar) chooser.consider(own_candidate(source, making.rights, of_any.lengths));
+    }
+    if (!chooser.is_found() && has_few_products(of_any, weights)) chooser.consider(products_candidate(of_any));
+  }
   if (making.most_extras == 0) return;
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
@@ -389,6 +400,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
       look_at_low_rank(making, own, bytes, chooser);
   }
   if (waits) chooser.consider(own);
+  if (similar && !chooser.is_hopeless(*similar)) chooser.consider(own_candidate(source, making.rights, Lengths::kFree));
   reach(90);
 }
 

@@ -2,6 +2,7 @@
 #include "workflow/bake/fits/missing_normals.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <tuple>
 #include <utility>
@@ -80,23 +81,32 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
     parallel_for(count, [&](std::size_t r) {
       normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
     });
+    // The weights of own targets by column, so that a delta is added in all poses at once.
+    std::vector<std::array<double, kPosesAtOnce>> weights(rights.targets());
+    for (std::size_t r = 0; r < count; ++r)
+      for (std::size_t c = 0; c < weights.size(); ++c) weights[c][r] = poses_[first + r][c];
     parallel_each(points.size(), kMissingBlock, [&](std::size_t p) {
       const std::uint32_t vertex = points[p].front();
       const BaseNormal base(rights.stored(vertex));
+      std::array<double, kPosesAtOnce> x, y, z;
+      x.fill(base.direction.x), y.fill(base.direction.y), z.fill(base.direction.z);
+      for (const auto& [column, single] : own.of(p)) {
+        const Vec3d delta = to_double(single);
+        for (std::size_t r = 0; r < kPosesAtOnce; ++r) {
+          const double weight = weights[column][r] / base.length;
+          x[r] += weight * delta.x, y[r] += weight * delta.y, z[r] += weight * delta.z;
+        }
+      }
       float* const shown = shown_.data() + 3 * stride_ * p + first;
       float* const missing = missing_.data() + 3 * stride_ * p + first;
       for (std::size_t r = 0; r < count; ++r) {
         const Vec3d right = rights.of_vertex(vertex, normals[r][element_of_vertex[vertex]]);
         if (right == Vec3d{}) continue;
-        Vec3d sum = base.direction;
-        for (const auto& [column, delta] : own.of(p))
-          sum = sum + (poses_[first + r][column] / base.length) * to_double(delta);
+        const Vec3d sum = {x[r], y[r], z[r]};
         const Vec3d goal = across ? reached_across(base.direction, sum, right) : right;
         const Vec3f of_shown = to_float(sum), of_missing = to_float(goal - sum);
-        for (std::size_t c = 0; c < 3; ++c) {
-          shown[c * stride_ + r] = c == 0 ? of_shown.x : c == 1 ? of_shown.y : of_shown.z;
-          missing[c * stride_ + r] = c == 0 ? of_missing.x : c == 1 ? of_missing.y : of_missing.z;
-        }
+        shown[r] = of_shown.x, shown[stride_ + r] = of_shown.y, shown[2 * stride_ + r] = of_shown.z;
+        missing[r] = of_missing.x, missing[stride_ + r] = of_missing.y, missing[2 * stride_ + r] = of_missing.z;
       }
     });
   }

@@ -181,8 +181,8 @@ JudgedErrors errors_of_all(const ErrorsOfKinds& kinds) {
 }
 
 Judge::Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
-             std::span<const Viewer> viewers, bool animations_only)
-    : rights_(rights), weights_(weights), viewers_(viewers) {
+             std::span<const Viewer> viewers, std::size_t named, bool animations_only)
+    : rights_(rights), weights_(weights), viewers_(viewers), named_(named) {
   const std::vector<VertexVectors> stored = stored_deltas(source.shading);
   vertices_ = judged_vertices(source, stored);
   const std::vector<SurfaceEdge> edges = surface_edges(source.shading);
@@ -225,7 +225,7 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
   return result;
 }
 
-std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth, bool with_rounding) const {
+std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
   std::vector<std::pair<Viewer, VertexColumns>> of_viewers;  // deltas as viewers store them, if these differ
@@ -241,18 +241,19 @@ std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth dept
   };
   for (const KnownSet& known : sets_) {
     if (candidate.animations_only && known.set.kind != PoseKind::kFile) continue;
-    const std::size_t count = known.set.poses.size();
-    const std::size_t step = depth == Depth::kAll ? 1 : std::clamp<std::size_t>(count / kFewestAtGlance, 1, kGlance);
+    if (depth == Depth::kGlance && !decides(known.set.kind)) continue;
     const std::vector<SeenPose> poses =
         with_extra_targets(known.set, weights_, candidate.drivers, viewers_[known.set.viewers[0]]);
     const bool is_skinned = any_skinned(poses);
     std::vector<std::pair<Viewer, JudgedErrors>> measured;
     for (const std::size_t v : known.set.viewers) {
-      const Viewer viewer = with_rounding ? viewers_[v] : without_rounding(viewers_[v]);
+      if (depth == Depth::kGlance && v >= named_) continue;
+      if (depth == Depth::kRounded && viewers_[v].normals != NormalRule::kClamped) continue;
+      const Viewer viewer = depth == Depth::kRounded ? viewers_[v] : without_rounding(viewers_[v]);
       auto found = std::find_if(measured.begin(), measured.end(),
                                 [&](const auto& of_other) { return shows_alike(of_other.first, viewer, is_skinned); });
       if (found == measured.end()) {
-        measured.emplace_back(viewer, errors_of(known, viewer, kept_by(viewer), poses, step));
+        measured.emplace_back(viewer, errors_of(known, viewer, kept_by(viewer), poses, depth));
         found = measured.end() - 1;
       }
       result[v][static_cast<std::size_t>(known.set.kind)].add(found->second);
@@ -271,8 +272,9 @@ VertexColumns Judge::kept_columns(const Viewer& viewer, VertexColumns columns) c
 }
 
 JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
-                              std::span<const SeenPose> all, std::size_t step) const {
+                              std::span<const SeenPose> all, Depth depth) const {
   JudgedErrors result;
+  const std::size_t step = depth == Depth::kAll ? 1 : std::clamp<std::size_t>(all.size() / kFewestAtGlance, 1, kGlance);
   const std::size_t count = known.numbers.size();
   const std::size_t at_once = std::max<std::size_t>(1, kMostErrors / std::max<std::size_t>(1, count));
   std::vector<SeenPose> looked_at;
@@ -323,7 +325,7 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
     result.spread.add(
         parallel_fold<ErrorSpread>(count, std::clamp<std::size_t>(kSamplesOfBlock / poses, 1, kMostOfBlock),
                                    measure_vertex, [](ErrorSpread& to, const ErrorSpread& from) { to.add(from); }));
-    result.tears.add(tears_of(known, differences));
+    if (depth != Depth::kGlance) result.tears.add(tears_of(known, differences));
   }
   return result;
 }

@@ -56,21 +56,28 @@ using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
 class Judge {
  public:
-  /// The share of the poses that are judged: about an eighth, or all.
-  enum class Depth { kGlance, kAll };
+  /// The part that is measured.
+  enum class Depth {
+    kGlance,   ///< the named viewers, without tears, in about an eighth of the poses that decide (decides())
+    kRounded,  ///< the viewers that compressors round for, with this rounding, in about an eighth of the poses
+    kAll       ///< all viewers in all poses
+  };
 
-  /// Creates a judge. All arguments must outlive it.
+  /// The first `named` viewers are those that the bake is made for. All arguments must outlive this.
   Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
-        std::span<const Viewer> viewers, bool animations_only);
+        std::span<const Viewer> viewers, std::size_t named, bool animations_only);
 
   /// Returns the vertices that are judged, ascending.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Viewer> viewers() const noexcept { return viewers_; }
 
-  /// Measures what each viewer renders, in all kinds of poses. Includes the rounding of compressors only if
-  /// with_rounding is true.
-  [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth,
-                                                   bool with_rounding = false) const;
+  /// Returns true if errors in poses of this kind decide. Poses that the file plays decide, and if the file has no
+  /// animation, all poses do.
+  [[nodiscard]] bool decides(PoseKind kind) const noexcept { return kind == PoseKind::kFile || !weights_.is_driven; }
+
+  /// Measures what each viewer renders, in each kind of poses. There are no errors of viewers and poses that the depth
+  /// leaves out.
+  [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth) const;
   /// Returns the largest error of each vertex over some poses, in a viewer that adds up deltas as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
@@ -92,12 +99,13 @@ class Judge {
 
   [[nodiscard]] VertexColumns kept_columns(const Viewer& viewer, VertexColumns columns) const;
   [[nodiscard]] JudgedErrors errors_of(const KnownSet& known, const Viewer& viewer, const VertexColumns& columns,
-                                       std::span<const SeenPose> poses, std::size_t step) const;
+                                       std::span<const SeenPose> poses, Depth depth) const;
   [[nodiscard]] TearCounts tears_of(const KnownSet& known, const Differences& differences) const;
 
   const RightNormals& rights_;
   const MeshWeights& weights_;
   std::span<const Viewer> viewers_;
+  std::size_t named_;
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
   mutable Differences differences_;  // memory of the last measurement, which the next one writes over
