@@ -85,7 +85,7 @@ def find(preferred: str) -> Path:
                       f"{platform.machine()}. Name one in Edit > Preferences > Add-ons > Right normals for shape keys.")
 
 
-# The panel's labels for the options that messages of the program name.
+# The panel's labels for the options that the program's messages may mention.
 _OPTIONS = {"--tolerance": "Tolerance", "--max-targets": "Most targets", "--max-bytes": "Most KB", "--for": "Viewers"}
 
 

@@ -440,7 +440,8 @@ Command bake_command() {
         {"--weighting NAME",
          &options->weighting,
          "how much each face counts in a vertex normal\nOne of area, angle, uniform, area-angle, max, "
-         "inverse-edges and inverse-roots, of which only area is exact. The default is what the base normals of "
+         "inverse-edges and inverse-roots. Corrections are exact with area, and fitted with all others. The default is "
+         "what the base normals of "
          "each mesh follow, else area",
          {.rare = true}},
         {"--crease DEG",

@@ -98,7 +98,7 @@ Result<SampleOptions> sample_options(const SampleArguments& options) {
     return misuse("--length", "the length must be unit (1) or area (twice the area of a face)");
   const bool by_area = weighting.value() == Weighting::kArea;
   if (options.length == "area" && !by_area)
-    return misuse("--length", "the length area needs --weighting area; leave one of the two out");
+    return misuse("--length", "--length area needs --weighting area; leave --length or --weighting out");
   if (kind == ElementKind::kFaces && !by_area)
     return misuse("--weighting", "a weighting has no meaning for normals of faces; add --elements vertices or corners");
   if (!options.scheme.empty()) {

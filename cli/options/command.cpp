@@ -71,7 +71,10 @@ std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
        of_viewers +
            ", such as three,godot\nViewers are three, babylon, playcanvas, godot, filament and bevy. Compressors, "
            "whose result is judged in a viewer, are gltfpack, quantize and meshopt. all names all of them"},
-      {"--host NAME,...", &viewers_by_old_name, "the old name of --for, which the next version drops", {.rare = true}},
+      {"--host NAME,...",
+       &viewers_by_old_name,
+       "the old name of --for; the next version will not know --host",
+       {.rare = true}},
       {"--samples N",
        &samples,
        "how many moments of each segment are judged\nBoth ends are included. The default is 21, and fewer in "

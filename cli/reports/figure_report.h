@@ -1,4 +1,4 @@
-/// The figures of one face as a table.
+/// Writes the paper's figures for one face as a table (`compare --face`).
 #ifndef CLI_REPORTS_FIGURE_REPORT_H_
 #define CLI_REPORTS_FIGURE_REPORT_H_
 

@@ -75,7 +75,8 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
   const module = await compile(platform);
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
-  // A module that cannot start would leave its promise pending, so errors on the way, also of prepare(), end the run.
+  // The promise of a module that cannot start never settles, so every error before the start rejects this promise,
+  // including an error of prepare().
   const program = await new Promise((resolve, reject) => createProgram({
     require: platform.require,
     thisProgram: 'chronormal',

@@ -46,7 +46,7 @@ def _vectors(array, place):
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"{place}: the type must be float32 or other real numbers, but is {array.dtype}")
+        raise ValueError(f"{place}: the array must hold real numbers, best as float32, but its type is {array.dtype}")
     with _np.errstate(over="ignore"):  # too large numbers become infinite, which the library refuses with the place
         return _np.ascontiguousarray(array, dtype=_np.float32)
 
@@ -144,7 +144,7 @@ def _floats(array, place):
     """Return a C-contiguous array of float64."""
     array = _np.asarray(array)
     if array.dtype.kind not in "fiu":
-        raise ValueError(f"{place}: the type must be float64 or other real numbers, but is {array.dtype}")
+        raise ValueError(f"{place}: the array must hold real numbers, best as float64, but its type is {array.dtype}")
     return _np.ascontiguousarray(array, dtype=_np.float64)
 
 

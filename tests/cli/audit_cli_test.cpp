@@ -185,10 +185,11 @@ TEST_F(AuditCli, gate_is_shut_for_what_cannot_be_lit) {
     for (const std::string tolerance : {"1", "180", "1000"}) {
       const ProcessResult result = run(file + " --tolerance " + tolerance);
       EXPECT_EQ(result.exit_code, 4);
-      expect_words(result.out,
-                   {"180.00 at worst",
-                    " would be zero, infinite or NaN in a viewer, and count as 180 degrees. The first is at vertex ",
-                    " would be zero, infinite or NaN in a viewer (vertex "});
+      expect_words(
+          result.out,
+          {"180.00 at worst",
+           " would be zero, infinite or NaN in a viewer, and count as errors of 180 degrees. The first is at vertex ",
+           " would be zero, infinite or NaN in a viewer (vertex "});
       expect_words(result.err,
                    {" of the file would be zero, infinite or NaN in a viewer, which no tolerance allows: vertex "});
     }

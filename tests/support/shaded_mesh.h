@@ -1,5 +1,5 @@
-/// A morphing mesh with normals, as a glTF file and as an oracle of its rendered normals, in long double. The loops
-/// share no code with src/; only the builder of files is used.
+/// A morphing mesh with normals, as a glTF file and as an oracle of its rendered normals, in long double. The
+/// oracle shares no code with src/, and gltf_builder.h makes the file.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 

@@ -113,7 +113,7 @@ describe('The add-on', () => {
       own.diagnostic(said);
       // The operator warns if the error halfway to a key exceeds the tolerance, which no file can avoid unless a
       // program sets the weights of correction targets.
-      assert.equal(level, said.includes('could not reach') ? 'WARNING' : 'INFO', said);
+      assert.equal(level, said.includes('could not bring') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');
     }));

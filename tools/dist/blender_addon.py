@@ -2,9 +2,9 @@
 
     blender_addon.py OUT.zip [SYSTEM=FOLDER]...
 
-SYSTEM is a name of blender/program.py, such as linux-x64, and FOLDER has the program chronormal for that system,
-and its licences in LICENSE and THIRD_PARTY if there are any. Equal files give equal bytes; SOURCE_DATE_EPOCH is the
-time of all files.
+SYSTEM is one of the systems that blender/program.py knows, such as linux-x64, and FOLDER has the program chronormal
+for that system, and its licences in LICENSE and THIRD_PARTY if there are any. Equal files give equal bytes;
+SOURCE_DATE_EPOCH is the time of all files.
 """
 
 import os

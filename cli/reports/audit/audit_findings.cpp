@@ -85,7 +85,7 @@ std::string group_words(const Audited& input, const Group& group) {
   const std::string who = subject_of(input, group), worst = degrees(found.degrees);
   switch (found.kind) {
     case Kind::kUnlit:
-      return formatted("{}: {} would be zero, infinite or NaN in a viewer", who, samples(group.count));
+      return formatted("{}: the normals of {} would be zero, infinite or NaN in a viewer", who, samples(group.count));
     case Kind::kMissingNormals:
       return formatted("{} {} positions but {} no normals{}; {}", who, is_one ? "moves" : "move",
                        is_one ? "has" : "have",

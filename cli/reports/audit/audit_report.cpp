@@ -95,8 +95,11 @@ std::string headline(const Audited& input) {
         formatted("  {} of these still have a direction, with errors of up to {} degrees, which --tolerance counts\n",
                   grouped(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
-    text += formatted("  {} would be zero, infinite or NaN in a viewer, and count as 180 degrees. The first is at {}\n",
-                      samples(audit.error.unlit), unlit_label(input));
+    text += formatted(
+        "  the normals of {} would be zero, infinite or NaN in a viewer, and count as errors of 180 degrees. The first "
+        "is "
+        "at {}\n",
+        samples(audit.error.unlit), unlit_label(input));
   return text;
 }
 

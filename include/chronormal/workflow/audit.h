@@ -53,7 +53,7 @@
 
 namespace chronormal {
 
-/// The rule by which a viewer computes normals from stored ones between two keyframes.
+/// The rule by which a viewer finds normals between two keyframes: from the stored normals, except for kFlat.
 enum class AuditRule {
   kGltf,   ///< normalize(N + sum w D) with the file's deltas, in float32
   kLerp,   ///< linear interpolation between the stored normals of the keyframes

@@ -61,7 +61,7 @@ Status each_keyframe(MotionStream& stream, std::endian order,
     if (Status status = stream.hold(k, k); !status) return status;
     const std::vector<float>& positions = motion.keyframes[k].positions;
     if (positions.size() != 3 * motion.topology.vertex_count())
-      return Error{ErrorCode::kUsage, "", "a keyframe has more or fewer coordinates than the mesh has vertices"};
+      return Error{ErrorCode::kUsage, "", "a keyframe must have three coordinates for each vertex of the mesh"};
     if (motion.origin == Origin{}) {
       if (Status status = each(binary::bytes_of(positions, order, storage)); !status) return status;
       continue;

@@ -117,8 +117,8 @@ void flush_folder_of(const std::string& path);
 
 /// Removes a name. Safe to call from the handler of a signal. Errors: ENOENT where there is none.
 bool remove_file(const char* path) noexcept;
-/// Gives a file a new name. With replace, it takes the place of what has that name already; otherwise that is the error
-/// EEXIST, if the system and the file system can tell it in time.
+/// Renames a file. With `replace`, it takes the place of an existing file of that name. Without `replace`, an existing
+/// file is the error EEXIST. Only where the system cannot rename without replacing, the file is replaced all the same.
 [[nodiscard]] bool rename_file(const char* from, const char* to, bool replace) noexcept;
 
 /// Maps all bytes of a file into memory, to be read once from the first to the last. Returns nullptr where that fails.

@@ -5,8 +5,8 @@
 
 namespace chronormal::inline internal {
 
-/// Opens closed standard streams, so that no file takes their place and gets their text: reading and writing there
-/// stays an error. Makes them carry bytes as they are, and text in UTF-8, where they would not.
+/// Opens each standard stream that is closed on the null device, the wrong way round: reading and writing still fail,
+/// but no file that is opened later becomes this stream. On Windows, bytes then pass unchanged through all three.
 void prepare_standard_streams() noexcept;
 
 /// Actions of a program when something ends it. Each runs in the handler of a signal, or in a thread that the system

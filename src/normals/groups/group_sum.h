@@ -51,9 +51,9 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Returns the control normals of an element. The error of each is at most 2^-24 of its length, and it is zero only if
-/// the exact one is zero. If faces cancel so far that the error of double could be more than 2^-26, the control normals
-/// are computed from integers. Pure. of_faces must have face_control_normals() of all faces
+/// Returns the control normals of an element. Each has an error of at most 2^-24 of its length, and is zero only if the
+/// exact control normal is zero. If faces cancel so far that its error in double could exceed 2^-26 of its length, the
+/// control normals are computed from integers. Pure. of_faces must have face_control_normals() of all faces
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {

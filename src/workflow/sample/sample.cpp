@@ -125,7 +125,9 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   assert(!stream.motion().keyframes.empty());
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
-    return misuse("the length area needs the weighting area; choose that weighting, or the length unit");
+    return misuse(
+        "normals can be twice the area of their faces long only with the weighting area; choose this weighting, or the "
+        "length unit");
   if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name one");
   if (!options.scheme.empty()) {
     const auto scheme = scheme_for(options.scheme, options.elements.kind);

@@ -4,7 +4,7 @@
 /// triangles, in the order in which the polygons were cut:
 ///
 ///     quad         (a, b, c), (a, c, d)     consecutive, with the shared edge at places 0, 2 and 0, 1
-///     larger       any number of triangles in a row, in any order, that fill an outline without a vertex inside
+///     larger       any number of consecutive triangles, in whatever order, that fill an outline with no vertex inside
 ///
 /// The pattern of quads is strict because two triangles that share any other edge are often halves of two neighbouring
 /// quads. An element adds up either the faces whose corners show its normal, or all faces around the point: some tools

@@ -142,8 +142,8 @@ TEST(Expansion, of_compressed_views_is_asked_for_before_they_are_decompressed) {
   EXPECT_NE(error.find("EXT_meshopt_compression"), std::string::npos) << error;
 }
 
-// The files begin with "DRACO", version 2.2, and a mesh without metadata. In sequential encoding, the counts come
-// first; in edgebreaker encoding, they come after one byte and the number of vertices.
+// The files begin with "DRACO", version 2.2, and a mesh without metadata. In sequential encoding, the number of faces
+// comes first. In edgebreaker encoding, it comes after one byte and the number of vertices.
 TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_decoded) {
   const std::string many("\xFF\xFF\xFF\x7F", 4), few("\x03", 1), head("DRACO\x02\x02\x01", 8), no_flags("\0\0", 2);
   for (const std::string& coded :

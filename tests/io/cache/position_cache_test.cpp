@@ -77,7 +77,7 @@ TEST(EachKeyframe, refuses_a_keyframe_of_another_number_of_vertices) {
   const Status status = each_keyframe(broken, std::endian::little, count_one);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kUsage);
-  EXPECT_EQ(status.error().text(), "a keyframe has more or fewer coordinates than the mesh has vertices");
+  EXPECT_EQ(status.error().text(), "a keyframe must have three coordinates for each vertex of the mesh");
 }
 
 }  // namespace

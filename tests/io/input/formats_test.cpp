@@ -23,8 +23,8 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // The number of bytes at the start that a valid file must have: a shorter file must be an error. 0 if the format
-  // cannot detect a cut.
+  // The fewest bytes of this file that are still valid: a file that is cut off before this size must be an error. 0 if
+  // the format cannot detect a cut.
   std::size_t declared_end = 0;
 };
 

@@ -165,7 +165,7 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // The position of the eye must be a double near the far mesh, too.
+    // Rounds the eye to multiples of kUnit, so that its position near the far mesh is exact in double, too.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;

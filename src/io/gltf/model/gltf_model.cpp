@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // JSON
 constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",
                                                          "KHR_animation_pointer"};
-// Extensions of these families describe the appearance or the meaning of a surface, not its geometry.
+// Extensions of these families add materials, lights or meaning, and change no positions, faces or normals of a mesh.
 constexpr std::array<std::string_view, 10> kHarmlessFamilies = {
     "KHR_materials_",       "KHR_texture_",     "EXT_texture_",  "KHR_lights_punctual",
     "EXT_mesh_features",    "EXT_structural_",  "EXT_instance_", "CESIUM_primitive_outline",
@@ -414,7 +414,8 @@ void Parser::connect_nodes() {
       return complaint_.add(pointer, "the node refers to node " + std::to_string(child) + ", but the file has " +
                                          std::to_string(count) + " nodes");
     if (model_.nodes[child].parent)
-      return complaint_.add(pointer, "node " + std::to_string(child) + " is a child of two nodes");
+      return complaint_.add(pointer, "node " + std::to_string(child) +
+                                         " is listed as a child more than once, but a node has at most one parent");
     model_.nodes[child].parent = parent;
   }
   // A walk from a node up through its parents must end at a root. A walk that meets its own path again has found a

@@ -1,5 +1,5 @@
-// Reads the animations of weights: channels by node or by KHR_animation_pointer. Channels of single weights become one
-// track.
+// Reads animations: tracks of weights, by node or by KHR_animation_pointer, and the channels that move, turn or scale
+// nodes. Channels of single weights of one mesh become one track.
 #include <algorithm>
 #include <array>
 #include <limits>

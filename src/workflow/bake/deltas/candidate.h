@@ -33,7 +33,7 @@ struct Candidate {
 /// correction targets.
 [[nodiscard]] VertexColumns columns_of(const Candidate& candidate, std::span<const std::uint32_t> vertices);
 
-/// Returns the nonzero deltas that the file stores, of vertices that show a normal.
+/// Returns, for each target, the nonzero normal deltas that the file stores for vertices that show a normal.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
 /// Converts the arrays of deltas of one target to a column.

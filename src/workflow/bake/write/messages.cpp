@@ -133,9 +133,8 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
     remedies.emplace_back("if some viewers are enough, name them with --for");
   remedies.emplace_back("choose a larger --tolerance");
-  std::string text = "bake could not reach " + tolerance +
-                     (chosen->skinned ? " degrees everywhere under its skin" : " degrees everywhere") +
-                     ", so the closest result was written; ";
+  std::string text = "bake could not bring all errors within " + tolerance + " degrees" +
+                     (chosen->skinned ? " with the skin applied" : "") + ", so the closest result was written; ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
     text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
   warnings.push_back({label_of(mesh, baked), std::move(text)});
