@@ -232,7 +232,7 @@ describe('in Chromium', () => {
     await input.click({ count: 3 });
     await input.type('7');
     await page.keyboard.press('Enter');
-    assert.match(await page.$eval('.face [role=status]', (box) => box.textContent), /figures of face 7 are not in this file/);
+    assert.match(await page.$eval('.face [role=status]', (box) => box.textContent), /none for face 7/);
     await page.click('.face .acts:not(p) button');
     await assertShown(page, figures[0]);
     assert.deepEqual(pages.faults, []);
