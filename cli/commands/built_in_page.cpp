@@ -5,13 +5,19 @@
 #ifdef CHRONORMAL_REPORT_PAGE
 
 // The assembler includes the file. A compiler would have to parse an array with a number for each byte.
-asm(".pushsection .rodata\n"
+// The assembler for Windows has neither .pushsection nor .hidden.
+#ifdef _WIN32
+#define CHRONORMAL_SECTION_BEGIN ".section .rdata,\"dr\"\n"
+#define CHRONORMAL_SECTION_END ".text\n"
+#else
+#define CHRONORMAL_SECTION_BEGIN ".pushsection .rodata\n.hidden chronormal_page_begin, chronormal_page_end\n"
+#define CHRONORMAL_SECTION_END ".popsection\n"
+#endif
+asm(CHRONORMAL_SECTION_BEGIN
     ".global chronormal_page_begin, chronormal_page_end\n"
-    ".hidden chronormal_page_begin, chronormal_page_end\n"
     "chronormal_page_begin: .incbin \"" CHRONORMAL_REPORT_PAGE
     "\"\n"
-    "chronormal_page_end:\n"
-    ".popsection\n");
+    "chronormal_page_end:\n" CHRONORMAL_SECTION_END);
 extern "C" const char chronormal_page_begin[], chronormal_page_end[];
 
 namespace chronormal::cli {
