@@ -152,9 +152,10 @@ class Same(Machine):
         self.make_walk()
         self.check_same("bake", "walk_0.obj", "walk_1.obj", "-o", "walk.glb", output="walk.glb")
 
-    def test_the_data_of_a_report_are_the_same_bytes(self):
+    def test_a_report_and_its_data_are_the_same_bytes(self):
         self.make_targets()
-        self.check_same("report", "bumps.glb", "-o", "report.bin", output="report.bin")
+        for name in "report.bin", "report.html":
+            self.check_same("report", "bumps.glb", "-o", name, output=name)
 
     def test_formats_are_written_in_the_same_bytes(self):
         self.make_walk()

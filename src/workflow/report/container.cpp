@@ -220,6 +220,10 @@ std::string gzipped(std::string_view bytes) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
+  // The header names a system. It is always Unix, so that all systems write the same bytes.
+  gz_header header{};
+  header.os = 3;
+  deflateSetHeader(&stream, &header);
   std::string result;
   // zlib counts bytes in 32 bits, so the text is compressed in blocks.
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;
