@@ -1,7 +1,7 @@
 # Sourced by ./run: makes the files of a release, in dist/.
 
 # The steps in order. Each may be named alone: ./run dist program sums.
-dist_steps=(source program wheel deb npm page core site blender sbom sums)
+dist_steps=(source program others wheel deb npm page core site blender sbom sums)
 
 # dist STEP...: makes the steps, or all steps if none is named.
 dist() {
@@ -60,17 +60,41 @@ build_dist() {
 dist_program() {
   dist_packages python
   build_dist chronormal_cli
-  local name=chronormal-$version-linux-$(uname -m)
-  local folder=$root/build/dist/$name program=$root/build/dist/chronormal
+  unpacked_program "$root/build/dist/chronormal-$version-linux-$(uname -m)" strip "$root/build/dist/chronormal" program
+  pack "$folder" "$dist/$(basename "$folder").tar.gz"
+}
+
+# unpacked_program FOLDER STRIP PROGRAM ARTEFACT: sets `folder`, and fills it with the program and what goes with it. The
+# program of this machine writes the manual page and completions.
+unpacked_program() {
+  local writer=$root/build/dist/chronormal
+  folder=$1
   rm -rf "$folder" && mkdir -p "$folder/share/man/man1" "$folder/share/completions"
-  strip -o "$folder/chronormal" "$program"
+  "$2" -o "$folder/$(basename "$3")" "$3"
   cp "$root/LICENSE" "$folder"
-  "$program" --manual-page >"$folder/share/man/man1/chronormal.1"
-  "$program" --completions bash >"$folder/share/completions/chronormal"
-  "$program" --completions zsh >"$folder/share/completions/_chronormal"
-  "$program" --completions fish >"$folder/share/completions/chronormal.fish"
-  /usr/bin/python3 "$root/tools/dist/components.py" licences program "$folder/THIRD_PARTY"
-  pack "$folder" "$dist/$name.tar.gz"
+  "$writer" --manual-page >"$folder/share/man/man1/chronormal.1"
+  "$writer" --completions bash >"$folder/share/completions/chronormal"
+  "$writer" --completions zsh >"$folder/share/completions/_chronormal"
+  "$writer" --completions fish >"$folder/share/completions/chronormal.fish"
+  /usr/bin/python3 "$root/tools/dist/components.py" licences "$4" "$folder/THIRD_PARTY"
+}
+
+# Builds the program for Linux on 64-bit ARM, and the program and the C library for Windows.
+dist_others() {
+  local build
+  dist_packages python cross
+  build_dist chronormal_cli
+  build_cross arm64
+  build=$root/build/arm64
+  unpacked_program "$build/chronormal-$version-linux-arm64" aarch64-linux-gnu-strip "$build/chronormal" arm64
+  pack "$folder" "$dist/$(basename "$folder").tar.gz"
+  build_cross windows
+  build=$root/build/windows
+  unpacked_program "$build/chronormal-$version-windows-x64" x86_64-w64-mingw32-strip "$build/chronormal.exe" windows
+  rm -rf "$folder/share"
+  x86_64-w64-mingw32-strip --strip-unneeded -o "$folder/chronormal_c.dll" "$build/chronormal_c.dll"
+  cp "$build/chronormal_c.dll.a" "$root/include/chronormal_c.h" "$folder"
+  /usr/bin/python3 "$root/tools/dist/zip_folder.py" "$folder" "$dist/$(basename "$folder").zip"
 }
 
 # Builds the Python package for Debian's Python and for this machine's version of the C library or a newer one, as its
@@ -137,7 +161,7 @@ dist_site() {
 }
 
 # blender_system ARCHITECTURE: prints the name of this kind of machine in the Blender add-on.
-blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
+blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64 | arm64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
 
 # Packs the add-on for Blender with the program for each kind of machine whose archive is in dist/, including archives
 # that were built on other machines.
@@ -151,6 +175,11 @@ dist_blender() {
     folder=$unpacked/$(basename "$archive" .tar.gz)
     machine=${folder##*-linux-}
     programs+=("$(blender_system "$machine")=$folder")
+  done
+  for archive in "$dist/chronormal-$version-windows-x64.zip"; do
+    [ -e "$archive" ] || continue
+    /usr/bin/python3 -m zipfile -e "$archive" "$unpacked"
+    programs+=("windows-x64=$unpacked/$(basename "$archive" .zip)")
   done
   /usr/bin/python3 "$root/tools/dist/blender_addon.py" "$dist/chronormal-blender-$version.zip" "${programs[@]}"
 }

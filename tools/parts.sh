@@ -26,7 +26,7 @@ everywhere  30  web,node,wasm     ^tests/viewers/same_bytes
 pages       15  latex,plots,python  ^tools/pages/|^bench/results/|^cli/reports/compare
 scale       28  vtk,plots         ^(vtk|cli/ranks|tests/(ranks|streams)|tools/pages/vtk)
 peers       20  bench,peers       ^bench/
-dist        16  dist,python,node,site  ^tools/(dist|site)|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
+dist        28  dist,cross,python,node,site  ^tools/(dist|site)|^tests/dist/|^packaging/|^cmake/(sources|install|product)|^\.github/|^run$
 '
 
 part_names() { awk 'NF { print $1 }' <<<"$parts_table"; }

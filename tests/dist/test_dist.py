@@ -214,6 +214,39 @@ class Deb(Unpacked):
             self.assertIn(run("dpkg", "-S", f"*/x86_64-linux-gnu/{file}").split(":")[0], needs)
 
 
+class Others(Unpacked):
+    """The programs of systems that this machine only emulates; tests/machines runs them."""
+
+    def test_windows_gets_programs_that_need_only_windows(self):
+        with zipfile.ZipFile(artefact("chronormal-*-windows-x64.zip")) as archive:
+            archive.extractall(self.folder)
+        (unpacked,) = self.folder.iterdir()
+        for name in "chronormal.exe", "chronormal_c.dll":
+            needed = re.findall(r"DLL Name: (\S+)", run("x86_64-w64-mingw32-objdump", "-p", unpacked / name))
+            self.assertGreater(len(needed), 0)
+            self.assertLessEqual({dll.lower() for dll in needed},
+                                 {"kernel32.dll", "msvcrt.dll", "shell32.dll", "user32.dll", "advapi32.dll"}, name)
+        self.assertTrue((unpacked / "chronormal_c.h").exists() and (unpacked / "chronormal_c.dll.a").exists())
+        self.check_inside(unpacked / "chronormal.exe", "mingw-w64")
+
+    def check_inside(self, program, library):
+        """The page of reports is inside the program, since the archive has no file of it. `library` is that of C."""
+        page = (ROOT / "build/share/chronormal/report.html").read_bytes()
+        self.assertTrue(page in program.read_bytes(), f"{program.name} has no page for reports")
+        licences = {path.name for path in (program.parent / "THIRD_PARTY").iterdir()}
+        self.assertLessEqual({library, "zlib", "draco", "highway", "meshoptimizer", "pugixml", "three"}, licences)
+
+    def test_arm_gets_a_program_that_needs_no_library(self):
+        with tarfile.open(artefact("chronormal-*-linux-arm64.tar.gz")) as archive:
+            archive.extractall(self.folder)
+        (unpacked,) = self.folder.iterdir()
+        text = run("readelf", "-hldW", unpacked / "chronormal")
+        self.assertIn("AArch64", text)
+        self.assertNotIn("NEEDED", text)
+        self.assertNotIn("INTERP", text)
+        self.check_inside(unpacked / "chronormal", "cross-toolchain-base")
+
+
 class Blender(Unpacked):
     """Tests the zip of the add-on, which tests/viewers/blender_addon.test.mjs uses in Blender."""
 
@@ -243,6 +276,11 @@ class Blender(Unpacked):
         self.assertEqual({path.name for path in (shipped / "THIRD_PARTY").iterdir()}, licences)
         (shipped / "chronormal").chmod(0o755)
         self.assertEqual(run(shipped / "chronormal", "--version").split()[1], VERSION)
+
+    def test_has_the_programs_of_other_systems(self):
+        for system, name in ("linux-arm64", "chronormal"), ("windows-x64", "chronormal.exe"):
+            self.assertTrue((self.addon / "bin" / system / name).exists(), system)
+            self.assertGreater(len(list((self.addon / "bin" / system / "THIRD_PARTY").iterdir())), 5)
 
     def test_has_the_version_of_the_project(self):
         self.assertIn(f'version = "{VERSION}"\n', (self.addon / "blender_manifest.toml").read_text())
@@ -377,7 +415,7 @@ class Lists(Unpacked):
         self.assertRegex(whole["creationInfo"]["creators"][0], r"^(Tool|Person|Organization): ")
         names = {whole["SPDXID"]}
         licences = {"MIT", "Apache-2.0", "Apache-2.0 WITH LLVM-exception", "BSD-3-Clause", "Zlib", "NCSA", "PSF-2.0",
-                    "LGPL-2.1-or-later", "GPL-3.0-or-later WITH GCC-exception-3.1"}
+                    "LGPL-2.1-or-later", "GPL-3.0-or-later WITH GCC-exception-3.1", "ZPL-2.1"}
         for package in whole["packages"]:
             self.assertRegex(package["SPDXID"], r"^SPDXRef-[A-Za-z0-9.-]+$")
             self.assertNotIn(package["SPDXID"], names)

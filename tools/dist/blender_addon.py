@@ -3,15 +3,13 @@
     blender_addon.py OUT.zip [SYSTEM=FOLDER]...
 
 SYSTEM is one of the systems that blender/program.py knows, such as linux-x64, and FOLDER has the program chronormal
-for that system, and its licences in LICENSE and THIRD_PARTY if there are any. Equal files give equal bytes;
-SOURCE_DATE_EPOCH is the time of all files.
+for that system, and its licences in LICENSE and THIRD_PARTY if there are any. Equal files give equal bytes.
 """
 
-import os
 import sys
-import time
-import zipfile
 from pathlib import Path
+
+from zip_folder import write_zip
 
 ROOT = Path(__file__).resolve().parents[2]
 NAME = "chronormal_blender"  # the name of the Python package, and the id of the extension
@@ -31,16 +29,6 @@ def files(programs: dict[str, Path]) -> dict[str, Path]:
     return found
 
 
-def pack(out: Path, programs: dict[str, Path]) -> None:
-    when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", 315532800)))[:6]  # a zip cannot store a time before 1980
-    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
-        for name, path in sorted(files(programs).items()):
-            entry = zipfile.ZipInfo(f"{NAME}/{name}", when)
-            entry.compress_type = zipfile.ZIP_DEFLATED
-            is_program = name.startswith("bin/") and name.rsplit("/", 1)[-1].startswith("chronormal")
-            entry.external_attr = (0o100755 if is_program else 0o100644) << 16
-            archive.writestr(entry, path.read_bytes())
-
-
 if __name__ == "__main__":
-    pack(Path(sys.argv[1]), {system: Path(folder) for system, folder in (a.split("=", 1) for a in sys.argv[2:])})
+    programs = {system: Path(folder) for system, folder in (argument.split("=", 1) for argument in sys.argv[2:])}
+    write_zip(Path(sys.argv[1]), {f"{NAME}/{name}": path for name, path in files(programs).items()})

@@ -17,6 +17,7 @@ import subprocess
 import sys
 import tempfile
 import uuid
+import zipfile
 from datetime import datetime, timezone
 from pathlib import Path
 from urllib.parse import quote
@@ -28,18 +29,23 @@ SOURCES = BUILD / "wasm-sources"
 LIBRARIES = ["chronormal", "chronormal_io"]
 # The artefacts: the pattern of the file in dist/, its build, its targets, and its description.
 ARTEFACTS = {
+    "arm64": ("chronormal-*-linux-arm64.tar.gz", "arm64", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "program": ("chronormal-*-linux-*.tar.gz", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
+    "windows": ("chronormal-*-windows-x64.zip", "windows", [*LIBRARIES, "chronormal_cli", "chronormal_c"], "APPLICATION"),
     "wheel": ("chronormal-*.whl", "dist", [*LIBRARIES, "_chronormal"], "LIBRARY"),
     "deb": ("chronormal_*.deb", "source/*/build/program", [*LIBRARIES, "chronormal_cli", "chronormal_c"], "INSTALL"),
     "npm": ("chronormal-*.tgz", "wasm", [*LIBRARIES, "chronormal_cli"], "LIBRARY"),
     "page": ("chronormal-*.html", "wasm", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
-    "blender": ("chronormal-blender-*.zip", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
+    "blender": ("chronormal-blender-*.zip", None, [], "APPLICATION"),
     "header": ("chronormal_core.h", None, [], "SOURCE"),
     "core": ("chronormal_core.cpp", None, [], "SOURCE"),
     "site": ("chronormal-*-site.tar.gz", None, [], "ARCHIVE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
-WITH_PAGE = ("program", "deb", "npm", "page", "blender")  # artefacts that contain the components of the pages of web/
+WITH_PAGE = ("program", "arm64", "windows", "deb", "npm", "page")  # with the components of the pages of web/
+
+# The artefacts whose programs the add-on for Blender contains, by their folders in it; "program" has all other folders.
+BLENDER_PROGRAMS = {"linux-arm64": "arm64", "windows-x64": "windows"}
 
 # The SPDX names of Debian's names of licences; and the packages whose `copyright` has no licence for all files.
 SPDX_NAMES = {
@@ -50,16 +56,20 @@ SPDX_NAMES = {
     "Expat": "MIT",
     "Expat with embedded exception": "MIT",
     "Expat or Apache": "MIT OR Apache-2.0",
+    "ZPL-2.1": "ZPL-2.1",
     "Zlib": "Zlib",
 }
 SPDX_LICENCES = {
     "gcc-12": "GPL-3.0-or-later WITH GCC-exception-3.1",
+    "gcc-12-cross": "GPL-3.0-or-later WITH GCC-exception-3.1",
+    "gcc-mingw-w64": "GPL-3.0-or-later WITH GCC-exception-3.1",
     "glibc": "LGPL-2.1-or-later",
+    "cross-toolchain-base": "LGPL-2.1-or-later",  # glibc, for another machine
     "emscripten": "(MIT OR NCSA) AND (Apache-2.0 WITH LLVM-exception)",  # including musl and libc++
     "llvm-toolchain-14": "Apache-2.0 WITH LLVM-exception",
     "python3.11": "PSF-2.0",
 }
-NO_CODE = {"linux-libc-dev"}  # it has only the numbers of system calls
+NO_CODE = {"linux-libc-dev", "linux-libc-dev-arm64-cross"}  # they have only the numbers of system calls
 
 
 def run(*command, **options):
@@ -146,6 +156,11 @@ def shared_libraries(artefact):
 
 def components_of(kind, artefact=None):
     """Returns the components that are compiled in, and the components of the shared libraries that are needed."""
+    if kind == "blender":
+        with zipfile.ZipFile(artefact) as archive:
+            systems = {name.split("/")[2] for name in archive.namelist() if "/bin/" in name}
+        programs = (components_of(BLENDER_PROGRAMS.get(system, "program"))[0] for system in sorted(systems))
+        return list({component.name: component for program in programs for component in program}.values()), []
     build, targets = ARTEFACTS[kind][1:3]
     if build is None:
         return [], []
