@@ -74,7 +74,7 @@ function taskOf(command, input, options, more = () => ['--json']) {
   let outputs = 'out';
   while (folders.has(outputs)) outputs += '_';
   return {
-    // With ./ in front, the program does not read "-" as standard input, nor a name in brackets as a list.
+    // The program would read "-" as standard input, and a name in brackets as a list, if ./ were not in front.
     args: [command, ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,

@@ -30,7 +30,7 @@ class ScaledLinear {
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
     if (u0 == u1) return 1;
-    // With s beyond e^6, the curve would practically jump, and in float32 the other end would lose digits.
+    // The curve would practically jump if s were beyond e^6, and in float32 the other end would lose digits.
     constexpr double kRange = 6;
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;

@@ -397,8 +397,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   if (result.subjects.empty()) result.errors.clear();
   if (run.shard) {
-    // With peers, this shard reads only its own keyframes, and the checksums cover these. Without peers, it reads all
-    // keyframes for the facts about the whole motion.
+    // This shard reads only its own keyframes if it has peers, and the checksums cover these. Without peers, it reads
+    // all keyframes for the facts about the whole motion.
     const Shard read = run.peers != nullptr ? *run.shard : Shard{};
     const Status status = seen.finish(keyframes_of_shard(motion, read), run.checksums);
     if (!status) return status.error();

@@ -45,7 +45,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
     if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
-    // Where a face turns to its edge and back, without showing the other side, one interval ends and the next begins.
+    // One interval ends and the next begins if a face turns to its edge and back, without showing the other side.
     if (is_front) {
       when.to = {change.lower, change.upper};
       close();

@@ -224,7 +224,7 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // With the best length of one end normal, only rounding remains as error.
+  // Only rounding remains as error if one end normal has its best length.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 

@@ -165,7 +165,7 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// With these weights, a vertex is on the line through two others, or very close to it.
+// The weights place a vertex on the line through two others, or very close to it.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -182,7 +182,7 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // With this weight the face is so close to the collapse that double cannot decide. The result must say so.
+    // The face is so close to the collapse at this weight that double cannot decide. The result must say so.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
     EXPECT_EQ(evaluate(normals, std::vector{0.0, 0.7}).evaluation.zeros, 0U);

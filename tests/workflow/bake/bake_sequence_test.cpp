@@ -358,7 +358,7 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // With a hard edge, the two halves separate at the crease. No vertices are added, since each half already has its
+  // The two halves separate at the crease if its edge is hard. No vertices are added, since each half already has its
   // own.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
@@ -511,7 +511,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // With the bends, the error must be smaller than with unit normals at the keys alone.
+  // The bends must make the error smaller than unit normals at the keys alone.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);

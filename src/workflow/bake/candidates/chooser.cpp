@@ -26,8 +26,8 @@ constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
 // candidate, the candidate is not examined further. If the best candidate lacks nothing but the tolerance, kFarther
 // times is enough for a candidate that is beyond the tolerance as well.
 constexpr double kHopeless = 2, kFarther = 1.25;
-// With at most kFewExtras correction targets, a file may grow more. A correction target takes about kBytesOfExtra bytes
-// for each vertex.
+// A file may grow more if it gets at most kFewExtras correction targets. A correction target takes about kBytesOfExtra
+// bytes for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
 // A candidate is better than the stored deltas if it leaves at most this part of the mean error.
 constexpr double kBetter = 0.95;
