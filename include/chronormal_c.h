@@ -43,8 +43,8 @@ extern "C" {
 /* The outcome of a call. The values are the exit codes of the program. */
 typedef enum chronormal_status {
   CHRONORMAL_DONE = 0,
-  CHRONORMAL_FAILED = 1,       /* memory, files, or an internal failure */
-  CHRONORMAL_USAGE = 2,        /* an argument that does not exist or fit */
+  CHRONORMAL_FAILED = 1,       /* memory or files could not be used, or the library failed */
+  CHRONORMAL_USAGE = 2,        /* an argument names something that does not exist, or does not fit the others */
   CHRONORMAL_INVALID_INPUT = 3 /* the data are wrong */
 } chronormal_status;
 
@@ -66,12 +66,12 @@ typedef struct chronormal_mesh {
 
 typedef struct chronormal_vectors {
   const float* data;
-  size_t stride; /* bytes; 0: 12 */
+  size_t stride; /* bytes from one vector to the next; 0 stands for 12 */
 } chronormal_vectors;
 
 typedef struct chronormal_result {
   float* data;
-  size_t stride; /* bytes; 0: 12 */
+  size_t stride; /* bytes from one vector to the next; 0 stands for 12 */
 } chronormal_result;
 
 typedef enum chronormal_elements {
@@ -83,11 +83,11 @@ typedef enum chronormal_elements {
 typedef struct chronormal_options {
   size_t size;           /* sizeof(chronormal_options) */
   int elements;          /* a chronormal_elements; usually CHRONORMAL_VERTICES */
-  int separate;          /* not 0: vertices at one point are not joined, so that seams show */
-  double crease_angle;   /* degrees, of corners: edges that are sharper at t = 0 are hard; usually 180 */
+  int separate;          /* if not 0, vertices at one point do not share a normal, so that seams show */
+  double crease_angle;   /* degrees; for corners, edges with a larger angle at t = 0 are hard; usually 180 */
   const char* weighting; /* "area" (exact), or another name of docs/truth.md; NULL: area */
-  double tolerance;      /* radians; usually 1e-6; 1e-3 needs a third of the memory */
-  int all_threads;       /* not 0: work on all cores */
+  double tolerance;      /* the largest error in radians; usually 1e-6; 1e-3 needs a third of the memory */
+  int all_threads;       /* if not 0, all cores are used */
 } chronormal_options;
 
 CHRONORMAL_API void chronormal_options_init(chronormal_options* options);
@@ -101,11 +101,13 @@ typedef enum chronormal_format {
 
 #define CHRONORMAL_ALL ((size_t)-1)
 
-/* The destination and the range of normals to write: normal i is at data + i * stride, for every range. */
+/* The memory for normals, and the range of normals to write. Normal i is written to data + i * stride, whatever the
+ * range. */
 typedef struct chronormal_output {
   size_t size;         /* sizeof(chronormal_output) */
-  void* data;          /* of normal 0 */
-  size_t stride;       /* bytes; 0: as many as the format has, which is all that packed formats may have */
+  void* data;          /* the memory of normal 0 */
+  size_t stride;       /* bytes from one normal to the next; 0 stands for the size of the format, which is the only
+                        * stride that formats of 4 bytes may have */
   int format;          /* a chronormal_format; usually CHRONORMAL_FLOAT32 */
   size_t first, count; /* the normals that are written; usually 0 and CHRONORMAL_ALL */
 } chronormal_output;
@@ -125,7 +127,7 @@ CHRONORMAL_API chronormal_status chronormal_curves_next(chronormal_curves* curve
                                                         chronormal_vectors to);
 /* Returns the number of normals: faces, vertices or corners. */
 CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
-/* Returns the memory of the curves in bytes. */
+/* Returns the number of bytes of memory that the curves take. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
 /* Writes the unit normals at t, with (0, 0, 0) for elements without a normal. The number of such elements is stored in
  * `zeros`, unless it is NULL. */
@@ -145,8 +147,8 @@ CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);
 /* A morph target: its deltas, and the vertices to which they are added, in ascending order. If `vertices` is NULL,
  * every vertex has a delta. */
 typedef struct chronormal_target {
-  size_t count;             /* of deltas */
-  const uint32_t* vertices; /* count of them, or NULL */
+  size_t count;             /* number of deltas */
+  const uint32_t* vertices; /* `count` numbers of vertices, or NULL */
   chronormal_vectors deltas;
 } chronormal_target;
 
@@ -161,7 +163,7 @@ CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
 /* Writes the unit normals at some weights, with a weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
-/* Sets the weights and moves the shapes, once per frame. Afterwards any threads may write ranges of the normals. */
+/* Sets the weights and moves the vertices, once per frame. Afterwards several threads may write ranges of normals. */
 CHRONORMAL_API chronormal_status chronormal_blend_set_weights(chronormal_blend* blend, const double* weights);
 CHRONORMAL_API chronormal_status chronormal_blend_write(const chronormal_blend* blend, const chronormal_output* output,
                                                         size_t* zeros);

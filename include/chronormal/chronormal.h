@@ -15,22 +15,23 @@
 
 #include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, and their transforms
-#include "chronormal/normals/mesh_normals.h"     // begin here: unit normals between keyframes, at weights
+#include "chronormal/normals/mesh_normals.h"     // unit normals between keyframes, or at weights; begin here
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
 // Groups of corners that share a normal, and sums over these groups.
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"  // the baselines: cross products computed anew at every t
-// The weightings of other tools (area, angle, uniform and so on), and quadratics that are fitted to them.
+#include "chronormal/normals/recompute.h"  // the baselines, which compute cross products anew at every t
+// The weightings that other tools use for vertex normals (area, angle, uniform and so on), and quadratic curves that
+// are fitted to them.
 #include "chronormal/normals/weighting.h"
 
-#include "chronormal/schemes/scheme.h"  // the ways to interpolate, by name
+#include "chronormal/schemes/scheme.h"  // the schemes that interpolate normals, by name
 
 #include "chronormal/analysis/certify.h"  // bounds of the largest error of a scheme over a segment
 #include "chronormal/analysis/cones.h"    // cones and bounds of clusters over an interval, means over a shutter
 // The points inside a closed mesh, and the times when they cross its surface.
 #include "chronormal/analysis/containment.h"
 #include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
-// The times when a face collapses, and the side from which it is seen, exactly.
+// The times when a face collapses, and the side from which a viewer sees the face. Both are exact.
 #include "chronormal/analysis/signs.h"
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, coinciding faces
 

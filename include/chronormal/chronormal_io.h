@@ -1,4 +1,5 @@
-/// chronormal with files: all public headers of the library `chronormal_io`, after those of `chronormal`.
+/// chronormal with files. Includes all public headers of the library `chronormal_io`, after those of the library
+/// `chronormal`.
 #ifndef CHRONORMAL_CHRONORMAL_IO_H_
 #define CHRONORMAL_CHRONORMAL_IO_H_
 
@@ -10,7 +11,7 @@
 
 #include "chronormal/workflow/audit.h"  // errors of the normals that viewers render from a file
 #include "chronormal/workflow/bake.h"   // true normals written into glTF files
-// The paper's Table 1 for any motion; schemes compared with keyframes left out.
+// Comparisons of interpolation schemes: Table 1 of the paper for any motion, and errors at keyframes that are left out.
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/errors.h"  // errors of rendered normals: sums, or every single error as arrays and files
 // The contents of a motion or a glTF file, and possible problems of its normals.

@@ -1,10 +1,10 @@
 /// Certificates: lower and upper bounds of the largest angular error of a scheme over a whole segment.
 ///
-/// Samples can miss the worst instant. A certificate cannot: for each element it encloses
+/// Samples can miss the worst instant, and a certificate cannot. For each element the certificate encloses
 ///
 ///     the supremum over t in [0, 1] of the angle between the scheme's normal, in float32, and the exact n(t)
 ///
-/// The error is at most `upper` at every t, and at least `lower` at the instant `at`.
+/// The error is at most `upper` at every t, and at least `lower` at the t named `at`.
 ///
 ///     auto slerp = make_scheme("slerp").value();
 ///     slerp->prepare({&segment, {0, normals.size()}, normals});
@@ -15,16 +15,16 @@
 ///            exact normal is a quadratic. The Bernstein coefficients of their cross and dot products bound the angle.
 ///            The piece with the largest bound is halved until this bound meets the largest error found in the middle
 ///            of a piece (docs/theory.md, section 19).
-/// Rounding   is included: coefficients have their float32 values, the radius of the ball includes a proven bound of
-///            the rounding when float32 evaluates them, and the errors of control normals are added. `polynomial` and
-///            `recompute` have the bound that they guarantee, kExactTolerance.
+/// Rounding   The bounds include rounding. The coefficients have their float32 values. The radius of the ball includes
+///            a proven bound of the rounding when float32 evaluates the coefficients. The errors of control normals are
+///            added. The bound of `polynomial` and `recompute` is kExactTolerance, which these schemes guarantee.
 /// Collapses  If n(t), or the vector that the scheme normalises, vanishes inside the segment, no bound below half a
 ///            turn is claimed: `upper` is pi, and [from, to] contains the place.
 /// Units      angles in radians; t is the fraction of the segment, from 0 to 1.
 /// Threads    pure. Allocates a little, once for each call.
 /// Cost       about 10 pieces per element: 1.5 to 5 microseconds; schemes of nested slerps take 50 times as long.
-/// Limits     Bounds are for normals at random access, not for playback, which drifts. Scheme and control normals must
-///            be prepared from the same block.
+/// Limits     The bounds hold if a scheme is evaluated at arbitrary t. They do not hold for playback, whose errors add
+///            up from frame to frame. Scheme and control normals must be prepared from the same block.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFY_H_
 #define CHRONORMAL_ANALYSIS_CERTIFY_H_
 
@@ -42,29 +42,29 @@
 
 namespace chronormal {
 
-/// The largest angular error of one element over a segment, between two bounds.
+/// The result for one element: the largest angular error of a scheme over a segment lies between two bounds.
 struct ErrorBounds {
-  double lower = 0;         ///< radians; the error reaches it at `at`
-  double upper = 0;         ///< radians; the error is never above this; pi if no smaller bound could be shown
-  double at = 0;            ///< local t
-  double from = 0, to = 1;  ///< local t: the piece with the largest bound
+  double lower = 0;         ///< radians; the error at `at` is at least this
+  double upper = 0;         ///< radians; no error is larger; pi if no smaller bound could be shown
+  double at = 0;            ///< the t, in [0, 1], of the error `lower`
+  double from = 0, to = 1;  ///< the piece of [0, 1], in t, that has the largest bound
 };
 
 struct CertifyOptions {
-  /// Stops refining an element when its bounds differ by at most this share of the upper bound, plus `gap`, not
-  /// counting the rounding that the bounds include.
+  /// Stops refining an element when its two bounds differ by at most `relative_gap` times the upper bound, plus `gap`.
+  /// The part of the difference that is due to rounding does not count.
   double relative_gap = 1e-3;
-  double gap = 1e-6;  ///< radians
-  /// Stops refining an element when its upper bound is at most this.
-  double enough = 0;  ///< radians
+  double gap = 1e-6;  ///< an angle in radians, as used above
+  /// Stops refining an element when its upper bound is at most this angle.
+  double enough = 0;  ///< an angle in radians; 0 refines every element as far as the other limits allow
   /// Stops refining an element when its upper bound is at most the largest lower bound of earlier elements in the
   /// block, for callers who only need the worst element.
   bool only_worst = false;
-  /// Stops refining an element when the segment is cut into this many pieces.
-  std::size_t most_pieces = 256;  // at most 256
+  /// Stops refining an element when [0, 1] is cut into this many pieces for the element.
+  std::size_t most_pieces = 256;  // may not exceed 256
 };
 
-/// Bounds of the errors of the three control normals n0, m and n1 of an element: the largest distance between a
+/// Bounds of the errors of the three control normals n0, m and n1 of an element. Each is the largest distance between a
 /// component and its exact value.
 using ControlErrors = std::array<double, 3>;
 

@@ -1,9 +1,9 @@
 /// Normal cones: circular cones that contain the normals of an element over a whole interval of time.
 ///
-/// The part of the curve n(t) over [t0, t1] has three control normals of its own (eq. 5 of docs/theory.md, restricted),
-/// and every n(t) is a convex combination of these three. A circular cone with a half-angle of at most 90 degrees is
-/// convex, so a cone that contains the three control normals contains every normal of the interval. (A cone around the
-/// two end normals does not.)
+/// The part of the curve n(t) over [t0, t1] has three control normals of its own (eq. 5 of docs/theory.md, restricted
+/// to the interval), and every n(t) of the interval is a convex combination of these three vectors. A circular cone
+/// with a half-angle of at most 90 degrees is convex. If such a cone contains the three control normals, the cone
+/// contains every normal of the interval. (A cone around the normals at t0 and t1 need not contain the others.)
 ///
 /// A cone is four floats, made for the test of back-face culling. For a direction of view d, from the eye into the
 /// scene,
@@ -51,29 +51,32 @@ struct NormalCone {
   friend constexpr bool operator==(const NormalCone&, const NormalCone&) = default;
 };
 
-/// Returns the half-angle in radians: up to pi / 2, pi for the whole sphere, and 0 for the empty cone.
+/// Returns the half-angle of a cone in radians. It is at most pi / 2, except for the whole sphere, which has pi. The
+/// empty cone has 0.
 [[nodiscard]] double half_angle(const NormalCone& cone) noexcept;
 
-/// Writes the cone of each element over [t0, t1]. If a control normal of the part nearly vanishes, so that double
-/// cannot determine its direction, the cone of the whole segment is written. Cost: a few nanoseconds per element.
-/// result must have as many elements as normals; 0 <= t0 <= t1 <= 1
+/// Writes the cone of each element over the times [t0, t1]. If a control normal of the interval nearly vanishes, so
+/// that double cannot determine its direction, the cone of the whole segment is written instead. Cost: a few
+/// nanoseconds per element. Preconditions: result has as many elements as normals; 0 <= t0 <= t1 <= 1.
 void normal_cones(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result) noexcept;
 
-/// Writes the cones of a range of faces over [t0, t1], from positions. If double cannot determine the direction of a
-/// control normal, integers do. Cost: that of the control normals, plus a few nanoseconds per face. result must have
-/// faces.count elements; faces must lie inside the topology; 0 <= t0 <= t1 <= 1
+/// Writes the cones of a range of faces over the times [t0, t1], computed from positions. If double cannot determine
+/// the direction of a control normal, integer arithmetic does. Cost: that of the control normals, plus a few
+/// nanoseconds per face. Preconditions: result has faces.count elements; the faces exist in the topology; 0 <= t0 <= t1
+/// <= 1.
 void face_normal_cones(const Segment& segment, IndexRange faces, double t0, double t1,
                        std::span<NormalCone> result) noexcept;
 
-/// Returns the cone of the normal of a vertex or corner, which is the sum of these faces (NormalGroups::faces()).
-/// Always computes in integers: some microseconds for each face. Preconditions are those of face_normal_cones().
+/// Returns the cone of a vertex or corner, whose normal is the sum of the normals of these faces
+/// (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face. Preconditions
+/// are those of face_normal_cones().
 [[nodiscard]] NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
                                               double t1) noexcept;
 
-/// Returns a cone that contains all the given cones: for a cluster from its faces, for a node from its children, or for
-/// a face from several segments. Empty cones are ignored, and without other cones the result is the empty cone. The
-/// result is close to the smallest possible cone (a few percent wider), and each level of a hierarchy adds about 1e-7
-/// rad of rounding. Cost: 11 passes over the cones.
+/// Returns a cone that contains all the given cones. Callers use it for a cluster with the cones of its faces, for a
+/// node of a hierarchy with those of its children, or for a face with those of several segments. Empty cones are
+/// ignored; if all cones are empty, the result is empty. The result is a few percent wider than the smallest possible
+/// cone, and each level of a hierarchy adds about 1e-7 rad of rounding. Cost: 11 passes over the cones.
 [[nodiscard]] NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept;
 
 // The bounds of clusters of faces of a deforming mesh, in the layout of meshoptimizer. They are computed for an
@@ -101,18 +104,18 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 
 /// The members of meshopt_Bounds, in their order.
 struct ClusterBounds {
-  float center[3] = {};  ///< a sphere around all vertices on their paths
+  float center[3] = {};  ///< center and radius: a sphere that contains the whole path of every vertex
   float radius = 0;
-  float cone_apex[3] = {};  ///< a point behind all faces at any instant
+  float cone_apex[3] = {};  ///< a point that is behind the planes of all faces at every instant of the interval
   float cone_axis[3] = {};
-  float cone_cutoff = 0;  ///< the sine of the half-angle, plus 2^-20
+  float cone_cutoff = 0;  ///< the sine of the half-angle of the normals' cone, plus 2^-20
   std::int8_t cone_axis_s8[3] = {};
   std::int8_t cone_cutoff_s8 = 0;
 };
 
-/// Returns the bounds of some faces over [t0, t1]. If no cone with a half-angle of 84 degrees contains their normals,
-/// the cluster is never culled. Cost: about 0.3 microseconds per face; allocates memory. faces must lie inside the
-/// topology; 0 <= t0 <= t1 <= 1
+/// Returns the bounds of some faces over the times [t0, t1]. If no cone with a half-angle of 84 degrees contains their
+/// normals, the bounds never let a program cull the cluster. Cost: about 0.3 microseconds per face. Allocates memory.
+/// Preconditions: the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 [[nodiscard]] ClusterBounds cluster_bounds(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
                                            double t1);
 
@@ -136,24 +139,26 @@ struct ClusterBounds {
 // Threads    pure, on the thread that calls: no allocation, no throw, the same bits everywhere.
 
 struct ShutterNormal {
-  Vec3d mean;        ///< mean of n(t); for triangles twice the mean vector area
-  Vec3d mean_unit;   ///< mean of n(t) / |n(t)|; zero if n is zero all the time
-  double error = 0;  ///< bound of the distance between mean_unit and its exact value; about 1e-7 if nothing collapses
+  Vec3d mean;       ///< mean of n(t), in squared units of length; for triangles twice the mean vector area
+  Vec3d mean_unit;  ///< mean of n(t) / |n(t)|; zero if n is zero at all times
+  /// Bound of the distance between mean_unit and its exact value; about 1e-7 if n(t) stays away from zero.
+  double error = 0;
 };
 
-/// Returns the means over [t0, t1]. Control normals are assumed to have a relative error of at most 2^-26, and `error`
-/// includes this. Cost: about 0.2 microseconds if normals turn little, more if n(t) comes close to zero. 0 <= t0 <= t1
-/// <= 1; if the two are equal, the means are the normals at that instant
+/// Returns the means over the times [t0, t1]. Assumes that control normals have a relative error of at most 2^-26, and
+/// includes this error in `error`. If t0 and t1 are equal, the means are the normals at that instant. Cost: about 0.2
+/// microseconds if normals turn little, more if n(t) comes close to zero. Precondition: 0 <= t0 <= t1 <= 1.
 [[nodiscard]] ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1) noexcept;
 
-/// Writes the means of a range of faces over [t0, t1], from positions. If control normals of the interval cancel so far
-/// that double is not accurate enough, integers compute them. result must have faces.count elements; faces must lie
-/// inside the topology; 0 <= t0 <= t1 <= 1
+/// Writes the means of a range of faces over the times [t0, t1], computed from positions. If control normals of the
+/// interval cancel so far that double is not accurate enough, integer arithmetic computes the means. Preconditions:
+/// result has faces.count elements; the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 
-/// Returns the means of a vertex or corner, whose normal is the sum of these faces (NormalGroups::faces()). Always
-/// computes in integers: some microseconds for each face. Preconditions are those of face_shutter_normals().
+/// Returns the means of a vertex or corner, whose normal is the sum of the normals of these faces
+/// (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face. Preconditions
+/// are those of face_shutter_normals().
 [[nodiscard]] ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces,
                                                     double t0, double t1) noexcept;
 

@@ -49,18 +49,19 @@ struct Crossing {
   std::uint32_t point = 0;  ///< index of the point
   std::uint32_t face = 0;   ///< the face; if an edge or a vertex is crossed, one of its faces
   double t = 0;             ///< t in the segment, within 2^-44 of the exact root
-  bool inward = false;      ///< the winding number rises
-  Vec3d normal;             ///< unit normal of the face at t; (0, 0, 0) if there is none
+  bool inward = false;      ///< true if the point moves to the back of the face; the winding number then rises
+  Vec3d normal;             ///< unit normal of the face at t; (0, 0, 0) if the face has no normal there
 
   friend bool operator==(const Crossing&, const Crossing&) = default;
 };
 
 class Containment {
  public:
-  /// Prepares a mesh for any number of segments and points: O(corners log corners), once. The positions, of any
-  /// keyframe, only tell which faces are close to each other, and have no influence on results. Errors: kInvalidInput
-  /// for a mesh that is not closed, with the number of boundary edges, which belong to a single face, and the number of
-  /// edges that several faces share but that occur more often in one direction than in the other.
+  /// Prepares a mesh for any number of segments and points, in O(corners log corners). The positions may be those of
+  /// any keyframe. They only tell which faces are close to each other, and do not change any result. Errors:
+  /// kInvalidInput for a mesh that is not closed. The message gives the number of boundary edges, which belong to a
+  /// single face. It also gives the number of edges that several faces share but that occur more often in one direction
+  /// than in the other.
   [[nodiscard]] static Result<Containment> make(const Topology& topology, const Points& points,
                                                 VectorView<const float> positions);
 
@@ -69,8 +70,8 @@ class Containment {
   ~Containment();
 
   /// Returns the winding number of each point at t, which is rounded to a multiple of 2^-48. Points move on straight
-  /// lines like vertices; a point rests if its positions in `from` and `to` are the same. The segment must have the
-  /// topology that was given to make(); `from` and `to` must have a position for each point
+  /// lines like vertices; a point rests if its positions in `from` and `to` are the same. Preconditions: the segment
+  /// has the topology that was given to make(); `from` and `to` have a position for each point.
   [[nodiscard]] std::vector<std::int32_t> winding_numbers(const Segment& segment, double t,
                                                           VectorView<const float> from,
                                                           VectorView<const float> to) const;

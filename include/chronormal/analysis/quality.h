@@ -1,8 +1,9 @@
 /// Measures the errors of interpolated normals against exact ones, like Table 1 of the paper.
 ///
 /// The angles to the exact normal at N equidistant t = i / (N - 1) of a segment are summed, over all elements and
-/// segments of a mesh. A pair (element, t) whose exact normal is zero is counted as degenerate and left out; a pair for
-/// which only the scheme has no direction is counted as missing.
+/// segments of a mesh. A sample is one element at one t. A sample whose exact normal is zero is counted as degenerate
+/// and left out of the sum. A sample for which only the scheme has no direction is counted as missing, and is left out,
+/// too.
 ///
 /// The exact normals that schemes are compared with are computed as in the paper, by the cross product (eq. 1) of
 /// vertices interpolated at t, in double and from positions alone. They use neither control normals nor schemes, so an
@@ -22,24 +23,25 @@
 
 namespace chronormal {
 
-/// Writes n(t) of a range of faces. n(t) is a sum of products; if it is below 1e-10 of their size, double cannot tell
-/// it from rounding errors, and integers compute it. The result is (0, 0, 0) if n(t) is zero, or so close to a zero
-/// that rounding t would turn it. Threads: pure. result must have faces.count elements; t in [0, 1]
+/// Writes n(t) of a range of faces. n(t) is a sum of products. If the sum is below 1e-10 of the size of these products,
+/// double cannot tell it from rounding errors, and integer arithmetic computes it. The result is (0, 0, 0) if n(t) is
+/// zero, or so close to zero that rounding t to a double would turn it. Threads: pure. Preconditions: result has
+/// faces.count elements; t is in [0, 1].
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
-/// Returns n(t) of a vertex or corner in the same way: the sum of the normals of its faces, even if they nearly cancel.
-/// Threads: pure. t in [0, 1]
+/// Returns n(t) of a vertex or corner with the same accuracy. n(t) is the sum of the normals of its faces, which may
+/// nearly cancel. Threads: pure. Precondition: t is in [0, 1].
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
-/// The normal n(t) of a face in double, and the size of the products whose sum it is, which determines its rounding
-/// error.
+/// The normal n(t) of a face in double, and the sum of the absolute values of the products that make it up, which
+/// bounds the rounding error of the normal.
 struct ReferenceArea {
   Vec3d n;
   double products = 0;
 };
 [[nodiscard]] ReferenceArea reference_area(const Segment& segment, std::uint32_t face, double t) noexcept;
 
-/// The place of an angular error.
+/// The place of an angular error: a segment, an element and a t in the segment.
 struct ErrorPlace {
   std::size_t segment = 0;
   std::size_t element = 0;
@@ -47,22 +49,23 @@ struct ErrorPlace {
 };
 
 struct Quality {
-  double sum = 0;              ///< sum of the angles in radians: q and Q of the paper
-  double sum_of_squares = 0;   ///< radians squared
-  double max = 0;              ///< radians
+  double sum = 0;              ///< sum of the angles in radians, from which the paper's q and Q follow
+  double sum_of_squares = 0;   ///< sum of the squared angles, in radians squared
+  double max = 0;              ///< the largest angle in radians
   ErrorPlace max_at;           ///< the first place with the largest angle
-  std::size_t count = 0;       ///< pairs that were summed
-  std::size_t degenerate = 0;  ///< pairs without an exact normal, left out
-  std::size_t missing = 0;     ///< pairs without a normal of the scheme, left out
+  std::size_t count = 0;       ///< number of samples that were summed
+  std::size_t degenerate = 0;  ///< number of samples without an exact normal, which are left out
+  std::size_t missing = 0;     ///< number of samples for which the scheme has no normal, which are left out
 
-  [[nodiscard]] double mean() const noexcept;  ///< radians; 0 if nothing was summed
-  [[nodiscard]] double rms() const noexcept;   ///< radians
+  [[nodiscard]] double mean() const noexcept;  ///< the mean angle in radians; 0 if nothing was summed
+  [[nodiscard]] double rms() const noexcept;   ///< the root of the mean squared angle, in radians
 
-  /// Adds the errors of a batch: the angles between exact[i], which need not be unit vectors, and normals[i], for the
-  /// elements first_element + i of one segment at one t.
+  /// Adds the errors of a batch of samples of one segment at one t. The error of element first_element + i is the angle
+  /// between normals[i] and exact[i], which need not be unit vectors.
   void add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first);
 
-  /// Adds the sums of another object. Adding the same parts in the same order gives the same bits.
+  /// Adds the sums of another object to those of this one. If the same objects are added in the same order, the sums
+  /// have the same bits.
   void add(const Quality& other);
 };
 

@@ -13,8 +13,9 @@
 ///            given as [0, 2^-200]. The limit directions are within 1e-14 of their value.
 /// Nearly     A face that was made to collapse and then rounded may only come so close to a collapse that its direction
 ///            is nearly discontinuous. Such a face does not count here; workflow/inspect.h counts both.
-/// Units      t: fraction of the segment, in [0, 1].
-/// Threads    pure; for one face without allocation or throw.
+/// Nearly     A face that was made to collapse may, after its positions were rounded, only come very close to a
+///            collapse. Its direction then changes almost at once. Such a face is not found here; workflow/inspect.h
+///            counts such faces, too.
 /// Source     docs/theory.md, section 3.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_H_
@@ -32,27 +33,29 @@
 
 namespace chronormal {
 
-/// An instant without a normal.
+/// An instant at which a face has no normal.
 struct Collapse {
-  double lower = 0, upper = 0;  ///< bounds of t
-  bool turns_over = false;      ///< true if the direction after is opposite to the one before; false at t = 0 and t = 1
-  Vec3d before, after;          ///< the limits of n(t) / |n(t)| on both sides; (0, 0, 0) before t = 0 and after t = 1
+  double lower = 0, upper = 0;  ///< bounds of the t of the collapse
+  /// The limits of n(t) / |n(t)| from earlier and from later times; `before` is (0, 0, 0) at t = 0, `after` at t = 1.
+  bool turns_over = false;
+  Vec3d before, after;  ///< the limits of n(t) / |n(t)| on both sides; (0, 0, 0) before t = 0 and after t = 1
 };
 
 struct Collapses {
-  std::array<Collapse, 2> at;  ///< ascending in t
+  std::array<Collapse, 2> at;  ///< the collapses, in ascending order of t
   std::size_t count = 0;
-  bool always = false;  ///< n is zero in the whole segment; count is 0
+  bool always = false;  ///< true if n is zero in the whole segment; count is then 0
 
   [[nodiscard]] std::span<const Collapse> instants() const& noexcept { return {at.data(), count}; }
   void instants() && = delete;  ///< forbidden, since a loop over a temporary would outlive it
 };
 
-/// Finds the collapses of one face, from its positions. Cost: three dot products for most faces; if they do not prove
-/// that n(t) stays away from zero, a few microseconds of integers.
+/// Finds the collapses of one face from its positions. Most faces cost three dot products, which prove that n(t) stays
+/// away from zero. Otherwise integer arithmetic takes a few microseconds.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face) noexcept;
 
-/// Finds the collapses with given control normals, which must be those of face_control_normals() for this segment.
+/// Finds the collapses of a face whose control normals are known. They must be those that face_control_normals() gives
+/// for this segment.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face,
                                        const ControlNormals& normals) noexcept;
 
@@ -89,14 +92,16 @@ struct FaceCollapses {
 // Source     docs/theory.md, section 2; Munkberg, Akenine-Moller, Backface Culling for Motion Blur and Depth of Field
 //            (2011), have the cubic and the test of its Bernstein coefficients, which is the first stage here.
 
-/// The viewpoint of a query. Coordinates are used exactly as given; none may exceed the range of float32.
+/// The viewpoint of a query. Coordinates are used exactly as given, and must be in the range of float32.
 struct View {
   bool is_eye = false;
-  Vec3d from, to;  ///< the eye at the start and the end of its path; for a direction both are equal
+  /// The positions of the eye at the start and the end of its path; both are the direction if is_eye is false.
+  Vec3d from, to;
   /// The fractions of the eye's path at t = 0 and at t = 1, for a path that is longer than the segment.
   LocalTime start = 0.0, end = 1.0;
 
-  /// Makes a viewer infinitely far away in this direction, who sees the front of a face whose normal points that way.
+  /// Makes a viewer infinitely far away in the direction `to_viewer`. This viewer sees the front of each face whose
+  /// normal points in that direction.
   [[nodiscard]] static View of_direction(const Vec3d& to_viewer) noexcept { return {false, to_viewer, to_viewer}; }
   [[nodiscard]] static View of_eye(const Vec3d& eye) noexcept { return {true, eye, eye}; }
   [[nodiscard]] static View of_moving_eye(const Vec3d& from, const Vec3d& to, const LocalTime& start = 0.0,
@@ -105,70 +110,72 @@ struct View {
   }
 };
 
-/// The largest width of a bracket.
+/// The largest width, in t, of a bracket of a change of sides.
 inline constexpr double kWidestBracket = 0x1p-40;  // 9.1e-13
 
 enum class Side : std::int8_t {
   kBack = -1,
-  kNone = 0,  ///< edge-on or without area; also before t = 0 and after t = 1
+  kNone = 0,  ///< the face is edge-on or has no area; also the side before t = 0 and after t = 1
   kFront = 1,
 };
 
-/// An instant in [lower, upper] at which a face is seen edge-on. The sides before and after may be equal.
+/// A change of sides: at an instant in [lower, upper] a face is seen edge-on. The sides before and after the instant
+/// may be equal.
 struct FacingChange {
   double lower = 0, upper = 0;
   Side before = Side::kNone, after = Side::kNone;
 };
 
 struct Facing {
-  std::array<FacingChange, 3> at;  ///< ascending
+  std::array<FacingChange, 3> at;  ///< in ascending order of t
   std::size_t count = 0;
-  Side side = Side::kNone;  ///< if count is 0: the side throughout; kNone if edge-on or without area throughout
+  /// The side in the whole segment if count is 0; kNone if the face is always edge-on or without area.
+  Side side = Side::kNone;
 
   [[nodiscard]] std::span<const FacingChange> changes() const& noexcept { return {at.data(), count}; }
   void changes() && = delete;  ///< forbidden, since a loop over a temporary would outlive it
-  /// Returns the side before the first change, and last() the side after the last one.
+  /// Return the side before the first change, and the side after the last change.
   [[nodiscard]] Side first() const noexcept { return count == 0 ? side : at[0].before; }
   [[nodiscard]] Side last() const noexcept { return count == 0 ? side : at[count - 1].after; }
 };
 
-/// Decides the sides for a range of faces. `normals` are the control normals of these faces, from
-/// face_control_normals() for this segment; result has an element for each face.
-/// Cost: about as much as unit_normal_at() for each face; several times as much for a face that changes sides twice or
-/// more, and some microseconds of integers for a face that is edge-on without changing sides, or edge-on at 0, 1/2 or
-/// 1.
+/// Decides the sides of a range of faces. `normals` are the control normals of these faces, from face_control_normals()
+/// for this segment; result has an element for each face. Cost: about as much as unit_normal_at() for each face. A face
+/// that changes sides twice or more takes several times as long. Some microseconds of integer arithmetic are needed for
+/// a face that is edge-on without changing sides, or edge-on at t = 0, 1/2 or 1.
 void find_facings(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                   std::span<Facing> result) noexcept;
 
-/// Decides the sides of a single face, which takes several times as long as one of many faces.
+/// Decides the sides of a single face. This takes several times as long per face as a call for many faces.
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const View& view) noexcept;
 [[nodiscard]] Facing find_facing(const Segment& segment, std::size_t face, const ControlNormals& normals,
                                  const View& view) noexcept;
 
-/// Decides the sides for the normal of a vertex or corner, which is the sum of n(t) over the faces around it
-/// (NormalGroups::faces()). It is seen from the vertex: f(t) = n(t) . w(t), where w(t) points from the vertex to the
-/// viewer. The result is as certain as for faces, even if the faces nearly cancel. Cost: up to a microsecond for each
-/// face, and some tens of microseconds if integers decide. Allocates nothing. vertex and faces must lie inside the
-/// topology
+/// Decides the sides of a vertex or corner, whose normal n(t) is the sum of the normals of the faces around it
+/// (NormalGroups::faces()). The side at t is the sign of f(t) = n(t) . w(t), where w(t) points from the vertex to the
+/// viewer. The result is as certain as for faces, even if the normals of the faces nearly cancel. Cost: up to a
+/// microsecond for each face, and some tens of microseconds if integers decide. Allocates nothing. Precondition: the
+/// vertex and the faces exist in the topology.
 [[nodiscard]] Facing find_vertex_facing(const Segment& segment, std::uint32_t vertex,
                                         std::span<const std::uint32_t> faces, const View& view) noexcept;
 
 /// The sides of a face that may be seen while a shutter is open over [t0, t1].
 enum class ShutterSide : std::int8_t {
-  kBack = -1,  ///< never its front, so it may be culled
+  kBack = -1,  ///< the viewer never sees the front, so the face may be culled
   kBoth = 0,
-  kFront = 1,  ///< never its back
+  kFront = 1,  ///< the viewer never sees the back
 };
 
-/// Decides the ShutterSide for a range of faces: kBack and kFront are certain. So is kBoth, unless the face changes
-/// sides within a bracket of t0 or t1. A face that is edge-on or without area throughout is kBack. `normals` are the
-/// control normals of the range. Cost: that of find_facings(), nearly always in its cheap case. result has an element
-/// for each face; 0 <= t0 <= t1 <= 1
+/// Decides the ShutterSide of a range of faces. kBack and kFront are always certain. kBoth is certain unless the face
+/// changes sides within a bracket that contains t0 or t1. A face that is edge-on or without area throughout is kBack.
+/// `normals` are the control normals of the range. Cost: nearly always the lowest cost of find_facings().
+/// Preconditions: result has an element for each face; 0 <= t0 <= t1 <= 1.
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept;
 
-/// An interval in which the two faces at an edge show different sides: from an instant in the first bracket to one in
-/// the second. Both ends of a bracket are 0 if the interval begins with the segment, or 1 if it ends with it.
+/// An interval of t in which the two faces at an edge show different sides. It begins at an instant in the bracket
+/// `from` and ends at an instant in the bracket `to`. Both numbers of `from` are 0 if the interval begins with the
+/// segment; both numbers of `to` are 1 if it ends with the segment.
 struct Silhouette {
   std::array<std::uint32_t, 2> vertices{}, faces{};
   std::array<double, 2> from{}, to{};

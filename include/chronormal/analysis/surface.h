@@ -24,10 +24,10 @@
 
 namespace chronormal {
 
-/// A number of things that were found, and the lowest index among them.
+/// The number of things of one kind in a mesh, and the lowest index among them.
 struct Found {
   std::size_t count = 0;
-  std::size_t first = 0;  ///< 0 if there are none
+  std::size_t first = 0;  ///< the lowest index; 0 if count is 0
 
   void add(std::size_t index, std::size_t how_many = 1) noexcept {
     first = count == 0 || index < first ? index : first;
@@ -36,23 +36,24 @@ struct Found {
   friend bool operator==(const Found&, const Found&) = default;
 };
 
-/// Finds copies: vertices at the point of a vertex with a lower index.
+/// Finds copies, which are vertices at the same point as a vertex with a lower index.
 [[nodiscard]] Found find_copies(const Points& points);
 
-/// The counts that the text above explains. `first` of edges or pairs is the lowest face that has one.
+/// The counts of a mesh, which the comment at the top of this file explains. For edges and pairs of faces, `first` is
+/// the lowest face that has such an edge or belongs to such a pair.
 struct Surface {
   std::size_t edges = 0;
   Found open_edges, non_manifold_edges, turned_edges, seam_edges;
-  std::size_t pieces = 0;  ///< parts without a common point
-  Found unreferenced;      ///< vertices in no face
-  Found repeating_faces;   ///< faces that have a point twice, for example triangles without area
-  Found doubled_faces;     ///< faces with the outline and winding of a lower face
+  std::size_t pieces = 0;  ///< number of parts of the mesh that have no point in common
+  Found unreferenced;      ///< vertices that belong to no face
+  Found repeating_faces;   ///< faces that name the same point twice, for example triangles without area
+  Found doubled_faces;     ///< faces with the outline and winding of a face with a lower index
   Found back_to_back;      ///< pairs of faces with the same outline but opposite windings
   std::size_t triangles = 0;
   std::size_t most_corners = 0;  ///< the largest number of corners of a face
 };
 
-/// Counts all members of Surface for a mesh; `points` tells which of its vertices are one point.
+/// Counts everything that Surface has for a mesh. `points` tells which vertices of the mesh are one point.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -11,10 +11,10 @@
 
 namespace chronormal {
 
-// The following classes let the caller of a computation end it before it is done.
+// The following classes let the caller of a long computation end the computation early.
 
-/// The exception that ends a computation on request. Files and the caller's memory are then half written, and objects
-/// that are not const may only be destroyed.
+/// The exception that ends a computation at the caller's request. Afterwards files and memory that the computation was
+/// writing are incomplete. An object whose non-const function was interrupted may only be destroyed.
 class Interrupted : public std::exception {
  public:
   [[nodiscard]] const char* what() const noexcept override { return "interrupted"; }
@@ -44,7 +44,8 @@ class Interruption {
   Interruption* before_;
 };
 
-/// Throws Interrupted if an Interruption asks this thread's computation to end; does nothing without an Interruption.
+/// Throws Interrupted if an Interruption asks this thread's computation to end. Does nothing if there is no
+/// Interruption.
 void check_interruption();
 
 /// Calls body(i) once for every i in [0, count), in any order and from several threads at once; returns when all are
@@ -64,10 +65,10 @@ enum class Threads { kOne, kAll };
 /// Returns the number of threads that parallel_for may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
 
-/// Sets the number of threads of parallel_for on this thread during the object's lifetime; the number may exceed the
-/// number of cores (64 at most). Tests, benchmarks, and programs that reserve some cores use it. Nested loops share
-/// these threads. Limits may be nested; only the innermost is used. If the system grants no threads, loops run on the
-/// calling thread.
+/// Sets the number of threads that parallel_for() uses on this thread during the object's lifetime. The number may
+/// exceed the number of cores, up to 64. Tests, benchmarks, and programs that reserve some cores use it. Nested loops
+/// share these threads. Objects may be nested; only the innermost is used. If the system grants no threads, loops run
+/// on the calling thread.
 class ThreadLimit {
  public:
   explicit ThreadLimit(std::size_t threads);

@@ -32,8 +32,8 @@ struct Power {
   return result;
 }
 
-/// The two halves of p at t: the polynomials over [0, t] and [t, 1], each again over a parameter in [0, 1]. split()
-/// computes them by de Casteljau's algorithm, N (N+1) / 2 linear interpolations.
+/// The two halves of p at t. They are the polynomials over [0, t] and over [t, 1], each as a polynomial over [0, 1].
+/// split() computes them by de Casteljau's algorithm, with N (N+1) / 2 linear interpolations.
 template <class T, std::size_t N>
 struct Halves {
   Bernstein<T, N> before, after;
@@ -64,8 +64,8 @@ template <class T, std::size_t M>
   return split(split(p, t1).before, t0 / t1).after;
 }
 
-/// Returns the product of two polynomials; its degree is the sum of theirs. `product` multiplies two coefficients: with
-/// a dot product, two vector polynomials give a scalar one.
+/// Returns the product of two polynomials, whose degree is the sum of their degrees. `product` multiplies two
+/// coefficients; if it is a dot product, two vector polynomials give a scalar polynomial.
 template <class P, std::size_t M, class Q, std::size_t N, class Product = std::multiplies<>>
 [[nodiscard]] constexpr auto multiply(const std::array<P, M>& p, const std::array<Q, N>& q, Product product = {}) {
   std::array<decltype(product(p[0], q[0])), M + N - 1> result{};
@@ -78,8 +78,8 @@ template <class P, std::size_t M, class Q, std::size_t N, class Product = std::m
   return result;
 }
 
-/// Converts a polynomial to power form. Its terms cancel near t = 1, so the Bernstein form should be evaluated if
-/// digits matter.
+/// Converts a polynomial to power form. The terms of the power form cancel near t = 1, so evaluate the Bernstein form
+/// where accuracy matters.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr Power<T, M - 1> to_power(const std::array<T, M>& p) {
   Power<T, M - 1> power;
@@ -102,7 +102,7 @@ template <class T, std::size_t N>
   return b;
 }
 
-/// Returns p(t) by Horner's scheme: N multiplications and N additions.
+/// Returns p(t) by Horner's scheme, which takes N multiplications and N additions.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr T evaluate(const Power<T, N>& p, double t) {
   T value = p.a[N];
@@ -113,15 +113,15 @@ template <class T, std::size_t N>
 /// The roots of a polynomial of degree up to N in [0, 1].
 template <std::size_t N>
 struct Roots {
-  std::array<double, N> t{};  ///< ascending; a root of even multiplicity may appear once or twice
+  std::array<double, N> t{};  ///< ascending; a root of even multiplicity may be listed once or twice
   std::size_t count = 0;
-  bool everywhere = false;  ///< p is zero for all t; count is 0
+  bool everywhere = false;  ///< true if p is zero for all t; count is then 0
 };
 
 namespace detail {
 
-/// Finds the only root of p. The signs of p at the two ends must differ. Uses false position with the Illinois rule
-/// (Dowell, Jarratt 1971), and bisection if false position gains too little.
+/// Finds the root of p in [0, 1], where p must have exactly one root and opposite signs at 0 and 1. Uses false position
+/// with the Illinois rule (Dowell, Jarratt 1971), and bisection where false position makes too little progress.
 template <std::size_t M>
 [[nodiscard]] double only_root(const std::array<double, M>& p) {
   double a = 0, b = 1, fa = p[0], fb = p[M - 1];
@@ -144,8 +144,8 @@ template <std::size_t M>
   return a + (b - a) / 2;
 }
 
-/// Finds the roots in [t0, t1] by the variation of signs (Descartes): halves the interval until each part has at most
-/// one root, or is as narrow as rounding.
+/// Finds the roots of p in [t0, t1] by the number of sign changes among its coefficients (Descartes). Halves the
+/// interval until each part has at most one root, or is as narrow as rounding.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
   std::size_t variations = 0;
@@ -154,8 +154,8 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
     if (b != 0 && last != 0 && (b < 0) != (last < 0)) ++variations;
     if (b != 0) last = b;
   }
-  // Sign variations do not show a zero at either end. Neighbouring intervals share such a root, so it is added only
-  // once.
+  // Sign changes do not show a zero at an end of the interval. Two neighbouring intervals share such a root, so it is
+  // added only once.
   const auto add = [&roots](double t) {
     if (roots.count < M - 1 && (roots.count == 0 || roots.t[roots.count - 1] + 1e-14 < t)) roots.t[roots.count++] = t;
   };
@@ -177,9 +177,9 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
 
 }  // namespace detail
 
-/// Finds the roots of p in [0, 1], including the ends: simple roots within 1e-15 times their condition number, and
+/// Finds the roots of p in [0, 1], including the ends. Simple roots are within 1e-15 times their condition number, and
 /// roots of multiplicity k within about the k-th root of that error. A double root that rounding has moved off the axis
-/// may be missed, or found as two roots; decisions that depend on double roots need exact arithmetic.
+/// may be missed, or found as two roots. Decisions that depend on double roots need exact arithmetic.
 template <std::size_t M>
 [[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
   Roots<M - 1> roots;

@@ -19,14 +19,14 @@ namespace chronormal {
 
 /// The kind of a failure. The values are the exit codes of the program.
 enum class ErrorCode {
-  kFailed = 1,        ///< reading, writing, or an internal failure
-  kUsage = 2,         ///< the caller asked for something that does not exist
-  kInvalidInput = 3,  ///< the data are wrong; the place says where
+  kFailed = 1,        ///< reading or writing failed, or something inside the program
+  kUsage = 2,         ///< the user asked for something that does not exist
+  kInvalidInput = 3,  ///< the data are wrong; the place says where in the data
 };
 
 struct Error {
   ErrorCode code = ErrorCode::kFailed;
-  std::string place;    ///< file and line, byte, frame, index; may be empty
+  std::string place;    ///< file and line, byte, frame or index where the error is; may be empty
   std::string message;  ///< one sentence without a full stop
 
   /// Returns "place: message", or only the message if there is no place.
@@ -38,12 +38,14 @@ struct Error {
   return Error{ErrorCode::kInvalidInput, std::move(place), std::move(message)};
 }
 
-/// Either a value or the Error that prevented it. Call ok() before taking either.
+/// Either a value or the Error that prevented it. Call ok() to find out which, before value() or error().
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor): `return value;` is the use
-  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor): `return error;` too
+  // NOLINT(google-explicit-constructor): lets a function `return value;`.
+  Result(T value) : state_(std::move(value)) {}
+  // NOLINT(google-explicit-constructor): lets a function `return error;`.
+  Result(Error error) : state_(std::move(error)) {}
 
   [[nodiscard]] bool ok() const noexcept { return state_.index() == 0; }
   explicit operator bool() const noexcept { return ok(); }
@@ -66,7 +68,7 @@ class [[nodiscard]] Result {
   std::variant<T, Error> state_;
 };
 
-/// A Result that carries nothing but success: `return Success{};`
+/// The value of a Result that can only say that all went well: `return Success{};`
 struct Success {};
 using Status = Result<Success>;
 

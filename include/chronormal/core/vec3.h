@@ -37,7 +37,7 @@ template <class S>
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Returns the point of the line from a (t = 0) to b (t = 1).
+/// Returns (1 - t) a + t b: a at t = 0, b at t = 1, and the points of the line between them.
 template <class S>
 [[nodiscard]] constexpr Vec3<S> lerp(const Vec3<S>& a, const Vec3<S>& b, const S& t) {
   return (S(1) - t) * a + t * b;
@@ -48,10 +48,10 @@ template <class S>
   return {static_cast<float>(a.x), static_cast<float>(a.y), static_cast<float>(a.z)};
 }
 
-/// Returns the larger of two numbers, or the number if the other is NaN. This is std::fmax in two instructions instead
-/// of a call.
+/// Returns the larger of two numbers, or the other number if one of them is NaN. The result is that of std::fmax, but
+/// takes two instructions instead of a call.
 [[nodiscard]] inline double maximum_number(double a, double b) noexcept {
-  const double larger = b > a ? b : a;  // a if one is NaN
+  const double larger = b > a ? b : a;  // a if either number is NaN
   if (larger == larger) [[likely]]
     return larger;
   return b;
@@ -61,7 +61,7 @@ template <class S>
 [[nodiscard]] inline double max_abs(const Vec3d& a) noexcept {
   const double x = std::fabs(a.x), y = std::fabs(a.y), z = std::fabs(a.z);
   const double of_two = y > x ? y : x;
-  const double largest = z > of_two ? z : of_two;  // x if it is NaN
+  const double largest = z > of_two ? z : of_two;  // x if x is NaN
   if (largest == largest) [[likely]]
     return largest;
   return maximum_number(y, z);
@@ -80,8 +80,8 @@ template <class S>
   return scale * std::sqrt(dot(b, b));
 }
 
-/// Scales a to length 1; returns (0, 0, 0) for the zero vector. Divides by the largest component first, so that vectors
-/// of any finite length are scaled correctly.
+/// Scales a to length 1, and returns (0, 0, 0) for the zero vector. It divides by the largest component first, so that
+/// vectors of any finite length are scaled correctly.
 [[nodiscard]] inline Vec3d unit(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
   if (scale == 0) return {};
@@ -100,8 +100,8 @@ template <class S>
 /// Degrees per radian. Angles are in radians; only output for people is in degrees.
 inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
-/// Returns the angle between two vectors in radians, in [0, pi]; 0 if one of them is zero. Uses atan2, since acos loses
-/// all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
+/// Returns the angle between two vectors in radians, in [0, pi], or 0 if one of the vectors is zero. It uses atan2,
+/// since acos loses all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
 [[nodiscard]] double angle_between(const Vec3d& a, const Vec3d& b) noexcept;
 
 }  // namespace chronormal

@@ -20,8 +20,8 @@
 
 namespace chronormal {
 
-/// Returns `bytes` as a size, or the largest possible size if `bytes` exceeds it, which happens where addresses have 32
-/// bits.
+/// Returns `bytes` as a std::size_t, or the largest std::size_t if `bytes` exceeds it, which can happen on systems with
+/// 32-bit addresses.
 [[nodiscard]] constexpr std::size_t addressable(std::uint64_t bytes) noexcept {
   return bytes < static_cast<std::size_t>(-1) ? static_cast<std::size_t>(bytes) : static_cast<std::size_t>(-1);
 }
@@ -34,7 +34,7 @@ struct IndexRange {
   [[nodiscard]] constexpr std::size_t end() const noexcept { return first + count; }
 };
 
-/// A view of vectors; T is float, const float, double or const double.
+/// A view of n vectors of three scalars. T, the type of a scalar, is float, const float, double or const double.
 template <class T>
 struct VectorView {
   using Scalar = std::remove_const_t<T>;
@@ -50,14 +50,15 @@ struct VectorView {
     if (count == 0) return {};
     return {xyz, xyz + 1, xyz + 2, count, 3};
   }
-  /// Makes a view of all vectors of an array or std::vector with three scalars for each.
+  /// Makes a view of all vectors of an array or std::vector that has three scalars for each vector.
   [[nodiscard]] static VectorView packed(std::span<T> xyz) noexcept {
     assert(xyz.size() % 3 == 0);
     return packed(xyz.data(), xyz.size() / 3);
   }
 
-  /// Makes a view of vectors in records of `bytes` bytes each, as in a vertex buffer; `xyz` is the first component of
-  /// the first vector. `bytes` must be a multiple of the size of a scalar, and at least three times that size
+  /// Makes a view of vectors in records of `bytes` bytes each, as in a vertex buffer. `xyz` points to the first
+  /// component of the first vector. Precondition: `bytes` is a multiple of the size of a scalar, and at least three
+  /// times that size.
   [[nodiscard]] static VectorView strided(T* xyz, std::size_t count, std::size_t bytes) noexcept {
     if (count == 0) return {};
     assert(bytes % sizeof(T) == 0 && bytes >= 3 * sizeof(T));

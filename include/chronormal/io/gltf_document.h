@@ -34,7 +34,7 @@
 namespace chronormal {
 
 inline namespace internal {
-class Expansion;  // limits the memory and output that a file may cause
+class Expansion;  // limits the memory and the output that reading a file may cause
 }
 
 // The mark of a bake in a glTF file: the encoding of the normals, and the formulas of correction targets
@@ -42,18 +42,18 @@ class Expansion;  // limits the memory and output that a file may cause
 //
 // Threads    plain values
 
-/// A correction target, which a bake has added. It moves no vertex, and its weight follows from the weights of the
-/// mesh's own targets (docs/formats.md):
+/// A correction target, which a bake has added to a mesh. It moves no vertex. Its weight follows from the weights of
+/// the targets that the mesh had before, which are called its own (docs/formats.md):
 ///
 ///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
   struct LinearTerm {
-    std::size_t i = 0;  ///< one of the mesh's own targets
+    std::size_t i = 0;  ///< number of one of the mesh's own targets
     double a = 1;
     friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
   };
   struct QuadraticTerm {
-    std::size_t i = 0, j = 0;  ///< two of the mesh's own targets, or the same twice
+    std::size_t i = 0, j = 0;  ///< numbers of two of the mesh's own targets; they may be equal
     double q = 1;
     friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
   };
@@ -62,9 +62,10 @@ struct GltfExtraTarget {
   std::vector<LinearTerm> linear;
   std::vector<QuadraticTerm> quadratic;
 
-  /// Returns the weight for given weights of the mesh's own targets; weights has one for each target.
+  /// Returns the weight of this target for given weights of the mesh's own targets. `weights` has one number for each
+  /// of these.
   [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
-  /// Returns true if the weight is not zero when only w_i is nonzero.
+  /// Returns true if the weight of this target is nonzero when w_i is the only nonzero weight.
   [[nodiscard]] bool follows(std::size_t i) const noexcept;
 
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
@@ -85,7 +86,7 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
                                                                     {BakeEncoding::kSmallest, "smallest"},
                                                                     {BakeEncoding::kKeys, "keys"}}};
 [[nodiscard]] std::string_view name_of(BakeEncoding encoding) noexcept;
-/// Finds an encoding by its name; returns nothing for an unknown name.
+/// Finds an encoding by its name. Returns no value for an unknown name.
 [[nodiscard]] std::optional<BakeEncoding> find_bake_encoding(std::string_view name) noexcept;
 
 /// The mark that a bake leaves in extras.chronormal of a mesh (docs/formats.md), for instance
@@ -93,11 +94,12 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 ///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
-  bool sequence = false;                ///< the targets are keyframes, which have no meaning alone
-  std::vector<GltfExtraTarget> extras;  ///< in the order of targets; the file need not list any
-  /// True if deltas are fitted to the animations of the file; at other weights they have no meaning.
+  bool sequence = false;                ///< true if the targets are keyframes, which have no meaning one by one
+  std::vector<GltfExtraTarget> extras;  ///< in the order of targets; empty if the mark lists none
+  /// True if the deltas are fitted to the animations of the file. The deltas are then meaningless at weights that no
+  /// animation has.
   bool animations_only = false;
-  bool author = false;  ///< normals of each target at weight 1 follow the author's intention for the input
+  bool author = false;  ///< true if the normals of each target at weight 1 follow the author's intention for the input
 };
 
 inline namespace internal {
@@ -105,19 +107,21 @@ class FileBytes;
 class GltfSkin;
 }
 
-/// Finds the bytes of a file by its name, in place of the file system. The bytes must outlive everything that was
-/// opened with them. Errors: any error that the caller should get.
+/// A function that returns the bytes of a file by its name, for callers that do not read from the file system. The
+/// bytes must outlive everything that was opened with them. An error that the function returns is passed on to the
+/// caller.
 using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
 /// Selects the interpolation of weights between two keys.
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
 
 struct GltfPrimitive {
-  int mode = 4;                   ///< 4 triangles, 5 strip, 6 fan; others (points, lines) have no faces
-  std::size_t vertex_count = 0;   ///< 0 if there is no POSITION
-  std::size_t element_count = 0;  ///< number of indices, or of vertices if there are no indices
+  /// 4: triangles, 5: strip, 6: fan; primitives of other modes (points, lines) have no faces.
+  int mode = 4;
+  std::size_t vertex_count = 0;   ///< 0 if the primitive has no POSITION
+  std::size_t element_count = 0;  ///< number of indices, or number of vertices if there are no indices
   bool has_normals = false, has_tangents = false, has_draco = false;
-  /// The attributes that each target moves.
+  /// The attributes for which a morph target has deltas.
   struct Target {
     bool positions = false, normals = false, tangents = false;
   };
@@ -126,30 +130,31 @@ struct GltfPrimitive {
   [[nodiscard]] bool has_faces() const noexcept { return mode >= 4 && mode <= 6 && vertex_count > 0; }
 };
 
-/// The weights that a VRM avatar's expression (version 0 or 1) at full strength gives the targets of a mesh.
+/// An expression of a VRM avatar (version 0 or 1): the weights that it gives the targets of a mesh at full strength.
 struct GltfExpression {
   std::string name;             ///< as in the file; may be empty
-  std::vector<double> weights;  ///< target_count weights
+  std::vector<double> weights;  ///< a weight for each target of the mesh
   friend bool operator==(const GltfExpression&, const GltfExpression&) = default;
 };
 
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
-  std::size_t target_count = 0;             ///< equal in all primitives
-  std::vector<std::string> target_names;    ///< extras.targetNames if it has target_count names, else empty
-  std::vector<double> weights;              ///< the default weights; target_count of them, 0 if the file has none
-  std::vector<GltfExpression> expressions;  ///< expressions of a VRM avatar that have a bind to this mesh
-  std::optional<GltfBakeMark> mark;         ///< the mark that a bake left, if it can be understood
-  std::optional<Error> mark_fault;          ///< the error of a mark that cannot be understood, for callers that need it
+  std::size_t target_count = 0;             ///< number of morph targets, which is equal in all primitives
+  std::vector<std::string> target_names;    ///< extras.targetNames if it has a name for each target; otherwise empty
+  std::vector<double> weights;              ///< the default weight of each target; 0 if the file has none
+  std::vector<GltfExpression> expressions;  ///< the expressions of a VRM avatar that set weights of this mesh
+  std::optional<GltfBakeMark> mark;         ///< the mark of a bake, if the mesh has one that can be understood
+  /// The error in a mark that cannot be understood; only some callers report it.
+  std::optional<Error> mark_fault;
 };
 
 struct GltfNode {
   std::string name;
   std::optional<std::uint32_t> mesh, parent;
   bool has_skin = false;
-  std::optional<std::uint32_t> skin;  ///< its number in the file, if that is a valid number
-  std::vector<double> weights;        ///< the node's own weights; if empty, those of the mesh
+  std::optional<std::uint32_t> skin;  ///< the index of the node's skin in the file, if that index is valid
+  std::vector<double> weights;        ///< the node's own weights; if empty, the node uses those of its mesh
 };
 
 /// The animation of the weights of one node. It comes from a channel for the node, or from a channel of
@@ -157,8 +162,8 @@ struct GltfNode {
 /// mesh that has no weights of its own gets such a track.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
-  /// The index of the first track of the animation that has the same weights: the same keys, interpolation and number
-  /// of targets.
+  /// The index of the first track in the animation that has the same keys, interpolation and number of targets, and
+  /// therefore the same weights.
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
@@ -170,65 +175,68 @@ struct GltfTrack {
 
 struct GltfAnimation {
   std::string name;
-  std::size_t channel_count = 0;  ///< number of channels of all kinds
-  std::vector<GltfTrack> tracks;  ///< tracks of weights
+  std::size_t channel_count = 0;  ///< number of channels of all kinds, including those without weights
+  std::vector<GltfTrack> tracks;  ///< the channels that animate weights
 };
 
-/// The keys of a track; K = keys, N = targets of the mesh.
+/// The keys of a track. K is the number of keys, N the number of targets of the mesh.
 struct GltfKeys {
-  std::vector<double> times;  ///< (K), seconds, ascending; float32 in the file
-  /// (K, N), or for a cubic spline (K, 3, N): in-tangents per second, values, out-tangents
+  std::vector<double> times;  ///< (K), in seconds, ascending; the file stores float32
+  /// The values at the keys, (K, N). For a cubic spline they are (K, 3, N): in-tangents per second, values,
+  /// out-tangents.
   std::vector<double> values;
 };
 
-/// The arrays of a primitive, decoded.
+/// The arrays of one primitive, decoded to float32 and to triangles.
 struct GltfGeometry {
-  std::vector<std::uint32_t> corners;  ///< (F, 3); strips and fans become triangles
-  std::vector<float> positions;        ///< (V, 3)
-  std::vector<float> normals;          ///< (V, 3), or empty
-  std::vector<float> tangents;         ///< (V, 4), or empty
-  /// The deltas, (V, 3) each; an array is empty if the target has none.
+  std::vector<std::uint32_t> corners;  ///< (F, 3); strips and fans are converted to triangles
+  std::vector<float> positions;        ///< (V, 3), in units of length of the file
+  std::vector<float> normals;          ///< (V, 3), or empty if the primitive has none
+  std::vector<float> tangents;         ///< (V, 4), or empty if the primitive has none
+  /// The deltas of one target, (V, 3) each. An array is empty if the target has no such deltas.
   struct Target {
     std::vector<float> positions, normals, tangents;
   };
   std::vector<Target> targets;
 };
 
-/// The origin of the vertices and faces of a motion or a mesh, for one primitive.
+/// The primitive from which some vertices and faces of a motion or a mesh come.
 struct GltfPart {
-  std::optional<std::size_t> node;  ///< the node with the mesh; nothing if nodes do not matter
+  std::optional<std::size_t> node;  ///< the node that shows the mesh; no value if nodes do not matter
   std::size_t mesh = 0, primitive = 0;
   std::size_t first_vertex = 0, vertex_count = 0;
   std::size_t first_face = 0, face_count = 0;
 };
 
 struct GltfOptions {
-  bool allow_external = false;  ///< buffers may be in files outside of the asset's folder
-  /// The largest memory for the arrays of one primitive, since a small file can demand much.
+  bool allow_external = false;  ///< true if buffers may be in files outside of the asset's folder
+  /// The largest number of bytes for the arrays of one primitive. A small file can ask for huge arrays, so a limit is
+  /// needed.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
-  std::size_t max_expansion = 100;  ///< see InputOptions
-  bool strict = false;              ///< refuse files for which GltfDocument::notes() would not be empty
-  /// Finds buffers and images by their paths below the asset's folder; if empty, the file system does.
+  std::size_t max_expansion = 100;  ///< as in InputOptions
+  bool strict = false;              ///< true to refuse files for which GltfDocument::notes() would not be empty
+  /// Finds buffers and images by their paths below the asset's folder. If it is empty, they are read from the file
+  /// system.
   FileResolver resolve = {};
 };
 
 class GltfDocument {
  public:
-  /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place if it can not be read; errors
-  /// of the format.
+  /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place if the file cannot be read;
+  /// those of the format.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
-  /// Reads a document from bytes, which must outlive it. `name` is for messages; `folder`, if given, has the files to
-  /// which the document refers.
+  /// Reads a document from bytes, which must outlive the document. `name` is used in messages. `folder` is the folder
+  /// of the files to which the document refers; without it, such files cannot be read.
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
-  /// Reads an open file (io/bytes/file.h), which the document keeps.
+  /// Reads an open file (io/bytes/file.h); the document takes ownership of it.
   [[nodiscard]] static Result<GltfDocument> read(FileBytes file, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
 
-  /// Returns true if bytes look like a glTF file: GLB, or JSON with an object.
+  /// Returns true if bytes look like a glTF file, that is, like a GLB file or like JSON that begins with an object.
   [[nodiscard]] static bool recognises(std::string_view first_bytes) noexcept;
 
   GltfDocument(GltfDocument&&) noexcept;
@@ -246,26 +254,26 @@ class GltfDocument {
   [[nodiscard]] AffineTransform world_transform(std::size_t node) const noexcept;
   /// Lists the extensions that the file uses, by their names.
   [[nodiscard]] const std::vector<std::string>& extensions() const noexcept;
-  /// Lists faults in parts of the file that no other part needs, in the order of the file; such parts are skipped. Also
+  /// Lists errors in parts of the file that no other part needs, in the order of the file. Such parts are skipped. Also
   /// lists required extensions that only change where a mesh is shown.
   [[nodiscard]] const std::vector<Error>& notes() const noexcept;
-  /// Returns the limit of memory and output, which depends on the sizes of the document and of the files with its
-  /// buffers.
+  /// Returns the limit on the memory and output that this document may cause, which depends on the sizes of the
+  /// document and of the files with its buffers.
   [[nodiscard]] Expansion expansion() const;
 
   /// The parts of a geometry to read besides faces and positions.
   struct Wanted {
-    bool shading = false;  ///< normals and tangents, of the base and of the targets
+    bool shading = false;  ///< true to read normals and tangents, of the base and of the targets
     bool targets = true;
   };
   /// Reads a primitive. Memory: that of the result; pieces that were decompressed are kept until the document is
   /// destroyed. Precondition: the primitive has_faces()
   [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
-  /// Reads one target of a primitive, like geometry() reads all of them.
+  /// Reads one target of a primitive, as geometry() reads all of its targets.
   [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,
                                                     bool shading) const;
 
-  /// Reads the keys of a track.
+  /// Reads the keys of a track, which is given by the index of its animation and its own index there.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
 
   /// Finds an animation by its name, or else by its index. Errors: kUsage with the names of all animations.
@@ -308,9 +316,10 @@ class GltfDocument {
 
 /// Selects how an accessor of new numbers is written.
 struct GltfVectors {
-  bool bounds = false;  ///< write min and max, which positions and times need
-  /// Stores all zeros as bytes. Otherwise arrays that are mostly zero become a sparse accessor if that is smaller, and
-  /// arrays that are all zero become an accessor without a bufferView, which some readers (Assimp) refuse.
+  bool bounds = false;  ///< true to write min and max, which accessors of positions and times must have
+  /// True to store every component, even if all are zero. If false, an array that is mostly zero becomes a sparse
+  /// accessor when that is smaller. An array that is all zero becomes an accessor without a bufferView, which some
+  /// readers (Assimp) refuse.
   bool dense = false;
 };
 
@@ -324,13 +333,14 @@ class GltfEdit {
   GltfEdit& operator=(const GltfEdit&) = delete;
   ~GltfEdit();
 
-  /// Replaces the value at a pointer, or adds the member that its last token names, with missing objects in between.
-  /// `json` is the text of a value. Errors in the pointer or in the text are reported by bytes() and write().
+  /// Replaces the value at a JSON pointer. If there is no such value, adds the member that the last token of the
+  /// pointer names, and objects that are missing on the way to it. `json` is the text of a value. Errors in the pointer
+  /// or in the text are reported by bytes() and write().
   void set(std::string pointer, std::string json);
-  /// Appends a value to an array, which is created if it is missing.
+  /// Appends a value to the array at a JSON pointer. The array is created if it is missing.
   void append(std::string pointer, std::string json);
-  /// Tell whether the source, without changes, has a value at a pointer, and return the text of this value, or an empty
-  /// text.
+  /// Return true if the unchanged source has a value at a JSON pointer, and the text of that value, or an empty text if
+  /// there is none.
   [[nodiscard]] bool has(const std::string& pointer) const;
   [[nodiscard]] std::string text(const std::string& pointer) const;
 
@@ -339,9 +349,9 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// Lets results omit arrays that only the source uses, if they are in buffers inside the result (BIN chunk, data
-  /// URIs). Later bytes move to the front; all indices stay. Files with extensions that may refer to arrays in unknown
-  /// ways keep all their bytes.
+  /// Leaves out of the result those arrays that only the source uses, if they are in buffers inside the result (BIN
+  /// chunk, data URIs). Later bytes of the buffer move towards its start; all indices stay. A file with extensions that
+  /// may refer to arrays in unknown ways keeps all its bytes.
   void leave_out_unused();
 
   /// Lists the differences between a result at this path and the source: the sorted pointers of the result that are
@@ -349,9 +359,9 @@ class GltfEdit {
   /// together, the outermost is listed. Without a path, the container and folder of the source are assumed. Errors:
   /// those of write() that do not concern the file.
   [[nodiscard]] Result<std::vector<std::string>> pointers(const std::string& path = "") const;
-  /// Returns a sentence for each image that a result at this path cannot include because it is missing.
+  /// Returns one sentence for each image that is missing, so that a result at this path cannot include it.
   [[nodiscard]] std::vector<std::string> warnings(const std::string& path) const;
-  /// Returns the number of bytes of arrays that were added.
+  /// Returns the number of bytes of all arrays that this edit has added.
   [[nodiscard]] std::size_t added_bytes() const noexcept;
   /// Returns the number of bytes that leave_out_unused() removes from a result at this path. Errors: those of
   /// pointers().

@@ -40,66 +40,73 @@
 namespace chronormal {
 
 inline namespace internal {
-class Expansion;  // limits the memory and output that a file may cause
+class Expansion;  // limits the memory and the output that reading a file may cause
 }
 
 /// Selects which of the normals and smoothing groups that meshes store are kept.
 enum class KeepShading {
   kNone,
-  kFirst,  ///< normals of the first keyframe, which is the base, or the mesh of a cache
-  kAll,    ///< normals of all keyframes, if all store normals
-  kRead,   ///< normals of all keyframes that are read at once; only of the first if positions stay in files
+  kFirst,  ///< the normals of the first keyframe: the base of targets, or the mesh of a point cache
+  kAll,    ///< the normals of all keyframes, if every keyframe stores normals
+  /// The normals of all keyframes if their files are read at once; only those of the first if positions stay in files.
+  kRead,
 };
 
 /// The options of an input; their names are those of the program's options.
 struct InputOptions {
   std::vector<std::string> files;    ///< files, patterns, folders or "-": one motion, or the targets of `base`
-  std::vector<std::string> samples;  ///< built-in morphs, in place of files
-  std::string base;                  ///< the base mesh if the files are morph targets; otherwise empty
-  double frames_per_second = 1;      ///< from 1e-9 to 1e9
-  /// An animation of a glTF file, by name or index; if empty, its morph targets are used.
+  std::vector<std::string> samples;  ///< names of built-in morphs, which take the place of files
+  std::string base;                  ///< the base mesh, if the files are morph targets; empty for other inputs
+  double frames_per_second = 1;      ///< keyframes per second in formats without times; from 1e-9 to 1e9
+  /// The animation of a glTF file to read, by name or index. If it is empty, the morph targets are read.
   std::string animation = {};
-  bool world = false;           ///< move vertices of a glTF file to their places in the scene
-  bool allow_external = false;  ///< a glTF file may refer to files outside of its folder
-  /// The largest memory that a file may cause: so many times its size, or 32 MiB if that is more. Requests of the user
-  /// are not limited.
+  bool world = false;           ///< true to move the vertices of a glTF file to their places in the scene
+  bool allow_external = false;  ///< true if a glTF file may refer to files outside of its folder
+  /// The largest memory that reading a file may cause, as a multiple of the file's size. At least 32 MiB are always
+  /// allowed. Memory that options of the user ask for is not limited.
   std::size_t max_expansion = 100;
-  bool allow_mesh = false;  ///< a mesh without motion is accepted, too
+  bool allow_mesh = false;  ///< true to accept a mesh without motion, too
   KeepShading shading = KeepShading::kNone;
-  /// Keeps the velocities that the mesh files of a sequence store. All files are then read at once. Formats with a
-  /// whole motion always keep their velocities.
+  /// True to keep the velocities that the mesh files of a sequence store. All files are then read at once. Velocities
+  /// in formats with a whole motion are always kept.
   bool velocities = false;
-  /// Finds the bytes of files; if empty, the file system does. With a resolver, `files` are names and not patterns or
-  /// folders, and the buffers of a glTF file are requested by their paths below its folder.
+  /// Returns the bytes of files by their names. If it is empty, files are read from the file system. Otherwise `files`
+  /// are names and not patterns or folders, and the buffers of a glTF file are requested by their paths below its
+  /// folder.
   FileResolver resolve = {};
-  /// Is called after each file that was read.
+  /// Is called after each file has been read, with the number of files read so far and the number of all files.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
-  /// Selects keyframes of a sequence: the first and the last that are used, and the step from one to the next.
+  /// Select the keyframes of a sequence that are used: the first, the last, and the step from one to the next. All
+  /// count from 0.
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
-  /// Repeats the first of these keyframes after the last one. The time between the two is the mean time between
-  /// neighbouring keyframes.
+  /// True to repeat the first of the selected keyframes after the last one, so that the motion is a loop. The time from
+  /// the last keyframe to the repeated one is the mean time between neighbouring keyframes.
   bool loop = false;
-  /// Refuses an input that could only be read in part, with the first of the notes that Input::notes() would have.
+  /// True to refuse an input that could only be read in part. The error is the first of the notes that Input::notes()
+  /// would return.
   bool strict = false;
-  /// The kind of curve on which vertices move between keyframes, in the notation of make_path(). Curves run through the
-  /// whole sequence, so up to three keyframes beyond the first and the last used one are read. Curves are cut into
-  /// straight pieces (motion/paths.h), at most max_expansion for a segment, and the motion consists of these pieces.
+  /// The kind of curve on which vertices move between keyframes, as make_path() reads it. Curves run through the whole
+  /// sequence, so up to three keyframes before the first and after the last selected keyframe are read, too. Curves are
+  /// cut into straight pieces (motion/paths.h), at most max_expansion pieces for a segment, and these pieces are the
+  /// segments of the motion.
   std::string path = "linear";
-  /// Leaves positions in the files until they are needed: in mesh files, .pc2 and .mdd, and in .npy and .npz that are
-  /// uncompressed and in C order. Callers that set this should use Input::stream(). Other inputs are read at once, and
-  /// so are mesh files if the normals of all keyframes are kept. An error in a keyframe is found when the keyframe is
-  /// read.
+  /// True to leave positions in the files until they are needed. This is possible for mesh files, .pc2 and .mdd, and
+  /// for .npy and .npz files that are uncompressed and in C order. Other inputs are read at once, and so are mesh files
+  /// if the normals of all keyframes are kept. Callers that set this should use Input::stream(). An error in a keyframe
+  /// is found when the keyframe is read.
   bool stream = false;
-  /// The largest total size in bytes of keyframes that stay in memory once they have been read.
+  /// The largest number of bytes that keyframes may take in memory together so that all of them stay there after they
+  /// were read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }
   [[nodiscard]] bool is_curved() const noexcept { return path != path_name(PathKind::kLinear); }
 };
 
-/// Checks that the options are consistent, before anything is opened. Errors: kUsage with the option as the place.
+/// Checks that the options do not contradict each other, before any file is opened. Errors: kUsage with the option as
+/// the place.
 [[nodiscard]] Status check_input(const InputOptions& options);
 
 /// Finds the glTF files among names, patterns and folders, each of which is a separate input. A folder stands for all
@@ -109,46 +116,51 @@ struct InputOptions {
 /// other inputs, or with meshes in one folder.
 [[nodiscard]] Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>& inputs);
 
-/// Normals that files store beside a motion, (corners, 3) each, not necessarily unit vectors.
+/// The normals that files store beside a motion: for each keyframe three numbers per corner, not necessarily of unit
+/// vectors.
 struct StoredNormals {
-  /// Normals of every keyframe, or of keyframe 0 alone, or none. Normals of keyframe 0 alone are only used to find the
-  /// hard edges.
+  /// The normals of every keyframe, or of keyframe 0 only, or an empty list. Normals of keyframe 0 only are used to
+  /// find the hard edges.
   std::vector<std::vector<float>> of_keyframes;
-  bool has_more = false;  ///< with KeepShading::kRead: other keyframes, left in files, may store normals
+  /// True with KeepShading::kRead if other keyframes, which were left in files, may store normals.
+  bool has_more = false;
 };
 
 /// The numbers in the file names of a sequence, if a single number distinguishes the names and grows from file to file.
 struct FileSeries {
   std::size_t count = 0;
-  double first = 0, last = 0;            ///< numbers
-  double least_step = 0, most_step = 0;  ///< between two neighbours
-  bool are_seconds = false;              ///< a number has a fraction, so all numbers are times in seconds
+  double first = 0, last = 0;  ///< the numbers in the first and in the last file name
+  /// The smallest and the largest difference between the numbers of two neighbouring files.
+  double least_step = 0, most_step = 0;
+  bool are_seconds = false;  ///< true if a number has a fraction; all numbers are then times in seconds
 
   [[nodiscard]] bool is_even() const noexcept { return most_step - least_step <= 1e-6 * most_step; }
 };
 
-/// An opened input: a glTF document, or else a motion or a mesh.
+/// An opened input, which is a glTF document, or else a motion or a mesh.
 class Input {
  public:
   Input(Input&&) noexcept;
   Input& operator=(Input&&) noexcept;
   ~Input();
 
-  /// Returns the name of the input for people: the only file, "first ... last", the base, or the built-in morph.
+  /// Returns the name of the input for messages: the name of its only file, "first ... last", the base, or the built-in
+  /// morph.
   [[nodiscard]] const std::string& name() const noexcept;
-  /// Returns the bytes of the file, if the input is a document.
+  /// Returns the size of the file in bytes, if the input is a glTF document.
   [[nodiscard]] std::size_t file_size() const noexcept;
 
-  /// Returns the limit of memory and output, which depends on the bytes that were read; a built-in morph has no limit.
+  /// Returns the limit on the memory and output that this input may cause. The limit depends on the number of bytes
+  /// that were read; a built-in morph has no limit.
   [[nodiscard]] Expansion expansion() const;
 
-  /// Returns the glTF document, or nullptr for other inputs. The document lives as long as the input.
+  /// Returns the glTF document, which lives as long as the input, or nullptr if the input is not a document.
   [[nodiscard]] const GltfDocument* document() const noexcept;
 
-  /// Returns notes for people on how the input was read, in whole sentences: that listed files were sorted, or that
+  /// Returns notes for the user, in whole sentences, on how the input was read: that listed files were sorted, or that
   /// parts of a file were skipped. For a document these are the notes known so far.
   [[nodiscard]] std::vector<std::string> notes() const;
-  /// Returns the numbers of the files of a sequence, or nothing if their names have none.
+  /// Returns the numbers in the file names of a sequence, or no value if the names have no such numbers.
   [[nodiscard]] const std::optional<FileSeries>& series() const noexcept;
 
   /// Returns the motion. For a document, the motion that the options select is read at the first call. With allow_mesh
@@ -163,8 +175,8 @@ class Input {
   /// motion(), except those of reading keyframes.
   [[nodiscard]] Result<MotionStream*> stream();
 
-  /// Returns the path of the vertices, and the numbers of pieces into which it was cut. Valid after motion() or
-  /// stream() was called.
+  /// Returns the kind of path on which the vertices move, and the numbers of pieces into which it was cut. Valid after
+  /// motion() or stream() was called.
   [[nodiscard]] const CutPath& cut_path() const noexcept;
 
   /// Returns keyframe k of the motion, from 0, in any order. The keyframe is valid until the next call that reads
@@ -176,17 +188,20 @@ class Input {
   /// weights, without the cuts of cubic splines. Errors: those of motion().
   [[nodiscard]] Result<std::vector<double>> key_times();
 
-  /// Returns the normals that the input stores, as far as the options keep them; for a document those of its base, in
-  /// the space of the meshes. If curves are cut, only those of keyframe 0. Errors: those of motion().
+  /// Returns the normals that the input stores, as far as KeepShading keeps them. For a document these are the normals
+  /// of its base, in the space of the meshes. If curves are cut, only those of keyframe 0 are returned. Errors: those
+  /// of motion().
   [[nodiscard]] Result<const StoredNormals*> normals();
-  /// Returns the smoothing group of each face in the first keyframe (io/mesh/mesh_frame.h); empty if there are none.
+  /// Returns the smoothing group of each face in the first keyframe (io/mesh/mesh_frame.h), or an empty span if the
+  /// file has no groups.
   [[nodiscard]] std::span<const std::uint32_t> group_of_face() const noexcept;
-  /// Returns the name of the file with the normals and groups; empty if its format is read without them.
+  /// Returns the name of the file that stores the normals and smoothing groups. It is empty if normals and groups are
+  /// not read from a file of this format.
   [[nodiscard]] const std::string& shaded_by() const noexcept;
 
-  /// Return facts about the motion of a document, valid after motion() was called. parts() returns the origin of its
-  /// vertices and faces. curve_error() returns a bound of the distance between the cut cubic splines of an animation
-  /// and the true splines, in units of the file.
+  /// Return facts about the motion of a document, valid after motion() was called. parts() returns the primitives from
+  /// which its vertices and faces come. curve_error() returns a bound of the distance between the cut cubic splines of
+  /// an animation and the true splines, in units of length of the file.
   [[nodiscard]] std::span<const GltfPart> parts() const noexcept;
   [[nodiscard]] double curve_error() const noexcept;
 
@@ -206,11 +221,11 @@ class Input {
 /// folders without meshes or with several formats; kUsage for inputs that cannot be combined.
 [[nodiscard]] Result<Input> open_input(const InputOptions& options);
 
-// Morphs that need no file, for trying things out, and for published figures that anyone can reproduce.
+// Morphs that need no file. They let users try things out, and let anyone reproduce published figures.
 
 struct BuiltinMorph {
   std::string_view name;
-  std::string_view summary;  ///< one line
+  std::string_view summary;  ///< a description of one line
 };
 
 /// Lists the built-in morphs that are sequences, from mild to dramatic.
@@ -231,7 +246,7 @@ struct BuiltinMorph {
 //
 // Threads    pure.
 
-/// The names of each target, in the order of the targets; the list of a target without a name is empty.
+/// The names of each target, in the order of the targets. A target without a name has an empty list.
 using TargetNames = std::vector<std::vector<std::string>>;
 
 /// Returns the names of the targets in the motion of an input; empty if the input is not a set of targets. Errors:
@@ -254,7 +269,7 @@ using TargetNames = std::vector<std::vector<std::string>>;
 //            type, or coordinates that are not finite or too large for float32; kFailed if the file cannot be read.
 // Threads    pure
 
-/// The ends of n straight lines, (n, 3) each; both ends are the same for points that rest.
+/// The two ends of n straight lines, as (n, 3) numbers each. The ends of a point that rests are equal.
 struct PointPaths {
   std::vector<double> from, to;
 
@@ -275,7 +290,8 @@ struct PointPaths {
 //            if the text is not JSON; kFailed if the file cannot be read.
 // Threads    pure
 
-/// One pose: weights by name, or in the order of the targets; one of the two is empty.
+/// One pose of a rig. The weights are given either by name or in the order of the targets, so one of the two lists is
+/// empty.
 struct RigPose {
   struct Named {
     std::string target;

@@ -1,4 +1,5 @@
-/// Writes files atomically, so that nobody ever sees half of one: any bytes, and motions in several formats.
+/// Writes files atomically, so that no reader ever sees an incomplete file. There are functions for any bytes, and for
+/// motions in several formats.
 ///
 /// The bytes go to a temporary file in the same folder, which is flushed to disk (fsync) and then renamed. So a reader
 /// sees either the old file or the new one. After an error the old file is still there, and no temporary file remains.
@@ -21,20 +22,20 @@
 
 namespace chronormal {
 
-/// Refuses the cases that write_output() would refuse later: a folder, or an existing file without `force`. Call it
-/// before a long computation, and before the first of many files.
+/// Returns the errors that write_output() would return later for a path: for a folder, or for an existing file without
+/// `force`. Call it before a long computation, and before the first of many files.
 [[nodiscard]] Status check_output(const std::string& path, bool force);
 
 /// Returns true if write_output() would write to a pipe, a device or a stream of this process, rather than make a file.
 [[nodiscard]] bool is_stream(const std::string& path);
 
-/// Writes a whole file. Errors: kFailed with the path as the place: for an existing file without `force` (the message
-/// says: --force), for a folder, and for errors of the system (no space left on device).
+/// Writes a whole file. Errors: kFailed with the path as the place, for an existing file without `force` (the message
+/// names the option --force), for a folder, and for errors of the system, such as a full disk.
 [[nodiscard]] Status write_output(const std::string& path, std::string_view bytes, bool force);
-/// Writes a file from pieces in order, so that bytes at different places need not be copied.
+/// Writes a file from several pieces, one after the other, so that the caller need not copy them into one piece.
 [[nodiscard]] Status write_output(const std::string& path, std::span<const std::string_view> pieces, bool force);
 
-/// Removes all temporary files that write_output() is writing at the moment, in any thread. It is safe to call in a
+/// Removes the temporary files that write_output() is writing at the moment in all threads. It may be called in a
 /// signal handler, which must then end the process.
 void remove_temporaries() noexcept;
 

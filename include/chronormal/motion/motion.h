@@ -48,9 +48,9 @@ class Topology {
  public:
   Topology() = default;
 
-  /// Builds polygons from corners and offsets (see above) over vertices 0 .. vertex_count - 1.
-  /// Errors: a face of fewer than 3 corners, a corner without a vertex, offsets that do not ascend from 0 to the number
-  /// of corners; the place is "face F" or "face F, corner C". O(corners).
+  /// Builds polygons over the vertices 0 ... vertex_count - 1 from corners and offsets, as described above. Errors: a
+  /// face of fewer than 3 corners, a corner whose vertex does not exist, or offsets that do not ascend from 0 to the
+  /// number of corners. The place is "face F" or "face F, corner C". O(corners).
   [[nodiscard]] static Result<Topology> polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
                                                  std::vector<std::uint32_t> corners);
 
@@ -67,7 +67,7 @@ class Topology {
   /// Returns true if every face is a triangle.
   [[nodiscard]] bool all_triangles() const noexcept { return offsets_.empty(); }
 
-  /// Returns the vertices of one face, in order.
+  /// Returns the vertices of one face, in the order of its corners.
   [[nodiscard]] std::span<const std::uint32_t> face(std::size_t f) const noexcept {
     assert(f < face_count());
     if (offsets_.empty()) return {corners_.data() + 3 * f, 3};
@@ -80,7 +80,8 @@ class Topology {
 
  private:
   std::size_t vertex_count_ = 0;
-  std::vector<std::uint32_t> offsets_;  // empty if all faces are triangles
+  // Index of the first corner of each face, and the end; empty if all faces are triangles.
+  std::vector<std::uint32_t> offsets_;
   std::vector<std::uint32_t> corners_;
 };
 
@@ -89,20 +90,20 @@ class Topology {
 struct Segment {
   const Topology* topology = nullptr;
   VectorView<const float> from;  ///< positions at t = 0, one for each vertex
-  VectorView<const float> to;    ///< positions at t = 1
-  double start_time = 0;         ///< seconds at t = 0; for targets, a weight
-  double end_time = 1;           ///< seconds or weight at t = 1
+  VectorView<const float> to;    ///< positions at t = 1, one for each vertex
+  double start_time = 0;         ///< seconds at t = 0; for targets, the weight at t = 0
+  double end_time = 1;           ///< seconds at t = 1; for targets, the weight at t = 1
   std::size_t index = 0;         ///< the number of the segment in its motion
-  /// The remainders of rounding `from` and `to` to float32 (Motion::Keyframe): the exact positions are the sums of
-  /// both. Empty if nothing was rounded.
+  /// The remainders of rounding `from` and `to` to float32 (Motion::Keyframe). The exact position of a vertex is the
+  /// sum of its position and its remainder. The views are empty if nothing was rounded.
   VectorView<const double> from_residuals = {}, to_residuals = {};
 };
 
 /// The kind of a motion, which determines its segments.
 enum class MotionKind {
-  kSequence,   ///< keyframes in order: one segment between any two neighbours
-  kTargets,    ///< morph targets over a base: segment k leads from keyframe 0, the base, to keyframe k + 1
-  kAnimation,  ///< weights of targets over time: like a sequence, but without a segment where weights jump
+  kSequence,   ///< keyframes in the order of time, with one segment between any two neighbours
+  kTargets,    ///< morph targets over a base; segment k leads from keyframe 0, the base, to keyframe k + 1
+  kAnimation,  ///< weights of targets over time; like a sequence, but without a segment where weights jump
 };
 
 /// Returns "sequence", "targets" or "animation".
@@ -110,20 +111,21 @@ enum class MotionKind {
 
 struct Motion {
   struct Keyframe {
-    std::vector<float> positions;        ///< (V, 3)
-    double time = 0;                     ///< seconds; for targets, the weight
-    std::string name;                    ///< for messages: the file of the keyframe, or empty
-    std::vector<float> velocities = {};  ///< (V, 3) per second, if the file of a sequence has velocities; or empty
-    /// The velocities of the vertices, (V, 3) per second, for the first or last keyframe of a part of a sequence. They
-    /// are those of curves through the whole sequence (PathKind::kCatmullRom in motion/paths.h). If empty, velocities
-    /// follow from the keyframes of the motion.
+    std::vector<float> positions;  ///< (V, 3), in units of length of the file
+    double time = 0;               ///< in seconds; for targets, the weight
+    std::string name;              ///< the file of the keyframe, for messages; or empty
+    /// (V, 3), units of length per second, if the file of a sequence stores velocities; or empty.
+    std::vector<float> velocities = {};
+    /// The velocities of the vertices, (V, 3) per second, at the first or last keyframe of a part of a sequence. They
+    /// are the velocities of curves through the whole sequence (PathKind::kCatmullRom in motion/paths.h). If this is
+    /// empty, velocities are computed from the keyframes of the motion.
     std::vector<float> end_velocities = {};
-    /// (V, 3), or empty if nothing was rounded: the exact place of a vertex is the sum of its position and its
-    /// residual. Files store only positions.
+    /// The remainders of rounding positions to float32, (V, 3), or empty if nothing was rounded. The exact place of a
+    /// vertex is the sum of its position and its residual. Files store only positions.
     std::vector<double> residuals = {};
 
-    /// Sets the positions to the coordinates high + low rounded to float32, and the residuals to the remainders. |low|
-    /// must be at most half a unit in the last place of `high`
+    /// Sets each position to the coordinate high + low rounded to float32, and its residual to the remainder.
+    /// Precondition: |low| is at most half a unit in the last place of `high`.
     void set_positions(std::span<const double> high, std::span<const double> low);
   };
   struct SegmentKeys {
@@ -134,56 +136,58 @@ struct Motion {
   Topology topology;
   std::vector<Keyframe> keyframes;
   std::vector<SegmentKeys> segments;
-  /// (V), the number of the separate object to which each vertex belongs: vertices of different objects are never one
-  /// point, even at the same place. If empty, all belong to one object.
+  /// The number of the separate object to which each vertex belongs, (V). Vertices of different objects are never one
+  /// point, even at the same place. If this is empty, all vertices belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
-  /// The point from which positions are measured, equal at all keyframes. It is (0, 0, 0) unless a file has coordinates
-  /// far from the origin with more digits than float32 keeps. Writers of positions add it. Normals do not depend on it.
+  /// The point that is (0, 0, 0) in the positions of all keyframes. It is nonzero only if a file has coordinates far
+  /// from the origin with more digits than float32 keeps. Code that writes positions to files adds it. Normals do not
+  /// depend on it.
   std::array<double, 3> origin = {};
 
-  /// Returns a view of one segment. Precondition: the motion is valid (validate()) and i < segments.size().
+  /// Returns a view of segment i. Preconditions: the motion is valid (validate()), and i < segments.size().
   [[nodiscard]] Segment segment(std::size_t i) const noexcept;
 
-  /// Sets the kind, and makes the segments of a motion of this kind from its keyframes. (In an animation, two
-  /// neighbours at the same time are a jump without a segment.)
+  /// Sets the kind of the motion, and makes the segments that this kind needs from the keyframes. (In an animation, two
+  /// neighbouring keyframes at the same time are a jump, and have no segment.)
   void connect(MotionKind as);
   void connect_as_sequence() { connect(MotionKind::kSequence); }
   void connect_as_targets() { connect(MotionKind::kTargets); }
 };
 
-/// Returns a keyframe as a segment without motion, from time 0 to 1. Both arguments must outlive it.
+/// Returns a keyframe as a segment without motion, from time 0 to 1. The topology and the keyframe must outlive the
+/// segment.
 [[nodiscard]] Segment still_segment(const Topology& topology, const Motion::Keyframe& keyframe) noexcept;
 
-/// Checks data from outside once, for all computations. The rest of the library relies on the following: at least one
-/// face and one segment; every keyframe with 3 x vertex_count finite coordinates, and as many velocities or none;
-/// residuals of rounding to float32, as many or none; a body for each vertex or none; segments between existing
-/// keyframes; finite times that ascend along every segment; and the segments that the kind of the motion demands. (A
-/// Topology checks its own indices.) Errors: the place names the keyframe (and its file, where known), and the vertex
-/// or segment. O(positions).
+/// Checks data from outside once, so that computations need not check them. The rest of the library relies on all of
+/// the following. There is at least one face and one segment. Every keyframe has 3 x vertex_count finite coordinates,
+/// and as many velocities or none. Every keyframe has as many residuals, which are remainders of rounding to float32,
+/// or none. There is a body for each vertex, or there are no bodies. Segments join existing keyframes, and are those
+/// that the kind of the motion demands. Times are finite and ascend along every segment. (A Topology checks its own
+/// indices.) Errors: the place names the keyframe (and its file, where known), and the vertex or segment. O(positions).
 [[nodiscard]] Status validate(const Motion& motion);
 
-/// A local t in [0, 1] that is not rounded: for example, time 1 between keys at 0 and 3 is t = 1/3, which no double
-/// represents. If n(t) is so small that rounding t would turn it, integers use the exact quotient. A double converts to
-/// a LocalTime as it is.
+/// A local t in [0, 1] that is kept as an exact quotient of times. For example, time 1 between keys at 0 and 3 is t =
+/// 1/3, which no double represents. If n(t) is so small that rounding t to a double would turn it, integer arithmetic
+/// uses the exact quotient. A double converts to a LocalTime without change.
 struct LocalTime {
-  double t = 0;     ///< rounded once
-  double rest = 1;  ///< 1 - t, also rounded once: near t = 1 it has digits that t does not have
-  /// t is exactly (time - start) / (end - start)
+  double t = 0;     ///< rounded to a double once
+  double rest = 1;  ///< 1 - t, also rounded once; near t = 1 it has digits that t does not have
+  /// The exact t is (time - start) / (end - start).
   double start = 0, time = 0, end = 1;
 
   LocalTime() = default;
   LocalTime(double local) noexcept : t(local), rest(1 - local), time(local) {}  // NOLINT(google-explicit-constructor)
   operator double() const noexcept { return t; }                                // NOLINT(google-explicit-constructor)
 
-  /// Returns the local t of a time between two others. A time outside gets the t of the nearer end. Precondition: start
-  /// < end, and both are finite.
+  /// Returns the local t of a time between two other times. A time outside of them gets the t of the nearer end.
+  /// Precondition: start < end, and both are finite.
   [[nodiscard]] static LocalTime between(double start, double time, double end) noexcept;
 
   [[nodiscard]] bool is_double() const noexcept { return start == 0 && end == 1; }
 };
 
-/// A time as a segment of a motion and the local t in this segment.
+/// A time, given as a segment of a motion and the local t in this segment.
 struct Instant {
   std::size_t segment = 0;
   LocalTime t;
@@ -218,16 +222,17 @@ class MotionStream {
   /// a time, but not always from the same thread.
   using Reader = std::function<Status(const Motion& motion, std::size_t keyframe, std::span<float> positions)>;
 
-  /// A function that receives the positions of a keyframe as the reader has written them.
+  /// A function that is called with the positions of a keyframe, exactly as the reader has written them.
   using Watcher = std::function<Status(std::size_t keyframe, std::span<const float> positions)>;
 
   static constexpr std::size_t kUsuallyKept = std::size_t{64} << 20;
 
-  /// Wraps a motion in memory, which must outlive the stream and may be at rest.
+  /// Wraps a motion in memory, which must outlive the stream. It may be a mesh at rest.
   explicit MotionStream(const Motion& whole);
 
-  /// Wraps a motion whose keyframes `read` reads when they are needed. The outline is the motion without positions,
-  /// except perhaps those of the first keyframe; everything else in it must be valid (see validate()).
+  /// Wraps a motion whose keyframes are read by `read` when they are needed. `outline` is the motion without positions,
+  /// except perhaps those of the first keyframe; everything else in it must be valid (see validate()). `kept` is in
+  /// bytes.
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;
@@ -236,21 +241,22 @@ class MotionStream {
 
   [[nodiscard]] const Motion& motion() const noexcept;
 
-  /// Reads the positions of the keyframes `first` to `last` if necessary; they stay until the next hold. Errors: those
-  /// of the reader. first <= last, and last must be a keyframe
+  /// Makes the positions of the keyframes `first` to `last` available, and reads them if necessary. They stay available
+  /// until the next call of a hold function. Errors: those of the reader. Preconditions: first <= last, and last is a
+  /// keyframe.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last);
-  /// Holds both ends of the segments `first` to `last`.
+  /// Holds the keyframes at both ends of the segments `first` to `last`.
   [[nodiscard]] Status hold_segments(std::size_t first, std::size_t last);
   [[nodiscard]] Status hold_segment(std::size_t segment) { return hold_segments(segment, segment); }
   /// Holds all keyframes, so that the whole motion is in memory.
   [[nodiscard]] Status hold_all();
 
-  /// Calls the watcher at once with every keyframe in memory, and later with each keyframe that is read, in the thread
-  /// that reads it and before anyone else can use the keyframe. There is one watcher at a time; an empty function
-  /// removes it. Errors: those of the watcher, from this call and from each hold.
+  /// Calls the watcher at once for every keyframe that is in memory. Later, calls it for each keyframe that is read, in
+  /// the thread that reads the keyframe and before anyone else can use the keyframe. There is one watcher at a time; an
+  /// empty function removes it. Errors: those of the watcher, from this call and from each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
-  /// Returns true if keyframes stay in memory once they were held, so that holding all of them costs no additional
+  /// Returns true if keyframes stay in memory once they were read, so that holding all of them costs no additional
   /// memory.
   [[nodiscard]] bool keeps_all() const noexcept;
 
@@ -273,17 +279,17 @@ class MotionStream {
 // Units      positions and deltas: any length; weights: any finite number, often in [0, 1].
 
 struct BlendTarget {
-  std::string name;                     ///< for messages; may be empty
-  std::vector<std::uint32_t> vertices;  ///< ascending
-  std::vector<float> deltas;            ///< (n, 3)
+  std::string name;                     ///< the name of the target, for messages; may be empty
+  std::vector<std::uint32_t> vertices;  ///< indices of the vertices that the target moves, ascending
+  std::vector<float> deltas;            ///< the displacement of each of these vertices at weight 1, (n, 3)
 
-  /// Makes a target from dense deltas, (V, 3); only the vertices with deltas other than (0, 0, 0) are kept.
+  /// Makes a target from a delta for every vertex, (V, 3). It keeps only the vertices with deltas other than (0, 0, 0).
   [[nodiscard]] static BlendTarget from_dense(std::span<const float> deltas, std::string name = {});
 };
 
 struct BlendSet {
   Topology topology;
-  std::vector<float> base;  ///< (V, 3)
+  std::vector<float> base;  ///< the positions of all vertices, (V, 3)
   std::vector<BlendTarget> targets;
 };
 
@@ -299,11 +305,11 @@ struct BlendSet {
 /// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 
-/// Checks a target that is to become number k of a set with this topology.
+/// Checks a target that is to become number k of a set with this topology. Errors: those of the other validate().
 [[nodiscard]] Status validate(const BlendTarget& target, const Topology& topology, std::size_t k);
 
-/// Writes the positions at some weights, (V, 3) in double, without rounding to float32 in between. `weights` must have
-/// one for each target, and `result` 3 V elements; targets of weight 0 cost nothing
+/// Writes the blended positions at some weights, (V, 3) in double, without rounding to float32 in between. Targets of
+/// weight 0 cost nothing. Preconditions: `weights` has one number for each target, and `result` has 3 V elements.
 void blend_positions(const BlendSet& set, std::span<const double> weights, std::span<double> result) noexcept;
 
 }  // namespace chronormal

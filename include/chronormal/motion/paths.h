@@ -39,19 +39,22 @@ namespace chronormal {
 
 /// The kind of path on which the vertices of a sequence move between its keyframes.
 enum class PathKind {
-  kLinear,      ///< on straight lines, like in players
-  kCatmullRom,  ///< on cubics whose velocities follow from the keyframes (CubicSegment)
-  /// On cubics with the velocities of the keyframes; a keyframe without velocities gets those of kCatmullRom.
+  kLinear,      ///< vertices move on straight lines, as in programs that play motions
+  kCatmullRom,  ///< vertices move on cubics whose velocities follow from the keyframes (CubicSegment)
+  /// Vertices move on cubics with the velocities that the keyframes store. A keyframe without velocities gets those of
+  /// kCatmullRom.
   kHermite,
 };
 
-/// The default of the largest angle, in degrees, between normals of straight pieces and normals of the curve.
+/// The default tolerance, in degrees: the largest angle between the normals on the straight pieces and the normals on
+/// the curve.
 inline constexpr double kPathTolerance = 0.01;
 
-/// A kind of path, and the tolerance of its straight pieces.
+/// A kind of path, and the tolerance with which its curves are cut into straight pieces.
 struct Path {
   PathKind kind = PathKind::kLinear;
-  double tolerance = kPathTolerance;  ///< degrees between normals
+  /// The largest angle, in degrees, between normals on the pieces and normals on the curve.
+  double tolerance = kPathTolerance;
 
   [[nodiscard]] bool is_curved() const noexcept { return kind != PathKind::kLinear; }
 };
@@ -61,38 +64,40 @@ struct Path {
 /// Reads a path: the name of its kind, and after a colon the tolerance of a curve, "catmull-rom:0.1". Errors: kUsage
 /// for another name, with all names, and for a tolerance that is not a number above 0 and at most 45.
 [[nodiscard]] Result<Path> make_path(std::string_view text);
-/// Checks that a motion can have such paths. Errors: kUsage for curves in a motion that is not a sequence, and for
-/// kHermite if no keyframe has velocities.
+/// Checks that a motion can have paths of this kind. Errors: kUsage for curves in a motion that is not a sequence, and
+/// for kHermite if no keyframe has velocities.
 [[nodiscard]] Status check_path(const Motion& motion, PathKind kind);
 
-/// The velocity at keyframe `at` for kCatmullRom: the sum of share[j] p(first + j) over the positions p of the
-/// keyframes first, first + 1, ...
+/// The weights that give the velocity of a vertex at a keyframe for kCatmullRom. The velocity is the sum of share[j]
+/// p(first + j) over the positions p of the keyframes first, first + 1, ...
 struct VelocityShares {
   std::size_t first = 0;
-  std::vector<double> share;  ///< per second
+  std::vector<double> share;  ///< one weight for each keyframe, in 1 / second
 
-  /// Returns the weighted sums of positions, (V, 3) each: one array for each share, all of the same size.
+  /// Returns the velocities of all vertices, (V, 3): the sums of the positions at the keyframes, weighted by `share`.
+  /// `positions` has one array for each share, all of the same size.
   [[nodiscard]] std::vector<float> velocities(std::span<const std::span<const float>> positions) const;
 };
 /// Computes the shares of keyframe `at`. The velocity there is that of the parabola through the keyframe and its two
-/// neighbours, and at the first and the last keyframe that of the cubic through the nearest four keyframes, or through
-/// all if there are fewer; with two keyframes the motion is straight. times must ascend; at < times.size()
+/// neighbours. At the first and the last keyframe it is that of the cubic through the nearest four keyframes, or
+/// through all if there are fewer. With two keyframes the motion is straight. Preconditions: times ascend; at <
+/// times.size().
 [[nodiscard]] VelocityShares velocity_shares(std::span<const double> times, std::size_t at);
 
 /// The cubics of all vertices from one keyframe to the next, in Bernstein form.
 struct CubicSegment {
-  std::array<std::vector<Vec3d>, 4> control;  ///< control[i][vertex]
+  std::array<std::vector<Vec3d>, 4> control;  ///< control[i][vertex] is the coefficient i of the cubic of a vertex
   double start_time = 0, end_time = 1;        ///< seconds, at t = 0 and t = 1
 
   /// Returns the position of a vertex at a local t.
   [[nodiscard]] Vec3d position(std::size_t vertex, double t) const noexcept;
-  /// Returns the positions of all vertices, rounded to float32: (V, 3).
+  /// Returns the positions of all vertices at a local t, (V, 3), rounded to float32.
   [[nodiscard]] std::vector<float> positions(double t) const;
 };
-/// Returns the cubics from keys[i] to keys[i + 1], or straight lines as cubics. Residuals are ignored, since only
-/// keyframes from files have curves, and these have none. A key with end_velocities (motion/motion.h) uses them. Keys
-/// must ascend in time, with equally many positions; i + 1 < keys.size(). Only the keys that determine the velocities
-/// are read.
+/// Returns the cubics from keys[i] to keys[i + 1]; for kLinear they are straight lines. Only keyframes from files have
+/// curves, and these have no residuals, so residuals are ignored. If a key has end_velocities (motion/motion.h), these
+/// are its velocities. Only the keys that determine the velocities are read. Preconditions: keys ascend in time and
+/// have equally many positions; i + 1 < keys.size().
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
 /// Measures the bend of the paths through every `every`-th keyframe of a sequence: the second differences of vertices
@@ -100,46 +105,49 @@ struct CubicSegment {
 /// keyframes. A rigid turn by an angle a from keyframe to keyframe has a bend of sin(a / 2). Three keyframes are held
 /// at a time. Errors: those of the stream.
 [[nodiscard]] Result<double> bend_of(MotionStream& stream, std::size_t every = 1);
-/// The bend above which a curve through the keyframes says little about the motion.
+/// The bend, as bend_of() measures it, above which a curve through the keyframes says little about the real motion.
 inline constexpr double kTooSparse = 0.5;
-/// Tells whether a bend exceeds kTooSparse by more than the effect of rounding positions to float32. A rigid turn by 60
-/// degrees from keyframe to keyframe has exactly this bend, and is not too sparse.
+/// Returns true if a bend exceeds kTooSparse by more than rounding the positions to float32 could cause. A rigid turn
+/// by 60 degrees from keyframe to keyframe has exactly the bend kTooSparse, and is not too sparse.
 [[nodiscard]] constexpr bool is_too_sparse(double bend) noexcept { return bend > kTooSparse + 1e-6; }
 
-/// A comparison of velocities with positions, to find out whether the velocities fit the motion.
+/// A comparison of the velocities that a file stores with the motion of its positions. It shows whether the velocities
+/// fit.
 struct VelocityFit {
   /// The distance that vertices would move from keyframe to keyframe at the mean of the speeds at both ends, divided by
-  /// the distance that they really move: 1 or slightly more if velocities fit. It is 100 if velocities are 100 times
-  /// too large, and 30 if velocities are per second, but frames at 30 per second are read as one second apart.
+  /// the distance that they really move. If velocities fit, this is 1 or slightly more. It is 100 if velocities are 100
+  /// times too large. It is 30 if velocities are per second, while the file has 30 frames per second that are read as
+  /// one second apart.
   double length = 1;
-  /// The mean cosine of the angle between velocities and displacements, weighted by distance: -1 if velocities are
-  /// reversed.
+  /// The mean cosine of the angle between velocities and displacements, weighted by distance. It is -1 if all
+  /// velocities are reversed.
   double direction = 1;
 
-  /// Returns true if both numbers can be explained by a turn of up to about 200 degrees from keyframe to keyframe, or
-  /// by an acceleration from rest.
+  /// Returns true if a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest, could
+  /// explain both numbers.
   [[nodiscard]] bool is_plausible() const noexcept { return length >= 1.0 / 3 && length <= 3 && direction >= 0; }
 };
-/// Compares up to 64 evenly distributed segments whose keyframes both have velocities. If there is none, or if no
-/// vertex moves, the result is the same as if all velocities fitted. Errors: those of the stream.
+/// Compares velocities with positions in up to 64 evenly distributed segments whose keyframes both have velocities. If
+/// there are no such segments, or if no vertex moves, the result says that the velocities fit. Errors: those of the
+/// stream.
 [[nodiscard]] Result<VelocityFit> velocity_fit(MotionStream& stream);
 
-/// The result of cutting curves into pieces.
+/// The numbers that describe how curves were cut into pieces.
 struct CutPath {
   Path path;
   std::size_t segments = 0;  ///< number of segments between the original keyframes
   std::size_t pieces = 0;    ///< number of pieces of all segments
-  /// Number of faces that miss the tolerance with any number of pieces, counted once per segment.
+  /// Number of faces that miss the tolerance with any number of pieces, counted once for each segment.
   std::size_t beyond = 0;
-  double rounding = 0;     ///< L: bound of the error of rounding a coordinate to float32
-  double bend = 0;         ///< bend_of() the original keyframes
-  VelocityFit velocities;  ///< velocity_fit() of the keyframes, for kHermite
+  double rounding = 0;     ///< bound of the error of rounding a coordinate to float32, in units of length
+  double bend = 0;         ///< bend_of() for the original keyframes
+  VelocityFit velocities;  ///< velocity_fit() for the original keyframes, if the kind is kHermite
 };
 
-/// The default of the largest number of pieces of one segment.
+/// The default of the largest number of pieces into which one segment is cut.
 inline constexpr std::size_t kMostPieces = 100;
 
-/// A motion in memory whose curves have been cut into pieces. With kLinear the motion is unchanged.
+/// A motion in memory whose curves have been cut into pieces. For kLinear it is the unchanged motion.
 struct CutMotion {
   Motion motion;
   CutPath cut;
@@ -147,9 +155,9 @@ struct CutMotion {
 [[nodiscard]] Result<CutMotion> cut_into_segments(const Motion& motion, const Path& path,
                                                   std::size_t most_pieces = kMostPieces);
 
-/// A stream whose curves are cut into pieces. The original keyframes are read once to determine the number of pieces,
-/// and again, four at a time, when pieces are needed. If all pieces together take at most `kept` bytes, they stay in
-/// memory once they were computed.
+/// A stream of the pieces into which curves were cut. The original keyframes are read once to determine the number of
+/// pieces, and again, four at a time, when pieces are needed. If all pieces together take at most `kept` bytes, they
+/// stay in memory once they were computed.
 struct CutStream {
   MotionStream stream;
   CutPath cut;

@@ -47,70 +47,77 @@
 namespace chronormal {
 
 enum class BlendPath {
-  kTerms,    ///< the terms of the active targets, for the elements that these targets touch
-  kTouched,  ///< blended positions, and rings around these elements
-  kWhole,    ///< blended positions, and rings around all elements
+  kTerms,    ///< add the terms of the active targets, for the elements that these targets touch
+  kTouched,  ///< blend positions, and recompute the elements that the active targets touch from the points around them
+  kWhole,    ///< blend positions, and recompute all elements
 };
 
 /// Returns "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
-/// The default limit, a gigabyte. The terms of many dense targets take more, but then another path than kTerms is
-/// usually cheaper.
+/// The default limit of memory, one gigabyte. The terms of many dense targets take more, but then another path than
+/// kTerms is usually cheaper.
 inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
 
 struct BlendNormalsOptions {
-  /// The limit of BlendCost::bytes. It does not apply to the memory that is needed even without terms (least_bytes).
+  /// The limit of BlendCost::bytes. It does not apply to least_bytes, the memory that is needed even if no terms are
+  /// stored.
   std::size_t max_bytes = kUsualBlendBytes;
-  /// Always takes this path, whatever its cost.
+  /// The path that is always taken, whatever its cost.
   std::optional<BlendPath> forced = {};
-  /// On the path kWhole, blends positions and computes normals in float32, like FloatRecompute. This takes about half
-  /// as long, so kWhole is chosen more often, but there is no guarantee: positions are wrong by a unit in the last
-  /// place, which turns a normal by the ratio of that unit to an edge. This is enough for shading; the other paths are
-  /// still exact. The option has no effect if an element has a ring of more than 64 points.
+  /// True to blend positions and compute normals in float32 on the path kWhole, like FloatRecompute. This takes about
+  /// half as long, so kWhole is chosen more often. There is then no guarantee for the normals of this path: positions
+  /// have an error of a unit in the last place, which turns a normal by the ratio of that unit to the length of an
+  /// edge. This is enough for shading. The other paths are still exact. The option has no effect if an element has a
+  /// ring of more than 64 points.
   bool in_float32 = false;
 };
 
-/// The cost of the normals of a set, computed from counts alone. Bytes are in addition to the set and the groups.
+/// The memory that the normals of a set need, and the counts from which it follows. Bytes are in addition to the set
+/// and the groups.
 struct BlendCost {
-  std::size_t target_elements = 0;    ///< elements that a target touches, summed over targets
-  std::size_t overlapping_pairs = 0;  ///< pairs of targets that move a face in common
-  std::size_t pair_elements = 0;      ///< elements of these faces, summed over pairs
-  std::size_t stored_targets = 0;     ///< targets whose terms fit into max_bytes; small ones come first
-  std::size_t stored_pairs = 0;       ///< pairs of stored targets whose terms fit; small ones come first
-  std::size_t least_bytes = 0;        ///< bytes kept without any terms: base normals, lists, rings, scratch
-  std::size_t bytes = 0;              ///< bytes kept with the stored terms, at most
-  std::size_t peak_bytes = 0;         ///< bytes while terms are computed, at most
+  std::size_t target_elements = 0;    ///< number of elements that a target touches, summed over targets
+  std::size_t overlapping_pairs = 0;  ///< number of pairs of targets that both move some face
+  /// Elements that touch a face which both targets of a pair move, summed over pairs.
+  std::size_t pair_elements = 0;
+  /// Targets whose terms fit into max_bytes; the targets with the fewest terms are stored first.
+  std::size_t stored_targets = 0;
+  /// Pairs of stored targets whose terms fit; the pairs with the fewest terms are stored first.
+  std::size_t stored_pairs = 0;
+  std::size_t least_bytes = 0;  ///< bytes that are needed without any terms: base normals, lists, rings, scratch
+  std::size_t bytes = 0;        ///< bytes that are needed with the stored terms, at most
+  std::size_t peak_bytes = 0;   ///< bytes that are needed while terms are computed, at most
 
   friend bool operator==(const BlendCost&, const BlendCost&) = default;
 };
 
-/// Predicts the cost from the faces of each target and the rings around elements, without computing terms. Pure. The
-/// set must be valid, and groups must be groups of its topology that keep their corners.
+/// Predicts the memory from the faces of each target and the rings of points around elements, without computing terms.
+/// Pure. Preconditions: the set is valid, and the groups are groups of its topology that keep their corners.
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
                                            const BlendNormalsOptions& options = {});
 
-/// The path for some weights, and the expected costs by which it was chosen.
+/// The path that is chosen for some weights, and the expected costs that led to this choice.
 struct BlendChoice {
   BlendPath path = BlendPath::kTerms;
-  std::size_t active_targets = 0;    ///< targets with nonzero weights
-  std::size_t touched_elements = 0;  ///< elements with a face that an active target moves
-  /// Touched elements with a term that is not kept, which are computed from positions on every path.
+  std::size_t active_targets = 0;    ///< number of targets with nonzero weights
+  std::size_t touched_elements = 0;  ///< number of elements with a face that an active target moves
+  /// Number of touched elements with a term that is not stored. They are computed from blended positions on every path.
   std::size_t unstored_elements = 0;
   double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< the costs that the model expects of each path, in nanoseconds
 };
 
 struct BlendEvaluation : BlendChoice {
-  std::size_t recomputed_elements = 0;  ///< elements computed from blended positions
-  std::size_t zeros = 0;                ///< number of (0, 0, 0), including untouched elements
-  std::size_t uncertain_elements = 0;   ///< elements so close to a collapse that 1e-6 rad is not guaranteed
+  std::size_t recomputed_elements = 0;  ///< number of elements that were computed from blended positions
+  std::size_t zeros = 0;                ///< number of normals that are (0, 0, 0), including those of untouched elements
+  /// Elements that are so close to a collapse that 1e-6 rad is not guaranteed for them.
+  std::size_t uncertain_elements = 0;
 };
 
 class BlendNormals {
  public:
-  /// Prepares the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h),
-  /// and the groups must be groups of its topology that keep their corners. Throws std::bad_alloc only.
+  /// Prepare the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h),
+  /// and the groups must be groups of its topology that keep their corners. Throw only std::bad_alloc.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
                                               const BlendNormalsOptions& options = {});
@@ -118,35 +125,35 @@ class BlendNormals {
   BlendNormals& operator=(BlendNormals&&) noexcept;
   ~BlendNormals();
 
-  /// Sets the weights, chooses their path, and blends positions if the path needs them: the work that all elements have
-  /// in common. With one thread it does not allocate or throw. Initially all weights are 0. `weights` must have one for
-  /// each target
+  /// Sets the weights, chooses the path for them, and blends positions if that path needs them. This is the work that
+  /// all elements have in common. With one thread it does not allocate or throw. Initially all weights are 0.
+  /// Precondition: `weights` has one number for each target.
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
-  /// Writes n(w) / |n(w)| of a range of elements at the current weights, and returns counts. Does not allocate.
-  /// elements.first must be a multiple of 64, and result must have as many elements as the range
+  /// Writes the unit normals of a range of elements at the current weights, and returns counts. Does not allocate.
+  /// Preconditions: elements.first is a multiple of 64, and result has as many elements as the range.
   BlendEvaluation unit_normals(IndexRange elements, VectorView<float> result) const noexcept;
 
-  /// Sets the weights and writes the normals of all elements. With one thread it does not allocate or throw. weights
-  /// must have one for each target, result size() elements
+  /// Sets the weights and writes the normals of all elements. With one thread it does not allocate or throw.
+  /// Preconditions: weights has one number for each target, and result has size() elements.
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);
-  /// Writes the normals for many weight vectors, as in an animation: `weights` is (n, targets), and results[k] is for
-  /// row k. With Threads::kAll the rows are divided among the threads; each thread except the first allocates its own
-  /// scratch memory during the call, which cost() does not count.
+  /// Writes the normals for many weight vectors, for example of an animation. `weights` has a row for each vector, (n,
+  /// targets), and results[k] gets the normals for row k. With Threads::kAll the rows are divided among the threads.
+  /// Each thread except the first allocates its own scratch memory during the call, which cost() does not count.
   std::vector<BlendEvaluation> unit_normals(std::span<const double> weights, std::span<const VectorView<float>> results,
                                             Threads threads = Threads::kOne);
-  /// Predicts the path for these weights.
+  /// Returns the path that set_weights() would choose for these weights.
   [[nodiscard]] BlendChoice choose(std::span<const double> weights) const;
 
   /// Appends a target. Computes its terms and those of its pairs with other targets, as far as max_bytes allows;
-  /// existing terms are kept. Errors: those of validate(), after which nothing has changed.
+  /// existing terms are kept. Errors: those of validate(); after an error the object is unchanged.
   Status add_target(BlendTarget target);
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] const BlendSet& set() const noexcept;
-  /// Returns the cost of all targets, including added ones.
+  /// Returns the memory and the counts for all targets, including those that were added later.
   [[nodiscard]] const BlendCost& cost() const noexcept;
-  /// Returns the memory in use, in bytes: at most cost().bytes.
+  /// Returns the number of bytes of memory in use, which is at most cost().bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

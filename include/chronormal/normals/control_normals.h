@@ -29,7 +29,7 @@
 
 namespace chronormal {
 
-/// The control normals of an element: of a face, or summed over several faces.
+/// The control normals of an element: those of a face, or the sum of those of several faces.
 struct ControlNormals {
   Vec3d n0, m, n1;
 
@@ -39,28 +39,29 @@ struct ControlNormals {
   friend bool operator==(const ControlNormals&, const ControlNormals&) = default;
 };
 
-/// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle.
-/// The error of each control normal is at most 2^-26 of its length, so that its direction is never only rounding error.
-/// If rounding in double could exceed this, integers compute the control normal. It is exactly zero if the corners are
-/// exactly collinear. result must have faces.count elements; faces must lie inside the topology
+/// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle. The error of each
+/// control normal is at most 2^-26 of its length, so its direction is never only rounding error. If rounding in double
+/// could exceed this bound, integer arithmetic computes the control normal. A control normal is exactly zero if the
+/// corners are exactly collinear. Preconditions: result has faces.count elements; the faces exist in the topology.
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
-/// Returns the true degree of n(t) in t: 0, 1 or 2. A translated face has degree 0, and a face with two vertices that
-/// move alike has at most degree 1. Other motions, such as a shear within the plane, have low degrees, too, so the
-/// coefficients are tested and not the motion. A coefficient below 2^-28 of the largest control normal counts as zero:
-/// leaving it out turns no direction by more than 1e-8 rad times that control normal / |n(t)|. (A translation that was
-/// rounded to float32 is not exact, and may have degree 1 or 2.)
+/// Returns the true degree of n(t) in t: 0, 1 or 2. The normal of a translated face has degree 0, and that of a face
+/// with two vertices that move alike has at most degree 1. Other motions, such as a shear within the plane, have low
+/// degrees, too, so this function tests the coefficients and not the motion. A coefficient below 2^-28 of the largest
+/// control normal counts as zero. Leaving it out turns no direction by more than 1e-8 rad times the length of that
+/// control normal / |n(t)|. (A translation that was rounded to float32 is not exact, and may have degree 1 or 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
-/// Returns n(t) itself, by eq. 5. Since n(t) is a convex combination of the control normals, the error is only a few
-/// rounding errors of the largest of them.
+/// Returns n(t), by eq. 5, without scaling it to length 1. n(t) is a convex combination of the control normals, so its
+/// error is only a few rounding errors of the largest control normal.
 [[nodiscard]] Vec3d normal_at(const ControlNormals& normals, double t) noexcept;
 
-/// The kind of direction that could be determined.
+/// The kind of a direction, which tells how the direction follows from n(t).
 enum class Direction {
   kRegular,  ///< n(t) is not zero
-  kLimit,    ///< n(t) = 0, and both sides (or the only side, at an end) have the same limit
-  /// At n(t) = 0 the two sides have opposite directions; the result is the limit from before, a documented fallback.
+  /// n(t) = 0, but n / |n| has the same limit from both sides, or from the only side at an end of the segment.
+  kLimit,
+  /// n(t) = 0, and the limits of n / |n| from both sides are opposite. The result is then the limit from earlier times.
   kDiscontinuous,
   kNone,  ///< n is zero in the whole segment; the result is (0, 0, 0)
 };
@@ -70,10 +71,9 @@ struct UnitNormal {
   Direction direction = Direction::kRegular;
 };
 
-/// Returns n(t) / |n(t)| in double; Direction defines the result in degenerate cases. If a limit is needed, it is the
-/// one from later times at t = 0, and the one from earlier times elsewhere. Inside a segment n(t) counts as zero below
-/// 8 rounding errors of its control normals. Callers with positions who need an exact decision use MeshNormals or
-/// NormalCurves.
+/// Returns n(t) / |n(t)| in double; Direction defines the result where n(t) = 0. The limit is taken from later times at
+/// t = 0, and from earlier times elsewhere. Inside a segment n(t) counts as zero if it is below 8 rounding errors of
+/// its control normals. Callers that have positions and need an exact decision use MeshNormals or NormalCurves.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 
 // Normals of meshes that move as a whole: rigid and affine motion.
@@ -98,50 +98,51 @@ struct AffineTransform {
   }
 };
 
-/// Applies first, then second: x -> second(first(x)).
+/// Returns the transform that applies `first` and then `second`: x -> second(first(x)).
 [[nodiscard]] AffineTransform composed(const AffineTransform& second, const AffineTransform& first) noexcept;
 
-/// A node of glTF or of a similar format, which scales, then rotates, then translates.
+/// The transform of a node of glTF or of a similar format: it scales, then rotates, then translates.
 struct NodeTransform {
   Vec3d translation;
-  std::array<double, 4> rotation = {0, 0, 0, 1};  ///< unit quaternion x, y, z, w
+  std::array<double, 4> rotation = {0, 0, 0, 1};  ///< a unit quaternion x, y, z, w
   Vec3d scale = {1, 1, 1};
 };
 
 [[nodiscard]] AffineTransform affine_transform(const NodeTransform& node) noexcept;
 
-/// Returns the node between two keyframes by glTF's LINEAR interpolation: translation and scale on straight lines,
-/// rotation by quaternion slerp on the shorter arc (if the two quaternions are exactly opposite, the rotation does not
-/// change). t in [0, 1]
+/// Returns the node between two keyframes by glTF's LINEAR interpolation. Translation and scale are interpolated on
+/// straight lines, the rotation by quaternion slerp on the shorter arc. (If the two quaternions are exactly opposite,
+/// the rotation does not change.) Precondition: t is in [0, 1].
 [[nodiscard]] NodeTransform interpolated(const NodeTransform& from, const NodeTransform& to, double t) noexcept;
 
 /// The matrix that transforms normals, for an affine transform.
 struct NormalMatrix {
   std::array<Vec3d, 3> columns;
   bool mirrored =
-      false;  ///< true if det < 0: faces keep their outer side, but the order of their corners shows the other side
+      false;  ///< true if det < 0; normals still point outwards, but corners are counter-clockwise seen from inside
 
   [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {
     return normal.x * columns[0] + normal.y * columns[1] + normal.z * columns[2];
   }
 };
 
-/// Returns |det| times the inverse transpose of the linear part, by cofactors, without a division. If det = 0
-/// (flattened to a plane), normals become perpendicular to that plane, and normals within it vanish.
+/// Returns |det| times the inverse transpose of the linear part of a transform. It is computed from cofactors, without
+/// a division. If det = 0, the transform flattens space to a plane: the image of a normal is then perpendicular to that
+/// plane, or zero.
 [[nodiscard]] NormalMatrix normal_matrix(const AffineTransform& transform) noexcept;
 
-/// Transforms a curve of normals by a constant transform: applies the matrix to each control normal.
+/// Transforms a curve of normals by a constant matrix, which is applied to each control normal.
 [[nodiscard]] ControlNormals transformed(const NormalMatrix& matrix, const ControlNormals& normals) noexcept;
 
 /// Writes the unit normals of a mesh under a transform. The image of each normal, which need not be a unit vector, is
-/// scaled to length 1. If the image is zero, the result is (0, 0, 0); returns the number of such zeros. `normals` and
-/// `result` may be the same memory. result must have as many elements as normals
+/// scaled to length 1. If the image is zero, the result is (0, 0, 0). Returns the number of such zeros. `normals` and
+/// `result` may be the same memory. Precondition: result has as many elements as normals.
 std::size_t transform_unit_normals(const NormalMatrix& matrix, VectorView<const float> normals,
                                    VectorView<float> result) noexcept;
 
-/// Turns v by the smallest rotation that takes the unit vector `from` to the unit vector `to`; if the two are opposite,
-/// one of many half turns is chosen. This is used to keep the offset between an author's normal and the geometry's
-/// normal while the mesh moves.
+/// Returns v turned by the smallest rotation that takes the unit vector `from` to the unit vector `to`. If the two are
+/// opposite, one of many half turns is chosen. Callers use this to keep the angle between an author's normal and the
+/// geometric normal while the mesh moves.
 [[nodiscard]] Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept;
 
 }  // namespace chronormal

@@ -52,27 +52,30 @@
 
 namespace chronormal {
 
-/// The number of evaluations per segment from which on preparing curves is cheaper than recomputing normals within 1e-6
-/// rad. Measured on all meshes of docs/benchmarks.md ("Frames of a segment"), curves are faster from the first or
-/// second frame on.
+/// The number of evaluations per segment from which preparing curves is cheaper than recomputing normals within 1e-6
+/// rad at each evaluation. On all meshes of docs/benchmarks.md ("Frames of a segment"), curves are faster from the
+/// first or second frame on.
 inline constexpr double kCurvesFrom = 2;
 
 struct MeshNormalsOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;  ///< must be kArea for faces and for blend shapes
-  double tolerance = kExactTolerance;      ///< radians, for segments; at least kExactTolerance
-  Threads threads = Threads::kOne;         ///< the threads on which segments are prepared
+  /// The largest error of a normal in radians, for segments; at least kExactTolerance.
+  double tolerance = kExactTolerance;
+  Threads threads = Threads::kOne;  ///< the threads that prepare segments
 };
 
-/// A range of all outputs, however many there are.
+/// A range that stands for all outputs, however many there are.
 inline constexpr IndexRange kAllOutputs = {0, ~std::size_t{0}};
 
-/// Control normals in vertex buffers, for shaders: a shader computes (1-t)^2 n0 + 2t(1-t) m + t^2 n1 and normalises.
-/// Only float32 keeps lengths; the other formats divide the three vectors by their largest component.
+/// The formats of control normals in vertex buffers, for shaders. A shader computes (1-t)^2 n0 + 2t(1-t) m + t^2 n1 and
+/// normalises the result. Only kFloat32 keeps the lengths; the other formats divide the three vectors of an output by
+/// their largest component.
 enum class ControlFormat {
   kFloat32,  ///< 36 bytes: n0, m, n1 as x y z
   kSnorm16,  ///< 20 bytes: n0, m, n1 as x y z, then 2 bytes of 0. The error of a component is at most 1.6e-5
-  /// 12 bytes: one word each for x, y and z; n0 in the lowest 11 bits, then n1 in 11 bits, m in 10; errors up to 1e-3.
+  /// 12 bytes: one 32-bit word for each of x, y and z. In a word, n0 has the lowest 11 bits, n1 the next 11, and m the
+  /// highest 10. The error of a component is at most 1e-3.
   kSnorm11,
 };
 
@@ -89,19 +92,20 @@ class MeshNormals {
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
   /// Makes another object for the same mesh, for example one for each of many characters. It has no positions or
-  /// targets, and shares the memory of this object for the topology and the groups of corners. The two may be used at
-  /// the same time.
+  /// targets yet, and shares this object's memory of the topology and the groups of corners. The two objects may be
+  /// used at the same time.
   [[nodiscard]] MeshNormals another() const;
 
   MeshNormals(MeshNormals&&) noexcept;
   MeshNormals& operator=(MeshNormals&&) noexcept;
   ~MeshNormals();
 
-  /// Prepares a segment, reusing the memory of the previous one. Errors, after which nothing has changed: kInvalidInput
-  /// if the number of positions differs from the number of vertices, or if a position is not finite (the place is
-  /// "keyframe 0, vertex V"); for the first segment also those of make_groups().
+  /// Prepares a segment from the positions at t = 0 and t = 1, and reuses the memory of the previous segment. Errors,
+  /// after which nothing has changed: kInvalidInput if the number of positions differs from the number of vertices, or
+  /// if a position is not finite (the place is "keyframe 0, vertex V"); for the first segment also those of
+  /// make_groups().
   [[nodiscard]] Status set_segment(VectorView<const float> from, VectorView<const float> to);
-  /// Prepares a segment of a motion of the same mesh, including its residuals.
+  /// Prepares a segment of a motion of the same mesh. Residuals of the positions are used.
   [[nodiscard]] Status set_segment(const Segment& segment);
 
   /// Prepares the next segment step by step, while the current one is evaluated. begin_segment() does no work yet; its
@@ -113,52 +117,55 @@ class MeshNormals {
   bool prepare(double share);
   void finish_segment();
 
-  /// Writes the unit normals at t. Returns the number of (0, 0, 0) written. A segment must be set.
-  /// result must have size() elements
+  /// Writes the unit normals at t. Returns the number of (0, 0, 0) written. Preconditions: a segment is set; result has
+  /// size() elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes the unit normals in four bytes each; normals/normal_curves.h explains the encoding of (0, 0, 0).
+  /// Writes the unit normals at t, encoded in four bytes each. normals/normal_curves.h explains the encodings, and the
+  /// encoding of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes the unit normals at many t, in one pass over the prepared data. results[k] is for times[k], and there must
-  /// be as many.
+  /// Writes the unit normals at many t, in one pass over the prepared data. results[k] gets the normals at times[k], so
+  /// the two lists must be of the same length.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes the unit normals on all cores, by the thread pool of parallel.h, which may allocate.
+  /// Writes the unit normals at t with the given threads. With Threads::kAll it uses the thread pool of parallel.h,
+  /// which may allocate.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) const;
 
-  /// Writes the control normals of a segment for every output, one after the other. The tolerance must be
-  /// kExactTolerance. Errors: kUsage for another tolerance, or if `bytes` does not have size() * bytes_of(format)
-  /// elements.
+  /// Writes the control normals of a segment for every output, one output after the other. The tolerance of this object
+  /// must be kExactTolerance. Errors: kUsage for another tolerance, or if `bytes` does not have size() *
+  /// bytes_of(format) elements.
   [[nodiscard]] Status fill_vertex_buffer(ControlFormat format, std::span<std::byte> bytes) const;
 
-  /// Prepares blend shapes, with all weights 0. Errors: kUsage for a weighting other than area; kInvalidInput for a set
-  /// of another mesh; those of validate() for a set, and the first time also those of make_groups().
+  /// Prepares a set of blend shapes, with all weights 0. Errors: kUsage for a weighting other than area; kInvalidInput
+  /// for a set of another mesh; those of validate() for a set. The first set can also give those of make_groups().
   [[nodiscard]] Status set_targets(BlendSet set, const BlendNormalsOptions& options = {});
   /// Sets the weights, chooses the cheapest way to compute normals at these weights, and blends positions if this way
-  /// needs them. With one thread it does not allocate or throw. Targets must be set, and there must be a weight for
-  /// each
+  /// needs them. With one thread it does not allocate or throw. Preconditions: targets are set, and there is a weight
+  /// for each.
   BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
-  /// Writes the unit normals at the current weights. Returns the number of (0, 0, 0). result must have size() elements
+  /// Write the unit normals at the current weights, and return the number of (0, 0, 0) written. Precondition: result
+  /// has size() elements.
   std::size_t unit_normals(VectorView<float> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Octahedral> result, IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(std::span<Rgb10A2> result, IndexRange outputs = kAllOutputs) const noexcept;
-  /// Sets weights and writes all normals, for callers with one thread, or with the thread pool of parallel.h.
+  /// Sets the weights and writes all normals in one call. With Threads::kAll it uses the thread pool of parallel.h.
   std::size_t unit_normals(std::span<const double> weights, VectorView<float> result, Threads threads = Threads::kOne);
 
   /// Returns the number of outputs: faces, vertices or corners.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Returns the number of different normals, which is known once it is decided which outputs share a normal. For faces
-  /// it is size().
+  /// Returns the number of different normals, of which several outputs may share one. It is known once the first
+  /// segment or set of targets is given. For faces it is size().
   [[nodiscard]] std::size_t element_count() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept;
   [[nodiscard]] const MeshNormalsOptions& options() const noexcept;
-  /// Returns the largest angle in radians between the fit of a weighting and the exact weighted normal, over all
-  /// elements; 0 for area.
+  /// Returns a bound of the error that a weighting other than area adds: the largest angle in radians, over all
+  /// elements, between the fitted curve and the exact weighted normal. It is 0 for area.
   [[nodiscard]] double fit_bound() const noexcept;
-  /// Returns the memory of the segment and the targets in bytes.
+  /// Returns the memory in bytes that the segment and the targets take.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

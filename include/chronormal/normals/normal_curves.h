@@ -12,8 +12,9 @@
 ///     degree 1   24  n0, n1 in float32;   12 or 20  in int16, likewise
 ///     degree 0   12  the unit normal in float32, 16 with its length
 ///
-/// An element's own scale is not stored, since a direction does not need it. Runs of fewer than 4 blocks join a
-/// neighbouring run with a sufficient format, if both are within the same 32 blocks.
+/// The scale by which an element's int16 components were divided is not stored, since a direction does not need it. A
+/// run of fewer than 4 blocks of the same format is stored in the format of a neighbouring run, if that format is
+/// precise enough and both are within the same 32 blocks.
 ///
 /// Accuracy   The direction of every element is within `tolerance` of the exact n(t) of the positions at the
 ///            double t, by a bound and not by measurement (docs/theory.md, sections 5 and 13). If n(t) becomes small
@@ -59,7 +60,7 @@ namespace chronormal {
 // for an element without a normal, is 0 in Rgb10A2. Octahedral cannot represent it, and gives 0, which is decoded as
 // (0, 0, 1).
 
-/// A normal in four bytes. Each encoding has a type of its own, so that the compiler tells them apart.
+/// A unit normal in four bytes. Each encoding has its own type, so that the compiler refuses to mix them up.
 struct Octahedral {
   std::uint32_t bits = 0;
   friend bool operator==(const Octahedral&, const Octahedral&) = default;
@@ -81,14 +82,15 @@ inline namespace internal {
 struct CurveData;
 }
 
-/// The accuracy that float32 can guarantee: blocks of 36, 24 and 16 bytes, with lengths.
+/// The tolerance that float32 can guarantee, for exact normals. Blocks take 36, 24 or 16 bytes per element, and lengths
+/// are kept.
 inline constexpr double kExactTolerance = 1e-6;  // radians
-/// A good choice for shading: a twentieth of a degree. Most blocks take 12 or 20 bytes.
+/// A good tolerance for shading, about a twentieth of a degree. Most blocks take 12 or 20 bytes per element.
 inline constexpr double kCompactTolerance = 1e-3;  // radians
 
 struct CurveOptions {
-  /// The largest error of a unit normal in radians, from kExactTolerance to 0.2. Values outside of this range count as
-  /// the nearer limit.
+  /// The largest error of a unit normal in radians, from kExactTolerance to 0.2. A value outside of this range counts
+  /// as the nearer limit.
   double tolerance = kExactTolerance;
 };
 
@@ -96,12 +98,13 @@ class NormalCurves {
  public:
   /// Creates curves without elements.
   NormalCurves() noexcept;
-  /// Curves can be moved, but not copied. Curves that were moved from have no elements.
+  /// Curves can be moved, but not copied. An object from which curves were moved has no elements.
   NormalCurves(NormalCurves&&) noexcept;
   NormalCurves& operator=(NormalCurves&&) noexcept;
   ~NormalCurves();
 
-  /// Prepares the curves of all elements. Reads `normals` once and does not keep it. Throws std::bad_alloc only.
+  /// Prepares the curves of all elements from their control normals, which are read once and not kept. Throws only
+  /// std::bad_alloc.
   explicit NormalCurves(std::span<const ControlNormals> normals, const CurveOptions& options = {});
 
   /// Prepares the curves of all faces of a segment, or of all elements of groups, directly from positions, without an
@@ -118,42 +121,45 @@ class NormalCurves {
                                               NormalCurves* reuse = nullptr);
 
   /// Writes n(t) / |n(t)| of every element. If n(t) = 0, the result is the limit direction (see Direction), or (0, 0,
-  /// 0) if n is zero throughout. Returns the number of (0, 0, 0) written, usually 0. control_normals.h explains t
-  /// outside [0, 1]. result must have size() elements
+  /// 0) if n is zero in the whole segment. Returns the number of (0, 0, 0) written, usually 0. control_normals.h
+  /// explains t outside [0, 1]. Precondition: result has size() elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
-  /// Writes the unit normals in four bytes each; see above for the encoding of (0, 0, 0).
+  /// Write the unit normals in four bytes each. The comment on Octahedral above explains the encoding of (0, 0, 0).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 
   /// Writes the unit normals at many t while reading the curves only once, for motion blur or for a block of frames.
-  /// (If results are neither all packed nor all planes, curves are read once for each t.) results[k] is for times[k],
-  /// and there must be as many. Returns the total number of (0, 0, 0). Throws std::bad_alloc.
+  /// (If the results are neither all packed nor all planes, curves are read once for each t.) results[k] gets the
+  /// normals at times[k], so the two lists must be of the same length. Returns the number of (0, 0, 0) in all results.
+  /// Throws only std::bad_alloc.
   std::size_t unit_normals(std::span<const double> times, std::span<const VectorView<float>> results,
                            Threads threads = Threads::kOne) const;
   std::size_t unit_normals(std::span<const double> times, std::span<const std::span<Octahedral>> results,
                            Threads threads = Threads::kOne) const;
 
-  /// Writes n(t) itself: length = 2 x area. A component beyond the range of float becomes the largest float.
-  /// keeps_lengths() must hold; result must have size() elements
+  /// Writes n(t) itself, which has a length of twice the area. A component beyond the range of float32 becomes the
+  /// largest float32. Preconditions: keeps_lengths(); result has size() elements.
   void normals(const LocalTime& t, VectorView<float> result) const noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] bool keeps_lengths() const noexcept;
-  /// Counts the elements of true degree 0, 1 and 2. With a tolerance of 2^-12 or more, elements that bend by less than
-  /// their rounding errors in float32 may count as straight. They are then also stored as straight curves, within the
-  /// tolerance.
+  /// Returns the numbers of elements of true degree 0, 1 and 2. With a tolerance of 2^-12 or more, an element that
+  /// bends by less than its rounding errors in float32 may count as straight, which is degree 1. It is then also stored
+  /// as a straight curve, within the tolerance.
   [[nodiscard]] const std::array<std::size_t, 3>& degree_counts() const noexcept;
-  /// Counts the elements that are uncertain at t: n(t) is so small relative to the terms of its sum that double cannot
-  /// guarantee 1e-6 rad. This happens only for curves made from control normals, never for curves made from positions.
+  /// Returns the number of elements that are uncertain at t. Their n(t) is so small relative to the terms of its sum
+  /// that double cannot guarantee 1e-6 rad. This happens only for curves made from control normals, never for curves
+  /// made from positions.
   [[nodiscard]] std::size_t uncertain_count(double t) const noexcept;
-  /// Counts the elements that are evaluated in double.
+  /// Returns the number of elements that are evaluated in double, since float32 cannot guarantee the tolerance for
+  /// them.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Returns the memory in use, in bytes (8 for an index), without the padding of the last block and without memory
-  /// kept for the next `reuse`.
+  /// Returns the memory in use, in bytes, of which 8 per index of a block. The padding of the last block and the memory
+  /// that is kept for the next `reuse` do not count.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// The number of elements that are stored with some number of bytes.
+  /// The number of elements that take a certain number of bytes each.
   struct ByteCount {
-    std::size_t bytes = 0;  ///< for each element
+    std::size_t bytes = 0;  ///< number of bytes for each of these elements
     std::size_t elements = 0;
   };
   [[nodiscard]] std::vector<ByteCount> byte_counts() const;

@@ -68,7 +68,8 @@ struct Points {
 /// points of a face of the other in reversed order, the sheets do not share points. O(V log V + F), times the number of
 /// keyframes if vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
-/// Makes the points for a stream, whose keyframes are read until no two vertices coincide. Errors: those of the stream.
+/// Makes the points for a stream. Keyframes are read only until no two vertices coincide in all of them. Errors: those
+/// of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
 /// The largest angle in degrees between two stored normals that count as roundings of the same normal.
@@ -86,12 +87,12 @@ class NormalGroups {
  public:
   NormalGroups() = default;
 
-  /// Makes an element of each point, with all of its corners. Outputs are vertices; elements have the numbers of
-  /// points. The points must belong to this topology. O(corners log corners), like all builders without another
-  /// statement.
+  /// Makes one element of each point, with all corners at this point. Outputs are vertices; an element has the number
+  /// of its point. Precondition: the points belong to this topology. Takes O(corners log corners), as do all functions
+  /// below that state no other cost.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
-  /// Makes an element of each point without some corners. The corners of a point that are left out become a separate
-  /// element, to which no vertex belongs. `left_out` has a value for each corner.
+  /// Makes one element of each point as above, but without some corners. The corners of a point that are left out
+  /// become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 
@@ -124,34 +125,34 @@ class NormalGroups {
 
   /// Returns the number of elements, which is the number of different normals.
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size() - 1; }
-  /// Returns the corners that share the normal of element e, as indices into Topology::corners(); none for an isolated
-  /// vertex.
+  /// Returns the corners that share the normal of element e, as indices into Topology::corners(). An isolated vertex
+  /// has no corners.
   [[nodiscard]] std::span<const std::uint32_t> corners(std::size_t e) const noexcept { return part(corners_, e); }
-  /// Returns the face of each of the element's corners, in their order.
+  /// Returns the faces to which the element's corners belong, in the order of corners(e).
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t e) const noexcept { return part(faces_, e); }
 
-  /// Returns the element of each corner.
+  /// Returns the number of the element to which each corner belongs.
   [[nodiscard]] std::span<const std::uint32_t> element_of_corner() const noexcept { return element_of_corner_; }
-  /// Returns the element of each output: of each vertex, or of each corner.
+  /// Returns the element of each output, where the outputs are either all vertices or all corners.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
     return outputs_are_vertices_ ? element_of_vertex_ : element_of_corner_;
   }
   [[nodiscard]] bool outputs_are_vertices() const noexcept { return outputs_are_vertices_; }
 
-  /// Returns the number of elements without a corner: isolated vertices. Their normal is (0, 0, 0).
+  /// Returns the number of elements without corners, which are those of isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
-  /// Frees the data that only sums by angle and curves need. Afterwards corners(e), element_of_corner() and, if outputs
-  /// are corners, element_of_output() must not be called, and no curves and no recomputing objects may be made for
-  /// these groups.
+  /// Frees the data that only sums weighted by angle and curves need. Afterwards corners(e), element_of_corner() and,
+  /// if outputs are corners, element_of_output() must not be called. No curves and no NormalRecompute or FloatRecompute
+  /// may be made for these groups afterwards.
   void forget_corners() noexcept;
 
-  /// Copies the normal of each element to all of its outputs. of_elements must have size() elements, of_outputs as many
-  /// as element_of_output()
+  /// Copies the normal of each element to all of its outputs. Preconditions: of_elements has size() elements, and
+  /// of_outputs has as many as element_of_output().
   void copy_to_outputs(VectorView<const float> of_elements, VectorView<float> of_outputs) const noexcept;
 
  private:
-  // Makes groups from the element of each corner, which must be below element_count.
+  // Makes groups from the number of the element of each corner. These numbers must be below element_count.
   NormalGroups(const Topology& topology, std::vector<std::uint32_t> element_of_corner, std::size_t element_count);
 
   // Makes groups from sets of corners. A set is named by any of its members, and sets are numbered in the order of
@@ -166,29 +167,31 @@ class NormalGroups {
   }
 
   std::vector<std::uint32_t> offsets_ = {0};      // index of the first corner of each element, and the end
-  std::vector<std::uint32_t> corners_;            // element after element
-  std::vector<std::uint32_t> faces_;              // faces of these corners
-  std::vector<std::uint32_t> element_of_corner_;  // the inverse
-  std::vector<std::uint32_t> element_of_vertex_;  // used if outputs are vertices
+  std::vector<std::uint32_t> corners_;            // the corners of all elements, one element after the other
+  std::vector<std::uint32_t> faces_;              // the face of each of these corners
+  std::vector<std::uint32_t> element_of_corner_;  // the element of each corner
+  std::vector<std::uint32_t> element_of_vertex_;  // the element of each vertex; empty if outputs are corners
   bool outputs_are_vertices_ = false;
-  std::shared_ptr<RingsOfGroups> rings_;  // shared with copies of the groups; nullptr if there are no elements
+  std::shared_ptr<RingsOfGroups> rings_;  // shared with copies of these groups; nullptr if there are no elements
   friend const Rings& internal::rings_around(const Topology& topology, const NormalGroups& groups);
 };
 
-/// Writes the control normals of a range of elements as sums of the given ones: nine additions per corner. A component
-/// of a sum that is smaller than the rounding error of its terms is written as exactly zero. The errors of the given
-/// face normals remain in the sums, even if the face normals cancel. Pure: no allocation, no throw. of_faces must have
-/// the control normals of all faces, result as many elements as the range
+/// Writes the control normals of a range of elements, each as the sum of the control normals of its faces: nine
+/// additions per corner. A component of a sum that is smaller than the rounding error of its terms is written as
+/// exactly zero. The errors of the given face normals remain in the sums, even if the face normals cancel. Pure: no
+/// allocation, no throw. Preconditions: of_faces has the control normals of all faces, and result has as many elements
+/// as the range.
 void group_control_normals(const NormalGroups& groups, std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;
 
 /// Writes the control normals of a range of elements of a segment from the control normals of its faces, with errors of
-/// at most 2^-24 of their lengths. If faces cancel so that double could round more, integers compute the sums. Pure.
+/// at most 2^-24 of their lengths. If faces cancel so far that rounding in double could exceed this bound, integer
+/// arithmetic computes the sums. Pure.
 void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
                            IndexRange elements, std::span<ControlNormals> result) noexcept;
 
-/// Returns the control normals of all faces of a segment, or of all elements, with the same precision. Runs on all
-/// cores.
+/// Return the control normals of all faces of a segment, or of all elements of groups, with the precision of
+/// face_control_normals() and of the function above. They run on all cores.
 [[nodiscard]] std::vector<ControlNormals> all_face_control_normals(const Segment& segment);
 [[nodiscard]] std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups);
 
@@ -208,15 +211,17 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 /// Finds a kind by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 
-/// Selects the elements whose normals are computed. Corners share normals across smooth edges. Hard edges come from the
-/// crease angle, or from the smoothing groups or the normals of a file (Input in io/input.h). These arrays must outlive
-/// the options.
+/// Selects for which elements normals are computed, and which corners share a normal. Corners share normals across
+/// smooth edges. Hard edges come from the crease angle, or from the smoothing groups or the normals of a file (Input in
+/// io/input.h). The arrays of groups and normals must outlive the options.
 struct ElementOptions {
   ElementKind kind = ElementKind::kFaces;
-  bool weld = true;           ///< vertices that coincide in all keyframes share a normal, so that seams do not show
-  double crease_angle = 180;  ///< degrees, for corners: edges that are sharper in keyframe 0 are hard
-  std::span<const std::uint32_t> group_of_face = {};  ///< smoothing groups, if not empty
-  VectorView<const float> normal_of_corner = {};      ///< split normals, if not empty
+  /// True if vertices that coincide in all keyframes share a normal, so that seams do not show.
+  bool weld = true;
+  /// In degrees, for corners: an edge with a larger angle between its faces in keyframe 0 is hard.
+  double crease_angle = 180;
+  std::span<const std::uint32_t> group_of_face = {};  ///< the smoothing group of each face, or empty
+  VectorView<const float> normal_of_corner = {};      ///< the stored normal of each corner, or empty
 };
 
 /// Makes the groups of corners for the vertices or the corners of a motion. Errors: kUsage for a crease angle outside
@@ -224,7 +229,8 @@ struct ElementOptions {
 /// motion may be a mesh at rest, which is a keyframe without segments. Preconditions: the motion is otherwise valid;
 /// the kind is not kFaces
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
-/// Makes the groups for a stream, whose keyframes are read like by weld_coincident(). Errors: also those of the stream.
+/// Makes the groups for a stream, whose keyframes are read as by weld_coincident(). Errors: those of the function
+/// above, and those of the stream.
 [[nodiscard]] Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options);
 
 }  // namespace chronormal

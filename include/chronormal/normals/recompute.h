@@ -1,7 +1,8 @@
 /// Unit normals from positions, recomputed at every t: a direct and fast implementation of eq. 1 and eq. 2.
 ///
-/// This is the baseline for NormalCurves; it is faster for one or two evaluations. Only scratch memory is prepared;
-/// positions and topology are read at every call and must stay alive, and positions may change between calls.
+/// This is the baseline for NormalCurves, and is faster than NormalCurves for one or two evaluations. Only scratch
+/// memory is prepared. Positions and topology are read at every call and must stay alive; positions may change between
+/// calls.
 ///
 /// Accuracy   within 1e-6 rad of the exact n(t) of the positions at the double t, for all inputs. Edges are in float32
 ///            and the rest is in double if a bound of the rounding allows it (edges are interpolated instead of
@@ -32,8 +33,8 @@
 namespace chronormal {
 
 /// Writes the unit normals at t of a range of faces, with the same bits as NormalRecompute. Pure: no allocation, no
-/// throw, and no scratch memory, so it is slower than NormalRecompute on meshes in random order and on positions that
-/// are not packed. result must have faces.count elements; faces must lie inside the topology
+/// throw, and no scratch memory. It is therefore slower than NormalRecompute on meshes in random order and on positions
+/// that are not packed. Preconditions: result has faces.count elements; the faces exist in the topology.
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
                             VectorView<float> result) noexcept;
 
@@ -41,22 +42,23 @@ class NormalRecompute {
  public:
   /// Creates an object without elements.
   NormalRecompute() noexcept;
-  /// Objects can be moved, which leaves an object without elements, but not copied.
+  /// Objects can be moved, but not copied. An object that was moved from has no elements.
   NormalRecompute(NormalRecompute&&) noexcept;
   NormalRecompute& operator=(NormalRecompute&&) noexcept;
   ~NormalRecompute();
-  /// Creates an object for the faces of a segment. Throws std::bad_alloc only.
+  /// Creates an object for the faces of a segment. Throws only std::bad_alloc.
   explicit NormalRecompute(const Segment& segment);
   /// Creates an object for the elements of groups, which must belong to the segment's topology and outlive the object.
   NormalRecompute(const Segment& segment, const NormalGroups& groups);
 
   /// Writes n(t) / |n(t)| of every element. If n(t) = 0, the result is the limit direction (see Direction), or (0, 0,
-  /// 0) if n is zero throughout. Returns the number of (0, 0, 0) written. result must have size() elements
+  /// 0) if n is zero in the whole segment. Returns the number of (0, 0, 0) written. Precondition: result has size()
+  /// elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne);
 
   /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Returns the bytes of scratch memory.
+  /// Returns the number of bytes of scratch memory.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:
@@ -68,9 +70,9 @@ class NormalRecompute {
 // Unit normals recomputed from positions entirely in float32: the fastest method that we know, for shading with the
 // accuracy of most programs.
 //
-// NormalRecompute guarantees 1e-6 rad, which takes time. FloatRecompute has no such guarantee: it interpolates
-// positions, subtracts them, and adds up cross products, all in float32, sixteen elements at a time. It is the baseline
-// for curves if no more accuracy is needed.
+// NormalRecompute guarantees 1e-6 rad, which takes time. FloatRecompute has no such guarantee. It interpolates
+// positions, subtracts them, and adds up cross products, all in float32, for sixteen elements at a time. If no more
+// accuracy is needed, it is the baseline for curves.
 //
 //     FloatRecompute recompute(motion.topology, groups);       // once for a mesh
 //     recompute.unit_normals(motion.segment(i), t, result);    // at any t of any of its segments
@@ -95,26 +97,28 @@ class FloatRecompute {
  public:
   /// Creates an object without elements.
   FloatRecompute() noexcept;
-  /// Objects can be moved, which leaves an object without elements, but not copied.
+  /// Objects can be moved, but not copied. An object that was moved from has no elements.
   FloatRecompute(FloatRecompute&&) noexcept;
   FloatRecompute& operator=(FloatRecompute&&) noexcept;
   ~FloatRecompute();
-  /// Prepares for the faces of a mesh. Throws std::bad_alloc only.
+  /// Prepares the normals of the faces of a mesh. Throws only std::bad_alloc.
   explicit FloatRecompute(const Topology& topology);
-  /// Prepares for the elements of groups, which must belong to the topology and keep their corners. O(corners).
+  /// Prepares the normals of the elements of groups, which must belong to the topology and keep their corners.
+  /// O(corners).
   FloatRecompute(const Topology& topology, const NormalGroups& groups);
 
   /// Writes n / |n| of every element at t of a segment, and returns the number of (0, 0, 0) written. control_normals.h
-  /// explains t outside [0, 1] and NaN. The segment must have as many vertices as the topology; result must have size()
-  /// elements
+  /// explains t outside [0, 1] and NaN. Preconditions: the segment has as many vertices as the topology; result has
+  /// size() elements.
   std::size_t unit_normals(const Segment& segment, double t, VectorView<float> result, Threads threads = Threads::kOne);
-  /// Writes the normals for given positions, for example of blend shapes.
+  /// Writes the normals of a mesh with the given positions, for example of blend shapes, and returns the number of (0,
+  /// 0, 0) written.
   std::size_t unit_normals(VectorView<const float> positions, VectorView<float> result,
                            Threads threads = Threads::kOne);
 
   /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
-  /// Returns the memory of paths and positions in bytes.
+  /// Returns the bytes of memory that the paths around elements and the interpolated positions take.
   [[nodiscard]] std::size_t bytes() const noexcept;
 
  private:

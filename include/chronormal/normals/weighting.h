@@ -1,4 +1,5 @@
-/// The ways in which tools weigh the faces around a vertex, and quadratics in place of sums that are not quadratic.
+/// The ways in which tools weigh the faces around a vertex, and quadratic curves that replace sums which are not
+/// quadratic in time.
 ///
 /// The normal of an element (normals/normal_groups.h) is a sum over its corners: face normal times weight. With the
 /// vector area n of the face (length: twice its area), its unit normal u, and the edges e to the next and f to the
@@ -13,11 +14,11 @@
 ///     inverse-edges  u / (|e| |f|)              Jin, Lewis, West 2005
 ///     inverse-roots  u / sqrt(|e| |f|)          Jin, Lewis, West 2005
 ///
-/// Area is the default because it is the only one whose sum is a polynomial in time, which three control normals
-/// represent exactly. Normals of the other weightings are computed again for each t, or *fitted*. A fit replaces them,
-/// for each element and segment, by a quadratic that has the weighted direction and the area-weighted length at t = 0,
-/// 1/2 and 1. NormalCurves plays these quadratics like exact normals. The quadratics are approximations, so each
-/// element has a bound.
+/// Area is the default because it is the only weighting whose sum is a polynomial in time, which three control normals
+/// represent exactly. Normals of the other weightings are computed again for each t, or *fitted*. A fit replaces the
+/// normals of each element and segment by a quadratic curve that has the weighted direction and the area-weighted
+/// length at t = 0, 1/2 and 1. NormalCurves plays these curves like exact normals. The curves are approximations, so
+/// each element has a bound of its error.
 ///
 /// Polygons   n and u are those of the polygon's vector area, and the angle is the polygon's own corner angle in [0,
 ///            pi]; the triangles into which a tool would cut the polygon do not matter. e x f is the cross product at
@@ -60,8 +61,8 @@ enum class Weighting { kArea, kAngle, kUniform, kAreaAngle, kMax, kInverseEdges,
 
 struct WeightingInfo {
   Weighting weighting;
-  std::string_view name;     ///< on the command line
-  std::string_view summary;  ///< one line
+  std::string_view name;     ///< the name on the command line
+  std::string_view summary;  ///< a description of one line
 };
 
 /// All weightings, in the order of the table above.
@@ -75,7 +76,8 @@ inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
 }};
 
-/// The weightings that tools use for shading. The weighting of stored normals is searched among these.
+/// The weightings that tools use for shading. If the weighting of stored normals is unknown, it is searched among
+/// these.
 inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], kAllWeightings[1], kAllWeightings[2],
                                                              kAllWeightings[3], kAllWeightings[4]};
 
@@ -84,13 +86,15 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], 
 /// Finds a weighting by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
 
-/// Writes n of a range of faces at t: twice the vector area, with an error of at most 2^-30 of its length, and exactly
-/// zero if it is zero. (control_normals.h explains t outside of [0, 1].) result must have as many elements as the range
+/// Writes n of a range of faces at t: twice the vector area, with an error of at most 2^-30 of its length. n is exactly
+/// (0, 0, 0) if the vector area is zero. (control_normals.h explains t outside of [0, 1].) Precondition: result has as
+/// many elements as the range.
 void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange faces, std::span<Vec3d> result) noexcept;
 
-/// Writes the weighted normals of a range of elements at t, not normalised. Pure: no allocation, no throw. The terms
-/// are added in the order of NormalGroups: shuffling the faces of the mesh gives the same bits. of_faces must have the
-/// result of face_normals_at() for all faces at this t, result as many elements as the range
+/// Writes the weighted normals of a range of elements at t, not scaled to length 1. The terms of a sum are added in the
+/// order of NormalGroups, so shuffling the faces of the mesh gives the same bits. Pure: no allocation, no throw.
+/// Preconditions: of_faces has the result of face_normals_at() for all faces at this t, and result has as many elements
+/// as the range.
 void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
@@ -103,9 +107,9 @@ struct WeightingFit {
   std::vector<double> bounds;           ///< one for each element, radians in [0, pi]
 };
 
-/// Fits all elements of a segment. For area the control normals are those of all_group_control_normals(), and the
-/// bounds are 0. Runs on all cores, and takes about 0.1 ms per element with little motion, and up to 1.5 ms with strong
-/// motion. The bits are the same for every number of threads.
+/// Fits the normals of all elements of a segment. For area the control normals are those of
+/// all_group_control_normals(), and the bounds are 0. Runs on all cores, and takes about 0.1 ms per element with little
+/// motion, and up to 1.5 ms with strong motion. The bits are the same for every number of threads.
 [[nodiscard]] WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, Weighting weighting);
 
 }  // namespace chronormal

@@ -53,77 +53,82 @@
 
 namespace chronormal {
 
-/// The rule by which a viewer finds normals between two keyframes: from the stored normals, except for kFlat.
+/// The rules by which viewers find normals between two keyframes. All rules except kFlat use the stored normals.
 enum class AuditRule {
-  kGltf,   ///< normalize(N + sum w D) with the file's deltas, in float32
+  kGltf,   ///< normalize(N + sum w D) with the deltas of the file, in float32
   kLerp,   ///< linear interpolation between the stored normals of the keyframes
-  kNlerp,  ///< linear interpolation between their unit vectors
-  kSlerp,  ///< slerp between their unit vectors
-  kStep,   ///< the normals of the earlier keyframe, until the next one
-  kFlat,   ///< face normals of the current mesh, instead of stored ones
+  kNlerp,  ///< linear interpolation between the unit vectors of the stored normals
+  kSlerp,  ///< slerp between the unit vectors of the stored normals
+  kStep,   ///< the normals of the earlier keyframe, until the next keyframe
+  kFlat,   ///< face normals of the current mesh; stored normals are not used
 };
 
 [[nodiscard]] std::string_view audit_rule_name(AuditRule rule) noexcept;
 /// Finds a rule by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
 
-/// The error in degrees below which normals do not count as faulty, since some files store normals in 8 bits.
-inline constexpr double kAuditFault = 1;  // degrees
+/// The error in degrees up to which normals do not count as faulty. It is this large because some files store normals
+/// in 8 bits.
+inline constexpr double kAuditFault = 1;  // in degrees
 
-/// Number of random poses of a mesh, if poses are requested without a list.
+/// The number of random poses of a mesh that are judged if poses are requested without a list of them.
 inline constexpr std::size_t kRandomPoses = 200;
 
 inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< largest number of samples per segment
 
 struct AuditOptions {
-  std::optional<AuditRule> rule = {};       ///< default: kGltf for glTF, kNlerp for sequences
-  std::optional<std::size_t> samples = {};  ///< per segment; default: 21, or fewer in long tracks (about 210 in all)
-  /// For glTF: about this many segments of a track are judged. In longer tracks only every second, third or later
-  /// segment is. 0 judges all segments.
+  std::optional<AuditRule> rule = {};  ///< by default kGltf for glTF, and kNlerp for sequences
+  /// Number of samples per segment; by default 21, or fewer in long tracks (about 210 in all).
+  std::optional<std::size_t> samples = {};
+  /// For glTF, the number of segments of a track that are judged, approximately. In longer tracks only every second,
+  /// third or later segment is judged. 0 stands for all segments.
   std::size_t most_segments = 0;
-  /// For glTF: only this animation, by name or index; if empty, all targets and animations.
+  /// For glTF, the only animation to judge, by name or index. If it is empty, all targets and animations are judged.
   std::string animation = {};
-  /// The weighting of the true normals, which should be that of the program that made the file. By default, for each
-  /// mesh or sequence, the weighting that its stored base normals clearly follow, or else area.
+  /// The weighting of the true normals, which should be the weighting of the program that made the file. By default,
+  /// each mesh or sequence has the weighting that its stored base normals clearly follow, or else area.
   std::optional<Weighting> weighting = {};
-  /// For glTF: the document from which the audited document was baked. The normals of this document are then the
-  /// author's, and it must have the same meshes. By default, the normals of the audited document are the author's.
+  /// For glTF, the document from which the audited document was baked; it must have the same meshes. Its normals then
+  /// count as the author's. By default, the normals of the audited document do.
   const GltfDocument* author = nullptr;
-  /// For glTF: the weights between which each target is judged alone, finite and ascending.
+  /// For glTF, the lowest and the highest weight at which each target is judged alone. Both are finite, and the first
+  /// is smaller.
   std::array<double, 2> weights = {0, 1};
-  /// For glTF: further poses to judge. A pose is judged in the meshes whose targets it names, or that have as many
-  /// targets as it has weights. If is_posed is true and there are no poses, kRandomPoses are judged for each mesh that
-  /// a program may set (docs/cli.md).
+  /// For glTF, poses that are judged in addition to the motions of the file. A pose is judged in the meshes whose
+  /// targets it names, or that have as many targets as it has weights. If is_posed is true and there are no poses,
+  /// kRandomPoses random poses are judged for each mesh whose weights a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};
-  std::vector<Viewer> viewers = {};  ///< for glTF with the rule gltf: viewers that are judged, too
-  bool skins = true;                 ///< for glTF: judges meshes in nodes with a skin as the skin transforms them
-  bool weld = true;                  ///< vertices that coincide in all keyframes share a normal
-  bool keep_errors = false;          ///< keeps every single error in Audit::errors
+  std::vector<Viewer> viewers = {};  ///< viewers that are judged, too; for glTF with the rule kGltf
+  /// For glTF: true to judge meshes in nodes with a skin as the skin transforms them.
+  bool skins = true;
+  bool weld = true;          ///< true if vertices that coincide in all keyframes share a normal
+  bool keep_errors = false;  ///< true to keep every single error in Audit::errors
   /// Is called with the number of segments that are done, and the number of all segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// The motion that is judged: a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
-/// expression, the weights with which a file opens, or requested poses, which are samples of a single subject.
+/// The motion that is judged. It is a target from weight 0 to 1, the weight track of a node, a sequence, an avatar's
+/// expression, or the weights with which a file opens. Requested poses are the samples of a single subject.
 struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 
   Kind kind = Kind::kTarget;
   std::string name;                         ///< name of the target, animation or expression; may be empty
-  std::optional<std::size_t> mesh, target;  ///< for a glTF file; `target` also for --base
-  /// Set for a track. For a pose in which the file opens, `node` is the first node that opens in it.
+  std::optional<std::size_t> mesh, target;  ///< numbers in a glTF file; `target` is also used for --base
+  /// `animation` and `track` are set for a track, together with its node. For a pose in which the file opens, `node` is
+  /// the first node that opens in it.
   std::optional<std::size_t> animation, track, node;
   std::optional<std::size_t> expression;   ///< index among the expressions of the mesh
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
   std::vector<std::size_t> driven;         ///< the targets to which a track gives nonzero weights
-  std::size_t segments = 0, samples = 0;   ///< `samples` is per segment
-  std::size_t vertices = 0;                ///< judged vertices, or corners if a vertex has several normals
+  std::size_t segments = 0, samples = 0;   ///< `samples` is the number per segment
+  std::size_t vertices = 0;                ///< number of judged vertices, or of corners if a vertex has several normals
   MotionError error;
-  MotionError at_keys;                         ///< the errors at both ends of each segment
+  MotionError at_keys;                         ///< the errors only at both ends of each segment
   std::optional<SkinningError> skinning = {};  ///< present if the mesh was judged through a skin
 
-  /// Returns true if samples of the subject are identified by weights, and not by times.
+  /// Returns true if a sample of the subject is named by its weight, and not by its time.
   [[nodiscard]] bool is_weighed() const noexcept {
     return kind == Kind::kTarget || kind == Kind::kExpression || kind == Kind::kOpening;
   }
@@ -131,22 +136,25 @@ struct AuditSubject {
 
 /// Returns "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// Returns the name of the number by which the samples of a subject are told apart: "weight", "time", or "pose" for the
-/// number of a pose.
+/// Returns the name of the number that tells the samples of a subject apart: "weight", "time", or "pose" for the number
+/// of a pose.
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
-/// The offset of stored base normals from the geometry's normals.
+/// The angles between stored base normals and the normals of the geometry.
 struct AuthoredOffset {
-  std::optional<std::size_t> mesh;         ///< for a glTF file
+  std::optional<std::size_t> mesh;         ///< the number of the mesh in a glTF file
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
-  /// True if the weighting was detected in the stored normals, or is the default because none was clear.
+  /// True if the weighting was detected in the stored normals, or if it is the default because the stored normals
+  /// follow no weighting clearly.
   bool is_detected = false;
-  std::size_t vertices = 0;  ///< number of vertices with both normals
+  std::size_t vertices = 0;  ///< number of vertices that have both a stored and a true normal
   double sum = 0, worst = 0;
   AuditPlace worst_at;
-  double area_mean = 0;      ///< mean offset from area-weighted normals
-  bool of_polygons = false;  ///< true normals are summed over polygons, of which the file has only triangles
-  /// The weighting that is closest to the stored normals on average, and the average angle to it.
+  double area_mean = 0;  ///< mean angle to area-weighted normals in degrees
+  /// True if true normals are summed over polygons, although the file has only their triangles.
+  bool of_polygons = false;
+  /// The weighting that is closest to the stored normals on average. `closest_mean` is the average angle to it in
+  /// degrees, `closest_worst` the largest.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
 
@@ -155,91 +163,97 @@ struct AuthoredOffset {
 
 struct AuditFinding {
   enum class Kind {
-    kUnlit,           ///< a rendered normal is zero, infinite or NaN somewhere
+    kUnlit,           ///< a rendered normal is zero, infinite or NaN in some sample
     kMissingNormals,  ///< a target moves positions, but only the base has normals
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1 or at keyframes
     kWrongBetween,    ///< normals are right at weight 1 or at keyframes, but wrong in between
-    /// Normals are wrong if an animation or expression combines targets, by more than each target alone.
+    /// Normals are wrong where an animation or expression combines targets, and more so than with each target alone.
     kWrongTogether,
     kWrongPose,      ///< normals are wrong in the pose in which a file opens, or in a requested pose
     kStaleTangents,  ///< tangents are not perpendicular to the true normal at weight 1, although they are in the base
-    kStaleKeys,      ///< a note: stored normals of a target do not tell the author's intention, for `count` vertices
-    kUnknownRule,    ///< a note: base normals follow no known rule; `degrees` is the distance between the rules
-    kFlat,           ///< a note: primitives without normals, which viewers shade flat and without error
-    /// A note: nodes with a skin, through which normals are judged; `degrees` is the error of skinning.
+    kStaleKeys,      ///< a note: the stored normals of a target do not tell the author's intention for `count` vertices
+    kUnknownRule,    ///< a note: base normals follow no known rule; `degrees` is the angle between the rules
+    kFlat,           ///< a note: there are primitives without normals, which viewers shade flat and without error
+    /// A note: there are nodes with a skin, and normals are judged as the skin transforms them. `degrees` is the error
+    /// of skinning.
     kSkinned,
-    kUnreadSkin,  ///< a note: nodes with a skin that cannot be read, so normals are judged without the skin
+    kUnreadSkin,  ///< a note: a skin of a node cannot be read, so normals are judged without it
     kBaked,       ///< a note: the file was baked
-    /// A note: another program has recomputed the normals of a bake, and its correction targets have no effect any
+    /// A note: another program has recomputed the normals of a baked file, so its correction targets have no effect any
     /// more.
     kEmptied,
-    kSequenceTargets,  ///< a note: baked keyframes, which have no meaning one by one
+    kSequenceTargets,  ///< a note: targets are the keyframes of a baked sequence, which have no meaning one by one
     kBeyondViewer      ///< a note: a mesh has more targets than a viewer supports
   };
   Kind kind;
   std::optional<std::size_t> mesh, target, node, animation, expression;
   std::size_t count = 0;               ///< number of samples, primitives, targets or nodes, depending on the kind
-  double degrees = 0;                  ///< the worst
-  std::optional<Error> reason = {};    ///< reason why a part could not be read
-  std::optional<AuditPlace> worst_at;  ///< the worst place, if there is one
-  std::optional<Viewer> viewer;        ///< the viewer concerned; nothing if all are
+  double degrees = 0;                  ///< the worst error of the finding, in degrees
+  std::optional<Error> reason = {};    ///< the reason why a part of the file could not be read
+  std::optional<AuditPlace> worst_at;  ///< the place of the worst error, if there is one
+  std::optional<Viewer> viewer;        ///< the viewer concerned; no value if the finding concerns all viewers
 
-  /// Returns true for a fault, false for a note. Missing normals are not a fault if the motion does not turn them.
+  /// Returns true for a fault, false for a note. Missing normals are not a fault if the motion turns no normals.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 
-/// The errors of one viewer on a file, compared with n(w) at the weights that this viewer plays.
+/// The errors of one viewer on a file. The rendered normals are compared with n(w) at the weights w that this viewer
+/// plays.
 struct ViewerAudit {
   Viewer viewer;
   MotionError error;                 ///< errors of all subjects
   std::optional<std::size_t> worst;  ///< index of the subject with the worst error
-  /// The largest distance of a vertex from its position by the specification, as a share of the diagonal of the box
-  /// around the mesh's base.
+  /// The largest distance between a vertex in this viewer and its position by the specification, divided by the
+  /// diagonal of the bounding box of the mesh's base.
   double displaced = 0;
-  /// The number of targets of a mesh beyond the viewer's limit (Viewer::beyond says what then happens). The errors
-  /// above are those of a viewer that ignores these targets.
+  /// The number of targets of a mesh beyond the viewer's limit; Viewer::beyond tells how the viewer treats a mesh with
+  /// more targets. The errors above are those of a viewer that ignores the targets beyond the limit.
   std::size_t beyond = 0;
 
-  /// Returns true if the viewer supports the file, and its errors pass the limit (MotionError::passes()).
+  /// Returns true if the viewer supports the file and its errors are within the limit in degrees
+  /// (MotionError::passes()).
   [[nodiscard]] bool is_within(double degrees) const noexcept { return beyond == 0 && error.passes(degrees); }
-  /// Returns true if at most this many edges are torn at every sample.
+  /// Returns true if no sample has more torn edges than `most_torn`.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept { return error.most_torn <= most_torn; }
 };
 
 struct Audit {
   AuditRule rule = AuditRule::kGltf;
-  /// The weighting of the true normals of all subjects; empty if meshes have different ones.
+  /// The weighting of the true normals of all subjects; no value if meshes have different weightings.
   std::optional<Weighting> weighting = Weighting::kArea;
-  /// True if normals are stored for every keyframe; otherwise a viewer computes them at keyframes.
+  /// True if normals are stored for every keyframe; otherwise the viewer has to compute the normals at keyframes.
   bool stored = true;
   std::array<double, 2> span = {};  ///< for a sequence: the times of its first and last keyframe
-  std::optional<CutPath> cut = {};  ///< for curves; set by the caller that has cut them, for reports
+  std::optional<CutPath> cut = {};  ///< for curved paths; set by the caller that has cut them, for reports
   std::vector<AuditSubject> subjects;
-  /// The number of targets, tracks and expressions that move nothing that can be judged. They are not subjects.
+  /// The number of targets, tracks and expressions that move nothing for which normals can be judged. They are not
+  /// subjects.
   std::size_t still = 0;
   MotionError error;                 ///< errors of all subjects
   std::optional<std::size_t> worst;  ///< index of the subject with the worst error
   std::vector<ViewerAudit> viewers;  ///< one for each viewer of the options, in the same order
   std::vector<AuthoredOffset> offsets;
-  std::vector<AuditFinding> findings;  ///< faults first
-  std::vector<std::string> notes;      ///< for a glTF file: parts that were left out or interpreted differently
-  /// The tables for keep_errors: one for each mesh of a glTF file with subjects, or one for other inputs. Tracks with
-  /// the same keys share rows, which name the first of their subjects.
+  std::vector<AuditFinding> findings;  ///< the findings, faults first
+  /// For a glTF file: sentences on parts that were left out or interpreted differently.
+  std::vector<std::string> notes;
+  /// The errors that keep_errors asks for. There is one table for each mesh of a glTF file with subjects, or one table
+  /// for any other input. Tracks with the same keys share rows, which name the first of these tracks.
   std::vector<ErrorTable> errors;
 
-  /// Returns true if something was judged. If not, nothing changes normals, or no face ever has an area, and the audit
-  /// says nothing about the normals.
+  /// Returns true if at least one sample was judged. If not, nothing changes normals, or no face ever has an area. The
+  /// audit then says nothing about the normals.
   [[nodiscard]] bool is_judged() const noexcept { return error.judged + error.faint > 0; }
-  /// Returns true if every named viewer passes the limit (MotionError::passes()), or the rule if none is named. If
-  /// there are motions, at least one sample must have been judged; a file in which nothing moves always passes.
+  /// Returns true if every viewer of the options is within the limit in degrees (MotionError::passes()), or the rule if
+  /// there are no viewers. If the file has motions, at least one sample must have been judged; a file in which nothing
+  /// moves always passes.
   [[nodiscard]] bool is_within(double degrees) const noexcept {
     if (!subjects.empty() && !is_judged()) return false;
     if (viewers.empty()) return error.passes(degrees);
     return std::all_of(viewers.begin(), viewers.end(),
                        [degrees](const ViewerAudit& viewer) { return viewer.is_within(degrees); });
   }
-  /// Returns true if at most this many edges are torn at every sample, in every named viewer, or by the rule if none is
-  /// named.
+  /// Returns true if no sample has more torn edges than `most_torn`, in any viewer of the options, or by the rule if
+  /// there are no viewers.
   [[nodiscard]] bool is_whole(std::size_t most_torn) const noexcept {
     if (viewers.empty()) return error.most_torn <= most_torn;
     return std::all_of(viewers.begin(), viewers.end(),
@@ -247,20 +261,20 @@ struct Audit {
   }
 };
 
-/// The limits for the errors of an audit; an empty limit allows everything.
+/// The limits for the errors of an audit. A limit without a value allows everything.
 struct AuditLimits {
-  std::optional<double> degrees = {};          ///< limit of the worst error
-  std::optional<std::size_t> torn_edges = {};  ///< limit for a single sample
+  std::optional<double> degrees = {};          ///< limit of the worst error in degrees
+  std::optional<std::size_t> torn_edges = {};  ///< limit of the number of torn edges at a single sample
 
   [[nodiscard]] bool any() const noexcept { return degrees || torn_edges; }
-  /// Returns true if an audit, or one of its viewers, respects the limits.
+  /// Returns true if an audit, or one viewer of an audit, is within the limits.
   template <class Found>
   [[nodiscard]] bool allow(const Found& found) const noexcept {
     return (!degrees || found.is_within(*degrees)) && (!torn_edges || found.is_whole(*torn_edges));
   }
 };
 
-/// Sums the errors of the subjects of one mesh; the result is empty for a mesh without subjects.
+/// Returns the sum of the errors of the subjects of one mesh; the sum is empty for a mesh without subjects.
 [[nodiscard]] MotionError error_of_mesh(const Audit& audit, std::size_t mesh);
 
 /// Audits the targets of all meshes, each alone, the expressions of an avatar, the poses in which the file opens (if a
@@ -273,13 +287,14 @@ struct AuditLimits {
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
 /// Audits a motion without a document: a sequence, or targets over a base, each of which is a subject. If there are no
-/// stored normals, a viewer computes area-weighted ones at keyframes and interpolates; the audit compares these normals
-/// with the true ones. Residuals of positions are used, except for detecting the weighting of stored normals, where
-/// differences of a tenth of a degree decide. Errors: kUsage for the rule gltf, for viewers, and for fewer than 2
-/// samples; kInvalidInput if the number of normals does not fit. Precondition: the motion is valid
+/// stored normals, a viewer computes area-weighted normals at keyframes and interpolates between them; the audit
+/// compares these normals with the true ones. Residuals of positions are used in all computations but one: the
+/// weighting of stored normals is detected without them, since differences of a tenth of a degree decide there. Errors:
+/// kUsage for the rule gltf, for viewers, and for fewer than 2 samples; kInvalidInput if the number of normals does not
+/// fit. Precondition: the motion is valid.
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
-/// Audits a stream, holding two keyframes at a time. The stream is read twice in full, and twice in part: until all
-/// vertices have moved, and until no two vertices coincide. Errors: also those of the stream.
+/// Audits a stream while holding two keyframes at a time. The stream is read twice in full. It is also read twice in
+/// part: until all vertices have moved, and until no two vertices coincide. Errors: also those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal

@@ -40,177 +40,188 @@
 namespace chronormal {
 
 inline namespace internal {
-class Expansion;  // limits the memory and output that a file may cause
+class Expansion;  // limits the memory and the output that reading a file may cause
 }
 
-inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< degrees
-inline constexpr double kLeastKeyTolerance = 0.001;  ///< degrees; float32 in viewers needs a part of the tolerance
+inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< in degrees
+/// Degrees; a smaller tolerance would be used up by the rounding to float32 in viewers.
+inline constexpr double kLeastKeyTolerance = 0.001;
 
 struct BakeOptions {
-  std::optional<BakeEncoding> encoding = {};  ///< default: smallest; exact for sequences
+  std::optional<BakeEncoding> encoding = {};  ///< by default kSmallest, and kExact for sequences
   /// The viewers to bake for. By default these are the viewers that add up deltas (three.js, Babylon.js, PlayCanvas,
-  /// Bevy). In this case `spared` becomes the viewers that keep unit normals (Godot, Filament).
+  /// Bevy). By default, `spared` is then set to the viewers that keep unit normals (Godot, Filament).
   std::vector<Viewer> viewers = {};
-  /// Viewers in which normals should not become worse: among candidates that are otherwise equal, one that satisfies
-  /// this is preferred.
+  /// Viewers in which normals should not become worse. Among candidates that are otherwise equal, one that makes no
+  /// normal worse in these viewers is preferred.
   std::vector<Viewer> spared = {};
-  /// The size of the document, which decides whether a result is too large if neither a tolerance nor a limit is given;
-  /// 0 means that no size is too large.
+  /// The size of the document in bytes. If neither a tolerance nor a limit is given, this size decides whether a result
+  /// is too large. 0 means that no size is too large.
   std::size_t bytes_of_file = 0;
-  /// The weighting of the true normals. Weightings other than area are fitted, with a stated error. By default, each
-  /// mesh has the weighting that its stored base normals clearly follow (as in an audit), or else area. With
-  /// recompute_base, the default is always area.
+  /// The weighting of the true normals. Normals with a weighting other than area are fitted, with a stated error. By
+  /// default, each mesh has the weighting that its stored base normals clearly follow (as in an audit), or else area.
+  /// With recompute_base, the default is always area.
   std::optional<Weighting> weighting = {};
-  bool smooth = false;        ///< gives normals to primitives without NORMAL, which otherwise stay flat
-  double crease_angle = 180;  ///< degrees; hard edges of smoothed primitives and of sequences
+  bool smooth = false;        ///< true to give normals to primitives without NORMAL, which otherwise stay flat
+  double crease_angle = 180;  ///< degrees; decides the hard edges of smoothed primitives and of sequences
   /// The normals of keyframe 0 of a sequence, one for each corner, or empty. They determine the hard edges instead of
-  /// the crease angle, and the weighting of the true normals if none is given. Their offset from the true normals is
-  /// kept. (The encoding keys only uses the hard edges.)
+  /// the crease angle, and also the weighting of the true normals if no weighting is given. The rotation from the true
+  /// normals to these normals is kept. (The encoding kKeys uses them only for the hard edges.)
   VectorView<const float> normal_of_corner = {};
-  /// Vertices that coincide in all keyframes share a normal, except at hard edges and for the two sides of a sheet.
+  /// True if vertices that coincide in all keyframes share a normal. Vertices at hard edges, and those on the two sides
+  /// of a sheet, never do.
   bool weld = true;
-  bool recompute_base = false;  ///< replaces the base normals by those of the geometry; hard edges stay
-  bool dense_zeros = false;     ///< stores zeros as bytes, for readers that need bytes for every accessor
-  std::optional<std::size_t> most_bytes = {};  ///< fails if more bytes would be added
-  /// For sequences: the limit of memory and output, which the program sets. nullptr means no limit. A document has a
-  /// limit of its own.
+  bool recompute_base = false;  ///< true to replace the base normals by those of the geometry; hard edges stay
+  bool dense_zeros = false;     ///< true to store every zero, for readers that need bytes for every accessor
+  std::optional<std::size_t> most_bytes = {};  ///< the bake fails if it would add more bytes than this
+  /// For sequences, the limit on memory and output, which the program sets; nullptr stands for no limit. A document has
+  /// a limit of its own.
   const Expansion* expansion = nullptr;
-  /// The tolerance in degrees. For smallest: the limit of the worst error. For harmless and exact: correction targets
-  /// are left out as long as this changes no normal by more than the tolerance, and tracks are cut to the tolerance.
-  /// For keys: the largest error of a normal at any instant, at least kLeastKeyTolerance. Default: kHarmlessTolerance,
-  /// or kExactBakeTolerance for exact.
+  /// The tolerance in degrees. For kSmallest it is the limit of the worst error. For kHarmless and kExact, correction
+  /// targets are left out as long as this changes no normal by more than the tolerance, and tracks are cut into lines
+  /// within the tolerance. For kKeys it is the largest error of a normal at any instant, and at least
+  /// kLeastKeyTolerance. The default is kHarmlessTolerance, or kExactBakeTolerance for kExact.
   std::optional<double> tolerance = {};
-  /// The largest number of targets of a mesh, including its own (for smallest). Default: as many as the viewers
-  /// support.
+  /// The largest number of targets of a mesh for kSmallest, including the targets that the mesh has already. The
+  /// default is the number that the viewers support.
   std::optional<std::size_t> most_targets = {};
-  /// Promises that only the animations of the file will be played, so that smallest may fit the deltas of the mesh's
-  /// own targets to them. Such deltas have no meaning alone.
+  /// A promise that only the animations of the file will be played. kSmallest may then fit the deltas of the mesh's own
+  /// targets to these animations. Such deltas have no meaning alone.
   bool animations_only = false;
-  /// The largest total size of a mesh's arrays of deltas and tangents, plus the growth of its tracks (for smallest);
-  /// the closest candidate within this limit is chosen.
+  /// For kSmallest, the largest number of bytes of a mesh's deltas and tangents together, plus the growth of its
+  /// tracks. Within this limit, the candidate with the smallest error is chosen.
   std::optional<std::size_t> most_delta_bytes = {};
-  /// Promises that a program sets poses of the meshes that no animation drives, and also sets the weights of their
-  /// correction targets by the file's formulas. Without this promise, smallest gives these meshes no correction
+  /// A promise that a program sets poses of the meshes that no animation drives, and also sets the weights of their
+  /// correction targets by the file's formulas. Without this promise, kSmallest gives these meshes no correction
   /// targets.
   bool is_posed = false;
-  /// The poses for which meshes are baked if is_posed is set, with weights by name or in the order of targets. A mesh
-  /// is left out if the poses name none of its targets and none has its number of weights. Default: random poses
-  /// (docs/cli.md).
+  /// The poses for which meshes are baked if is_posed is true, with weights by name or in the order of targets. A mesh
+  /// is left out if no pose names one of its targets or has as many weights as it has targets. The default is random
+  /// poses (docs/cli.md).
   std::vector<RigPose> poses = {};
-  bool plan = false;  ///< for smallest: evaluate all candidates, even after the smallest one is found
+  bool plan = false;  ///< true to make kSmallest evaluate all candidates, even after the smallest is found
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// Returns the options with the default viewers if they name none.
+/// Returns the options, with the default viewers if `options` names none.
 [[nodiscard]] BakeOptions with_viewers(BakeOptions options);
 
-/// The errors of rendered normals in degrees.
+/// The errors of rendered normals, in degrees, over the samples of a mesh.
 struct ShownErrors {
   std::size_t judged = 0;  ///< number of samples, each a vertex in a pose
   double mean = 0;
-  double most = 0;  ///< 99.9 % of the errors are below this, within a tenth
+  double most = 0;  ///< 99.9 % of the errors are below this angle, which is rounded by at most a tenth
   double worst = 0;
-  /// The number of samples (an edge in a pose) at which errors jump by more than 10, 20 and 40 degrees.
+  /// The numbers of samples, each an edge in a pose, at which the errors of neighbouring normals differ by more than
+  /// 10, 20 and 40 degrees.
   std::array<std::size_t, 3> tears{};
   std::size_t poses = 0;
 
-  /// Returns the number of edges that are torn by more than 10 degrees, on average over the poses.
+  /// Returns the number of edges at which errors differ by more than 10 degrees, on average over the poses.
   [[nodiscard]] double torn_edges() const noexcept {
     return poses > 0 ? static_cast<double>(tears[0]) / static_cast<double>(poses) : 0;
   }
 };
 
-/// The errors of a mesh in a viewer before and after a bake, through the skins of the nodes with the mesh.
+/// The errors of a mesh in one viewer before and after a bake. Normals are those that the skins of the mesh's nodes
+/// transform.
 struct ViewerChange {
   struct Errors {
     ShownErrors before, after;
   };
   std::string viewer;
-  bool is_named = true;    ///< true if the bake is made for this viewer
-  bool is_better = false;  ///< true if the errors decrease as a whole, and in no respect increase beyond the allowance
-  /// The errors in three kinds of poses: first, in the animations of the file as the viewer plays them, and with its
-  /// constant weights; second, with each target alone from 0 to 1; third, in poses that a program sets.
+  bool is_named = true;  ///< true if the bake is made for this viewer, false for a viewer that is only spared
+  /// True if the errors decrease as a whole and none of them increases by more than is allowed.
+  bool is_better = false;
+  /// The errors in three kinds of poses. The first are the poses in the animations of the file as the viewer plays
+  /// them, and with its constant weights. The second are each target alone from 0 to 1. The third are poses that a
+  /// program sets.
   std::array<Errors, 3> poses;
 };
 
-/// A candidate for a mesh that smallest has evaluated.
+/// A candidate that kSmallest has evaluated for a mesh.
 struct BakedCandidate {
-  /// The kind of candidate: "as it is", "own deltas", "products", "quadratics" or "low rank".
+  /// The name of the kind of candidate: "as it is", "own deltas", "products", "quadratics" or "low rank".
   std::string_view name;
-  std::size_t targets = 0, bytes = 0;  ///< bytes of new deltas and tangents, plus the growth of tracks
-  /// The errors in the worst of the named viewers: along the animations of the file, also between keys, and in its
-  /// constant weights; or, without animations of weights, with each target alone and in the poses of the options, to
-  /// which nothing was fitted. Samples count if n(w) is longer than a thousandth of n(0). Normals are transformed by
-  /// the skins of the nodes with the mesh.
+  std::size_t targets = 0, bytes = 0;  ///< `bytes` counts new deltas and tangents, and the growth of tracks
+  /// The errors in the worst of the named viewers. They are those along the animations of the file, also between keys,
+  /// and in its constant weights. If no animation drives weights, they are those with each target alone, and in the
+  /// poses of the options, to which nothing was fitted. Samples count if n(w) is longer than a thousandth of n(0).
+  /// Normals are transformed by the skins of the nodes with the mesh.
   ShownErrors played;
-  /// The errors of each named viewer. Empty if "as it is" was the only candidate, and for the numbers of "quadratics"
-  /// that were tried for all vertices at once.
+  /// The errors of each named viewer. Empty if "as it is" was the only candidate. Also empty for the different numbers
+  /// of targets of "quadratics" that were tried for all vertices at once.
   std::vector<ViewerChange> viewers;
-  bool within = false;  ///< the worst error is within the tolerance, and the size within the limits
+  bool within = false;  ///< true if the worst error is within the tolerance, and the size within the limits
   bool chosen = false;
-  bool animations_only = false;  ///< its deltas are fitted to the animations, and have no meaning alone
-  bool skinned = false;          ///< a skin does more than rotate and scale uniformly, so `played` depends on it
-  /// Degrees, for the chosen candidate: the worst error that compressors among the named viewers cause by rounding. No
-  /// candidate can avoid it, and the choice ignores it; 0 if no compressor is named.
+  bool animations_only = false;  ///< true if the deltas are fitted to the animations, and have no meaning alone
+  /// True if a skin does more than rotate and scale uniformly, so that `played` depends on it.
+  bool skinned = false;
+  /// The worst error in degrees that compressors among the named viewers cause by rounding, for the chosen candidate.
+  /// No candidate can avoid this error, so the choice ignores it. It is 0 if no compressor is named.
   double rounded = 0;
 };
 
-/// Returns true if a candidate misses the given tolerance only because of the rounding of compressors.
+/// Returns true if the chosen candidate misses the given tolerance only because compressors round.
 [[nodiscard]] inline bool is_beyond_by_rounding(const BakedCandidate& choice, const BakeOptions& options) {
   return options.tolerance && choice.within && choice.rounded > *options.tolerance;
 }
 
-/// The result for one mesh.
+/// The result of a bake for one mesh.
 struct BakedMesh {
   std::size_t mesh = 0;
   std::string name;
   BakeEncoding encoding = BakeEncoding::kExact;
   Weighting weighting =
       Weighting::kArea;                 ///< weighting of the true normals; meaningless for a mesh that was baked before
-  std::size_t elements = 0;             ///< different normals
+  std::size_t elements = 0;             ///< number of different normals
   std::vector<GltfExtraTarget> extras;  ///< correction targets, added now or by an earlier bake
-  /// Bytes of new arrays, not counting those shared with an earlier mesh, plus the growth of tracks.
+  /// The number of bytes of new arrays, without those that are shared with an earlier mesh, plus the growth of tracks.
   std::size_t bytes = 0;
-  /// For exact: the number of moving targets that no animation drives. They are baked like endpoint.
+  /// For kExact, the number of moving targets that no animation drives. They are baked as with kEndpoint.
   std::size_t undriven = 0;
-  std::size_t left_flat = 0;  ///< primitives without NORMAL that stay flat
+  std::size_t left_flat = 0;  ///< number of primitives without NORMAL, which stay flat
   /// The number of vertices whose stored base normal is zero or nearly zero, so that deltas cannot be added to it.
   std::size_t without_stored = 0;
   /// The number of vertices whose stored base normal was too long or too short for float32, and is now a unit vector.
   std::size_t rescaled = 0;
-  /// The number of targets whose tangents were not perpendicular to the true normals. Their tangents are recomputed,
-  /// for viewers that add up tangents.
+  /// The number of targets whose tangents were not perpendicular to the true normals. For viewers that add up tangents,
+  /// these tangents are recomputed.
   std::size_t new_tangents = 0;
-  std::size_t left_tangents = 0;  ///< targets for whose tangents most_delta_bytes has no room; they do not change
-  std::size_t stilled = 0;        ///< targets that moved normals but no positions; their deltas are zero now
-  std::size_t without_base = 0;   ///< vertices whose faces have no area in the base (docs/cli.md)
-  /// The largest error in degrees, for endpoint targets and fits. Each target is compared alone, over w in [0, 1] and
-  /// beyond if the file has such weights. Targets that are active together are compared at the weights of the file, at
-  /// keys and at up to fifteen instants between two keys.
+  /// Number of targets whose new tangents would exceed most_delta_bytes; they keep their tangents.
+  std::size_t left_tangents = 0;
+  std::size_t stilled = 0;       ///< number of targets that moved normals but no positions; their deltas are now zero
+  std::size_t without_base = 0;  ///< number of vertices whose faces have no area in the base (docs/cli.md)
+  /// The largest error in degrees of kEndpoint targets and of fits. Each target is compared alone, over the weights
+  /// from 0 to 1, and beyond if the file has such weights. Targets that are active together are compared at the weights
+  /// of the file: at keys, and at up to fifteen instants between two keys.
   double largest_error = 0;
-  /// For endpoint: the number of elements whose deltas were computed by least squares, since several targets are active
-  /// at once.
+  /// For kEndpoint, the number of elements whose deltas were computed by least squares, since several targets are
+  /// active at once.
   std::size_t fitted_elements = 0;
-  double resampling_error = 0;  ///< degrees, from cutting cubic splines and leaving out pairs, along the animations
-  /// True if KHR_animation_pointer drives a single weight, so that only the encoding exact adds correction targets.
+  /// Degrees; the error along the animations from cutting cubic splines and from leaving out pairs of targets.
+  double resampling_error = 0;
+  /// True if KHR_animation_pointer drives a single weight. Only the encoding kExact then adds correction targets.
   bool has_lone_weight = false;
-  /// True if nothing was changed, because the mesh was baked before. `candidates` has the evaluation of the present
-  /// normals by smallest.
+  /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
+  /// normals.
   bool already_baked = false;
-  std::vector<ViewerChange> viewers;       ///< except for exact: the errors of each named viewer, if the mesh changed
-  std::vector<BakedCandidate> candidates;  ///< for smallest: the candidates that were evaluated
-  std::size_t left_out = 0;                ///< number of correction targets for which the viewers have no room
-  /// Nodes with the mesh whose extras are not an object, so the drivers of correction targets cannot be recorded there.
+  std::vector<ViewerChange> viewers;       ///< the errors of each named viewer if the mesh changed; empty for kExact
+  std::vector<BakedCandidate> candidates;  ///< the candidates that kSmallest has evaluated
+  /// Number of correction targets that exceed the number of targets that the viewers support.
+  std::size_t left_out = 0;
+  /// The nodes with the mesh whose extras are not a JSON object, so that the drivers of correction targets cannot be
+  /// stored there.
   std::vector<std::size_t> unmarked_nodes;
 };
 
 struct GltfBake {
-  std::vector<BakedMesh> meshes;      ///< the meshes with targets that move
+  std::vector<BakedMesh> meshes;      ///< the results for all meshes with targets that move
   std::vector<std::string> pointers;  ///< JSON pointers of the result that were replaced or added
-  std::vector<std::string> warnings;  ///< sentences for people
+  std::vector<std::string> warnings;  ///< whole sentences for users
   std::size_t added_targets = 0, added_bytes = 0;
   std::size_t bytes_of_file = 0;     ///< size of the document before the bake
-  std::size_t left_out_bytes = 0;    ///< bytes of arrays of the source that are not used any more
+  std::size_t left_out_bytes = 0;    ///< bytes of arrays of the source that the result does not use any more
   std::size_t converted_tracks = 0;  ///< number of weight tracks that became cubic splines
   bool changed = false;
   std::string drivers;  ///< the drivers of the correction targets of all meshes, as separate JSON (docs/formats.md)
@@ -225,31 +236,35 @@ struct GltfBake {
 /// Fits       with weightings other than area, n(w) is not a polynomial: exact then uses the quadratic form that is
 ///            exact if one target has the weight 0, 1/2 or 1, or if two have the weight 1.
 ///
-/// Errors: those of GltfDocument; kUsage for the encoding keys; kInvalidInput if nothing moves, if more than most_bytes
-/// would be added (with the necessary number of bytes), if extras of a mesh are not an object or extras.chronormal is
-/// not a valid mark, if base normals to replace are compressed by Draco, or for exact if an extension drives a single
-/// weight.
+/// Errors: those of GltfDocument; kUsage for the encoding kKeys; kInvalidInput if nothing moves, if more than
+/// most_bytes would be added (the message has the necessary number of bytes), if extras of a mesh are not an object or
+/// extras.chronormal is not a valid mark, if base normals to replace are compressed by Draco, or for kExact if an
+/// extension drives a single weight.
 [[nodiscard]] Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& options, GltfEdit& edit);
 
 struct SequenceBake {
   std::size_t keyframes = 0, vertices = 0, targets = 0, extra_targets = 0;
-  std::size_t bytes = 0;                   ///< size of the file
-  double largest_error = 0;                ///< degrees, for endpoint, harmless and fitted weightings
-  std::size_t without_normals = 0;         ///< elements that never have an area in the motion
+  std::size_t bytes = 0;                   ///< size of the file in bytes
+  double largest_error = 0;                ///< degrees; for kEndpoint, kHarmless and fitted weightings
+  std::size_t without_normals = 0;         ///< number of elements that have no area at any time of the motion
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals: that of the stored normals, or area
-  bool has_offsets = false;  ///< stored normals of keyframe 0 differ from the true normals by rotations, which are kept
+  /// True if the stored normals of keyframe 0 differ from the true normals by rotations, which are kept.
+  bool has_offsets = false;
   std::vector<std::string> warnings;
-  /// The numbers that --encode keys reports.
+  /// The numbers of keys, for the encoding kKeys.
   struct Keys {
-    std::size_t count = 0;       ///< number of keys, including the first and last keyframe
-    std::size_t in_between = 0;  ///< keys between two keyframes
-    std::size_t left_out = 0;    ///< keyframes without a key: their positions are on the lines between keys
-    /// Number of keys that would be needed if all keyframes were keys, with equally many keys between any two.
+    std::size_t count = 0;       ///< number of keys, including those at the first and at the last keyframe
+    std::size_t in_between = 0;  ///< number of keys between two keyframes
+    std::size_t left_out = 0;    ///< number of keyframes without a key, whose positions are on the lines between keys
+    /// The number of keys that would be needed if all keyframes were keys, and if there were equally many keys between
+    /// any two keyframes.
     std::size_t even = 0;
-    std::size_t beyond = 0;  ///< (normal, segment) pairs that miss the tolerance with any keys, since they collapse
+    /// Number of samples, each a normal in a segment, that miss the tolerance with any keys, since the normal
+    /// collapses.
+    std::size_t beyond = 0;
   };
   std::optional<Keys> keys = {};
-  std::optional<CutPath> cut = {};  ///< for curves; set by the caller that has cut them, for reports
+  std::optional<CutPath> cut = {};  ///< for curved paths; set by the caller that has cut them, for reports
 };
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped

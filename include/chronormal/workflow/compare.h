@@ -1,5 +1,5 @@
-/// Compares every scheme with the exact normals of a motion, like the paper's Table 1, and the deltas of blend shapes
-/// with their exact normals.
+/// Compares every scheme with the exact normals of a motion, like the paper's Table 1. Also compares the deltas of
+/// blend shapes with their exact normals.
 ///
 /// A viewer that adds one normal delta per target renders normalize(N + sum_i w_i D_i); the true normal is a quadratic
 /// form in the weights (docs/theory.md, section 14). The comparison includes the deltas of a glTF file, end-point
@@ -38,64 +38,70 @@
 
 namespace chronormal {
 
-/// Returns the names of the rows of the paper's table and of our schemes. Schemes that need faces are left out for
-/// other elements.
+/// Returns the names of the default schemes: those in the rows of the paper's table, and our own. Schemes that need
+/// faces are left out for other elements.
 [[nodiscard]] std::vector<std::string> default_schemes(ElementKind kind = ElementKind::kFaces);
 
-/// Selects the order in which the samples of a segment are computed (section 3 of the paper).
+/// The orders in which the samples of a segment are computed (section 3 of the paper).
 enum class Access {
-  kRandom,      ///< each sample independently
-  kSequential,  ///< each sample from the previous one, for schemes that can; the others as in kRandom
+  kRandom,      ///< each sample is computed independently of the others
+  kSequential,  ///< each sample is computed from the previous one, if the scheme can; otherwise as with kRandom
 };
 
-/// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). No sample exceeds the upper
-/// bound.
+/// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). The error is never above the
+/// upper bound.
 struct CertifiedError {
-  double lower = 0;  ///< radians
-  double upper = 0;  ///< radians; pi if no smaller bound could be shown
+  double lower = 0;  ///< in radians
+  double upper = 0;  ///< in radians; pi if no smaller bound could be shown
   /// The first piece of a segment, as an interval of local t, on which the error may reach the upper bound.
   std::size_t segment = 0, element = 0;
   double from = 0, to = 1;
-  std::size_t unbounded = 0;  ///< (element, segment) pairs for which no bound below half a turn could be shown
+  /// Number of (element, segment) combinations for which no bound below half a turn could be shown.
+  std::size_t unbounded = 0;
 };
 
 struct CompareOptions {
-  std::vector<std::string> schemes;  ///< names, in the order of the rows; if empty, default_schemes()
-  std::size_t samples = 21;          ///< per segment, both ends included; at least 2
+  std::vector<std::string> schemes;  ///< names of schemes, in the order of the rows; if empty, default_schemes()
+  std::size_t samples = 21;          ///< number per segment, both ends included; at least 2
   Access access = Access::kRandom;
-  /// Is called in the calling thread with the amount of work done and the total; may be empty.
+  /// Is called in the calling thread with the number of units of work that are done, and their total. It may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
   ElementOptions elements = {};  ///< the elements whose normals are compared
-  /// The weighting of faces in the normals of vertices and corners. With a weighting other than area, normals are not
-  /// quadratics: schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three
-  /// of them. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
+  /// The weighting of faces in the normals of vertices and corners. Normals with a weighting other than area are not
+  /// quadratic in time. Schemes are then prepared from the exact weighted normals, and `polynomial` is the quadratic
+  /// through three of these. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
   Weighting weighting = Weighting::kArea;
-  bool keep_errors = false;   ///< keeps every single error in Comparison::errors
-  bool keep_samples = false;  ///< keeps the errors of each sample together in SchemeComparison::samples
-  bool certify = false;       ///< bounds the largest error at any time in SchemeComparison::certified
-  /// Degrees, at least 0: certify, and find the cheapest scheme whose error never exceeds this, in
-  /// Comparison::cheapest.
+  bool keep_errors = false;   ///< true to keep every single error in Comparison::errors
+  bool keep_samples = false;  ///< true to keep the errors of each sample in SchemeComparison::samples
+  bool certify = false;       ///< true to bound the largest error at any time in SchemeComparison::certified
+  /// The tolerance in degrees, at least 0. If it is given, errors are certified, and Comparison::cheapest is the
+  /// cheapest scheme whose error never exceeds the tolerance.
   std::optional<double> tolerance = {};
 };
 
-/// One scheme on one motion. quality.max_at names a face, or the first vertex or corner of the element. Costs are per
-/// element. Each time is measured in one thread while all threads work. The times are the median over segments of the
-/// median over blocks of up to 1,024 elements, which stay in the cache (on smaller meshes, the calls themselves take
-/// most of the time).
+/// The errors and costs of one scheme on one motion. quality.max_at names a face, or the first vertex or corner of the
+/// element. Costs are per element. Each time is measured in one thread while all threads work. A time is the median
+/// over segments of the median over blocks of up to 1,024 elements, which stay in the cache (on smaller meshes, the
+/// calls themselves take most of the time).
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
-  std::optional<double> relative_to_linear;  ///< sum / sum of linear; nothing if linear has only rounding errors
-  /// The number of (element, segment) pairs that were prepared with a documented fallback.
+  /// The sum of errors divided by that of `linear`; no value if `linear` has only rounding errors.
+  std::optional<double> relative_to_linear;
+  /// The number of (element, segment) combinations for which the scheme is not defined, so that it used a documented
+  /// fallback.
   std::size_t fallbacks = 0;
-  std::size_t flagged = 0;                       ///< (element, segment) pairs evaluated in double
-  bool sequential = false;                       ///< the scheme was played step by step
-  double prepare_ns = 0;                         ///< includes control normals if the scheme uses them
-  double evaluate_ns = 0;                        ///< per sample
-  double bytes = 0;                              ///< bytes that an evaluation reads
-  OperationCounts operations;                    ///< operations of the measured kind of access
-  std::vector<Quality> samples = {};             ///< with keep_samples: the errors of each sample, segment by segment
-  std::optional<CertifiedError> certified = {};  ///< present if requested
+  /// Number of (element, segment) combinations that are evaluated in double.
+  std::size_t flagged = 0;
+  bool sequential = false;  ///< true if the scheme was played step by step
+  /// Nanoseconds per element; includes computing control normals if the scheme uses them.
+  double prepare_ns = 0;
+  double evaluate_ns = 0;  ///< nanoseconds per element and sample
+  double bytes = 0;        ///< number of bytes per element that an evaluation reads
+  /// Operations per element and sample, for the kind of access that was measured.
+  OperationCounts operations;
+  std::vector<Quality> samples = {};             ///< with keep_samples, the errors of each sample, segment by segment
+  std::optional<CertifiedError> certified = {};  ///< present if certificates were requested
 };
 
 struct Comparison {
@@ -107,13 +113,13 @@ struct Comparison {
   std::size_t samples = 0;
   std::vector<SchemeComparison> schemes;
   MotionKind motion = MotionKind::kSequence;  ///< the kind of the motion
-  std::vector<ErrorTable> errors = {};        ///< with keep_errors: one for each requested scheme
-  std::optional<double> tolerance = {};       ///< degrees, if given
-  /// The cheapest scheme that is certainly within the tolerance; nothing if there is none.
+  std::vector<ErrorTable> errors = {};        ///< with keep_errors, one table for each requested scheme
+  std::optional<double> tolerance = {};       ///< in degrees, if one was given
+  /// The index of the cheapest scheme that is certainly within the tolerance; no value if no scheme is.
   std::optional<std::size_t> cheapest = {};
-  Weighting weighting = Weighting::kArea;  ///< weighting for vertices and corners
+  Weighting weighting = Weighting::kArea;  ///< the weighting for vertices and corners
   std::array<double, 2> span = {};         ///< the times of the first and the last keyframe
-  std::optional<CutPath> cut = {};         ///< for curves; set by the caller that has cut them, for reports
+  std::optional<CutPath> cut = {};         ///< for curved paths; set by the caller that has cut them, for reports
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
@@ -127,32 +133,35 @@ struct Comparison {
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
-/// Compares the schemes for a stream, holding a few segments at a time: as many as have a few thousand elements for
-/// each thread, but at least one. Errors: also those of the stream.
+/// Compares the schemes for a stream. Holds as many segments at a time as have a few thousand elements for each thread,
+/// but at least one segment. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
-/// Estimates the cost of an evaluation, to sort schemes: 1 for each byte read, each addition and each multiplication, 4
-/// for a quotient or a root, 20 for a sine with its cosine.
+/// Estimates the cost of an evaluation, by which schemes are sorted. Each byte that is read, each addition and each
+/// multiplication costs 1, a quotient or a root costs 4, and a sine with its cosine 20.
 [[nodiscard]] double evaluation_cost(const SchemeComparison& scheme) noexcept;
 
-/// The scheme with the least evaluation_cost() whose error certainly never exceeds a tolerance. Candidates are
-/// options.schemes, or all schemes without a parameter that fit the elements.
+/// The scheme with the least evaluation_cost() among those whose error certainly never exceeds a tolerance. Candidates
+/// are options.schemes, or all schemes without a parameter that support the elements.
 struct Choice {
-  std::optional<std::string> scheme;  ///< nothing if no scheme is within the tolerance
+  std::optional<std::string> scheme;  ///< no value if no scheme is within the tolerance
   Comparison comparison;              ///< all candidates, compared at two samples of each segment
 };
-/// Finds the cheapest scheme. `tolerance` is in degrees, at least 0. Errors: those of compare().
+/// Finds the cheapest scheme whose error never exceeds `tolerance`, which is in degrees and at least 0. Errors: those
+/// of compare().
 [[nodiscard]] Result<Choice> choose(const Motion& motion, double tolerance, CompareOptions options = {});
 
 inline constexpr std::size_t kMostBlendRows = 10000;
 
 struct BlendCompareOptions {
   std::size_t rows = 100;  ///< number of weight vectors for each number of active targets; 1 to kMostBlendRows
-  std::size_t active = 0;  ///< number of active targets; 0 means 1, 2, 4, 8, 16 and all, as far as there are so many
+  /// Number of targets with nonzero weights; 0 stands for 1, 2, 4, 8, 16 and all, up to the number of targets.
+  std::size_t active = 0;
   std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
-  /// Elements of a motion; those of a glTF file follow its stored normals.
+  /// The elements of a motion. The elements of a glTF file follow from its stored normals.
   ElementOptions elements = {ElementKind::kVertices};
-  /// An animation of a glTF file, by name or index: up to `rows` of its weight vectors, evenly spaced.
+  /// An animation of a glTF file, by name or index, from which the weights come: up to `rows` of its weight vectors,
+  /// evenly spaced. If it is empty, weights are random.
   std::string animation = {};
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
@@ -168,30 +177,30 @@ struct BlendError {
     double weight = 0;
   };
   BlendDeltas deltas = BlendDeltas::kFile;
-  /// The errors. In max_at, `segment` is the number of the weight vector and `element` the output. `count` is equal for
-  /// all deltas: all samples whose geometry has a normal. `missing` counts the samples whose rendered normal is zero,
-  /// infinite or NaN; these have an error of 180 degrees.
+  /// The errors of one kind of deltas. In max_at, `segment` is the number of the weight vector and `element` is the
+  /// output. `count` is equal for all kinds: the number of samples whose geometry has a normal. `missing` counts the
+  /// samples whose rendered normal is zero, infinite or NaN; the error of these is 180 degrees.
   Quality quality;
   std::vector<Weight> worst_weights;           ///< the active targets at the largest error
-  std::optional<std::size_t> worst_primitive;  ///< for a glTF mesh
+  std::optional<std::size_t> worst_primitive;  ///< the primitive with the largest error, for a glTF mesh
   std::size_t worst_output = 0;                ///< the vertex (of the primitive), face or corner with the largest error
 };
 
-/// The errors for one number of active targets.
+/// The errors for one number of targets that are active at the same time.
 struct BlendErrors {
   std::size_t active = 0;  ///< number of active targets; for an animation, the largest number
-  std::size_t rows = 0;    ///< weight vectors
+  std::size_t rows = 0;    ///< number of weight vectors
   std::vector<BlendError> deltas;
 };
 
-/// A motion, or a mesh of a glTF file.
+/// A motion, or a mesh of a glTF file, whose deltas are compared.
 struct BlendSubject {
-  std::optional<std::size_t> mesh;  ///< for a glTF file
+  std::optional<std::size_t> mesh;  ///< the number of the mesh in a glTF file
   std::string name;                 ///< name of the mesh; may be empty
   ElementKind kind = ElementKind::kVertices;
   std::size_t vertices = 0, faces = 0;
   std::size_t outputs = 0;           ///< number of normals that can be compared
-  std::vector<std::string> targets;  ///< names
+  std::vector<std::string> targets;  ///< the names of the targets
   std::vector<BlendErrors> errors;
 };
 
@@ -201,16 +210,16 @@ struct BlendComparison {
   std::size_t still = 0;  ///< number of glTF meshes whose targets do not change normals
 };
 
-/// Compares the deltas of blend shapes, given as a valid motion of targets. Cost: for each row an evaluation, a
-/// recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active targets than
-/// there are, and a motion that is not one of targets; those of make_groups() and blend_set_of(); kInvalidInput if
-/// there are so many targets that rows of weights do not fit into memory.
+/// Compares the deltas of blend shapes, which are given as a valid motion of targets. Cost: for each weight vector an
+/// evaluation, a recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active
+/// targets than there are, and a motion that is not one of targets; those of make_groups() and blend_set_of();
+/// kInvalidInput if there are so many targets that the weight vectors do not fit into memory.
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
-/// Compares the deltas for all meshes of a file with targets and normals; with options.animation, for the meshes that
-/// this animation drives. Errors: those of the function above, and those of GltfDocument; kUsage if the animation does
-/// not exist or drives none of the meshes, and for random weights of a mesh whose targets are the keyframes of a baked
-/// sequence; kInvalidInput if no mesh can be compared.
+/// Compares the deltas for all meshes of a file that have targets and normals; with options.animation, only for the
+/// meshes that this animation drives. Errors: those of the function above, and those of GltfDocument; kUsage if the
+/// animation does not exist or drives none of the meshes, and for random weights of a mesh whose targets are the
+/// keyframes of a baked sequence; kInvalidInput if no mesh can be compared.
 [[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
                                                      const BlendCompareOptions& options = {});
 
@@ -218,8 +227,9 @@ struct BlendComparison {
 //
 // All other comparisons assume straight motion between two keyframes, and compare normals with the exact normals of
 // this motion. For blend shapes and shutters the assumption is true, but a simulation or a capture moves differently
-// between its frames. The frames themselves tell the difference: all keyframes except every N-th are left out, normals
-// are interpolated between the kept ones, and compared with the normals of the frames that were left out.
+// between its frames. The frames themselves show the difference. All keyframes except every N-th are left out, and
+// normals are interpolated between the kept keyframes. They are compared with the normals of the keyframes that were
+// left out.
 //
 // Paths      "linear": vertices move straight, and the schemes are those of compare(). "catmull-rom": each vertex
 //            moves on cubics through the kept keyframes. Its velocity at a keyframe is that of the parabola through the
@@ -230,30 +240,31 @@ struct BlendComparison {
 // Source     docs/truth.md.
 
 struct TruthOptions {
-  std::size_t every = 2;             ///< keyframes 0, N, 2 N, ... are kept; at least 2
-  std::vector<std::string> schemes;  ///< names of schemes; if empty, those of compare()
+  std::size_t every = 2;             ///< N; the keyframes 0, N, 2 N, ... are kept; at least 2
+  std::vector<std::string> schemes;  ///< names of schemes; if empty, the default schemes of compare()
   ElementOptions elements = {};      ///< the elements whose normals are compared
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 
-/// A way to compute normals between the kept keyframes.
+/// The errors of one way to compute normals between the kept keyframes.
 struct TruthRow {
   std::string path;    ///< "linear", "catmull-rom" or "hermite"
   std::string scheme;  ///< the scheme on a linear path; "exact" on a curved one
-  Quality quality;     ///< max_at has the kept segment, the face or the first vertex or corner, and the local t
+  /// max_at has the segment between kept keyframes, the face or the first vertex or corner, and the local t.
+  Quality quality;
 };
 
 struct TruthComparison {
   ElementKind kind = ElementKind::kFaces;
   std::size_t vertices = 0, faces = 0, elements = 0;
-  std::size_t kept = 0;      ///< keyframes
-  std::size_t left_out = 0;  ///< number of keyframes to compare with; those after the last kept keyframe do not count
-  double bend = 0;           ///< bend of the kept keyframes; 0 if there are two
+  std::size_t kept = 0;      ///< number of keyframes that were kept
+  std::size_t left_out = 0;  ///< number of keyframes that are compared; those after the last kept keyframe do not count
+  double bend = 0;           ///< bend_of() for the kept keyframes; 0 if there are only two
   std::vector<TruthRow> rows;
 };
 
 /// Compares schemes on straight paths, and exact normals on curved ones, with the keyframes that were left out. There
-/// is a row for each scheme, then one for "catmull-rom", and one for "hermite" if keyframes have velocities.
+/// is a row for each scheme, then a row for "catmull-rom", and a row for "hermite" if keyframes have velocities.
 ///
 /// Errors     kUsage for a motion that is not a sequence (the motion of targets and of animated weights is truly
 ///            straight), fewer than two kept keyframes, and schemes and elements that compare() refuses.

@@ -1,4 +1,5 @@
-/// Every single error of an audit or a comparison: one for each vertex at each sample, for plots and heat maps.
+/// Every single error of an audit or a comparison, for plots and heat maps. There is one error for each vertex, face or
+/// corner at each sample.
 ///
 ///     AuditOptions options;
 ///     options.keep_errors = true;
@@ -33,25 +34,26 @@ namespace chronormal {
 // Units      degrees
 // Threads    these are plain values. Adding the same parts in the same order gives the same bits.
 
-/// The edges of the bins of the histogram in degrees: below 0.1, 0.1 to 0.5, ... and from 90 on.
+/// The limits in degrees between the bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 
-/// The bins of MotionError::counts: one below 2^-10 degrees, and then 128 for each doubling, so that percentiles have
-/// an error of at most 0.001 degrees or 0.8 %.
+/// The layout of the fine bins, MotionError::counts. There is one bin below 2^-10 degrees, and then 128 bins for each
+/// doubling of the angle, so that percentiles have an error of at most 0.001 degrees or 0.8 %.
 inline constexpr int kAuditLeastExponent = -10, kAuditBinsOfDoubling = 128;
-inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};  // bins up to 256 degrees
+// Bins for angles up to 256 degrees.
+inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfDoubling};
 
-/// A vertex at a moment, numbered like in the file.
+/// A vertex at a moment. All numbers are those of the file, counted from 0.
 struct AuditPlace {
-  std::optional<std::size_t> mesh, primitive;  ///< for a glTF file
-  std::size_t vertex = 0;                      ///< number in the primitive, or in the motion
-  std::size_t segment = 0;                     ///< segment of the subject
-  double at = 0;                               ///< weight of the target, or time in seconds
+  std::optional<std::size_t> mesh, primitive;  ///< numbers in a glTF file
+  std::size_t vertex = 0;                      ///< the number of the vertex in the primitive, or in the motion
+  std::size_t segment = 0;                     ///< the segment of the subject's motion
+  double at = 0;                               ///< the weight of the target, or the time in seconds
 };
 
-/// The counts of the fine bins. Most errors of a small mesh are in a few bins, and a file may have thousands of
-/// motions, so only bins that are not empty are stored, with 8 bytes each.
+/// The counts of the fine bins. Only bins that are not empty are stored, with 8 bytes each. Most errors of a small mesh
+/// are in a few bins, and a file may have thousands of motions, so this saves memory.
 class FineBins {
  public:
   class Bin {
@@ -76,7 +78,7 @@ class FineBins {
   [[nodiscard]] std::span<const Bin> filled() const noexcept { return bins_; }
   [[nodiscard]] std::size_t operator[](std::size_t number) const noexcept;
 
-  /// Adds `count` to the count of a bin. number < kAuditFineBins, count <= kMostCount
+  /// Adds `count` to the count of a bin. Preconditions: number < kAuditFineBins and count <= kMostCount.
   void add(std::size_t number, std::uint64_t count);
   void add(const FineBins& other);
   friend bool operator==(const FineBins&, const FineBins&) = default;
@@ -86,32 +88,36 @@ class FineBins {
 };
 
 struct MotionError {
-  std::size_t judged = 0;  ///< samples
+  std::size_t judged = 0;  ///< number of samples that were judged
   double sum = 0, sum_of_squares = 0;
   double worst = 0;
   AuditPlace worst_at;  ///< the first sample with the worst error; has no meaning if worst is 0
   std::array<std::size_t, kAuditBins> histogram{};
-  FineBins counts;            ///< counts in the fine bins
-  std::size_t no_normal = 0;  ///< samples that are not judged, since n(t) is too small to have a direction
-  std::size_t unlit = 0;      ///< judged samples whose rendered normal cannot be lit, which count as 180 degrees
-  AuditPlace unlit_at;        ///< the first such sample; has no meaning if there are none
-  /// Samples without a normal whose n(t) is small, although the float32 positions determine its direction. Their error
-  /// is the angle minus the possible effect of rounding the positions.
+  FineBins counts;            ///< the counts in the fine bins
+  std::size_t no_normal = 0;  ///< number of samples that are not judged, since n(t) is too small to have a direction
+  /// Number of judged samples whose rendered normal cannot be lit; their error is 180 degrees.
+  std::size_t unlit = 0;
+  AuditPlace unlit_at;  ///< the first sample that cannot be lit; has no meaning if there are none
+  /// The number of samples that are not judged although the float32 positions determine a direction, since n(t) is
+  /// small but not zero. faint_worst is their worst error: the angle minus the effect that rounding the positions may
+  /// have.
   std::size_t faint = 0;
   double faint_worst = 0;
   AuditPlace faint_at;  ///< the first sample with the worst faint error; has no meaning if faint_worst is 0
-  /// Samples without a normal that are not faint although the faces around have an area: the faces' normals cancel, so
-  /// the true normal is unknown.
+  /// The number of samples that are not judged and not faint although the faces around the vertex have an area. The
+  /// normals of these faces cancel, so the true normal is unknown.
   std::size_t cancelled = 0;
-  AuditPlace cancelled_at;  ///< the first such sample; has no meaning if there are none
-  /// The number of edges over which errors jump by more than 10, 20 and 40 degrees: a picture shows a fold there that
-  /// the surface does not have. Edges of faces, and seams between copies of a point, each count once at every sample.
+  AuditPlace cancelled_at;  ///< the first cancelled sample; has no meaning if there are none
+  /// The numbers of edges between two vertices whose errors differ by more than 10, 20 and 40 degrees. A picture shows
+  /// a fold at such an edge that the surface does not have. Edges of faces, and seams between copies of a point, each
+  /// count once at every sample.
   std::array<std::size_t, 3> torn{};
-  std::size_t samples = 0;    ///< number of samples at which edges were counted; 0 if they were not, as in sequences
-  std::size_t most_torn = 0;  ///< largest number of edges beyond 10 degrees at one sample
-  AuditPlace most_torn_at;    ///< the first sample with this number: mesh, segment and moment
+  /// Number of samples at which edges were counted; 0 if none were counted, as in sequences.
+  std::size_t samples = 0;
+  std::size_t most_torn = 0;  ///< the largest number of edges at one sample whose errors differ by more than 10 degrees
+  AuditPlace most_torn_at;    ///< the first sample with this number of edges: mesh, segment and moment
 
-  /// Returns the number of edges that are torn by more than 10 degrees, on average over the samples.
+  /// Returns the number of edges whose errors differ by more than 10 degrees, on average over the samples.
   [[nodiscard]] double torn_edges() const noexcept {
     return samples > 0 ? static_cast<double>(torn[0]) / static_cast<double>(samples) : 0;
   }
@@ -119,13 +125,13 @@ struct MotionError {
   [[nodiscard]] double rms() const noexcept {
     return judged > 0 ? std::sqrt(sum_of_squares / static_cast<double>(judged)) : 0;
   }
-  /// Returns the error in degrees that at least this share of the judged samples does not exceed, with the precision of
-  /// the bins; 0 if nothing is judged. 0 < share <= 1.
+  /// Returns the error in degrees that at least `share` of the judged samples do not exceed, with the precision of the
+  /// bins. Returns 0 if nothing was judged. Precondition: 0 < share <= 1.
   [[nodiscard]] double percentile(double share) const noexcept;
-  /// Returns true if every sample can be lit and no error is above this.
+  /// Returns true if every judged sample can be lit and no error is above `degrees`.
   [[nodiscard]] bool is_within(double degrees) const noexcept { return unlit == 0 && worst <= degrees; }
-  /// Returns true if is_within() does, the errors of faint samples are also within the limit, and no sample is
-  /// cancelled.
+  /// Returns true if is_within(degrees), if the errors of faint samples are not above `degrees` either, and if no
+  /// sample is cancelled.
   [[nodiscard]] bool passes(double degrees) const noexcept {
     return is_within(degrees) && faint_worst <= degrees && cancelled == 0;
   }
@@ -134,10 +140,10 @@ struct MotionError {
   void add(const MotionError& other);
 };
 
-/// The angles between true normals as a skin transforms them and the normals of the skinned surface, over samples of
-/// vertices. No target can correct them.
+/// The error of skinning: the angles between true normals as a skin transforms them and the normals of the skinned
+/// surface, over samples of vertices. No morph target can correct it.
 struct SkinningError {
-  std::size_t judged = 0;  ///< samples
+  std::size_t judged = 0;  ///< number of samples
   double sum = 0, worst = 0;
   AuditPlace worst_at;  ///< the first sample with the worst error; has no meaning if worst is 0
 
@@ -152,45 +158,46 @@ struct SkinningError {
   }
 };
 
-/// The respects in which one audit is worse than an earlier one: more samples that cannot be lit, a worst or mean error
-/// that increased by more than rounding to float32 explains, or more torn edges. If the two audits are exchanged, the
-/// result has the respects in which the later audit is better.
+/// The respects in which one audit is worse than an earlier one. More samples cannot be lit, the worst or the mean
+/// error increased by more than rounding to float32 explains, or more edges are torn. If the two audits are exchanged,
+/// the result has the respects in which the later audit is better.
 struct WorseRespects {
   bool unlit = false, mean = false, worst = false, torn = false;
 
   [[nodiscard]] bool any() const noexcept { return unlit || mean || worst || torn; }
 };
 [[nodiscard]] WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept;
-/// Returns true if the audit `after` is worse in any respect.
+/// Returns true if the audit `after` is worse than the audit `before` in any respect.
 [[nodiscard]] inline bool is_worse(const MotionError& after, const MotionError& before) noexcept {
   return find_worse(after, before).any();
 }
 
 struct ErrorTable {
-  std::string name;  ///< "mesh0" for a glTF file, or the scheme; empty if there is only one table
+  std::string name;  ///< "mesh0" for a glTF file, or the name of the scheme; empty if there is only one table
   ElementKind kind = ElementKind::kVertices;
-  Topology topology;             ///< the mesh
-  std::vector<float> positions;  ///< (V, 3), at the first keyframe or of the base
-  /// (V) for a glTF mesh: the primitive of each vertex, and its number in the primitive; otherwise empty.
+  Topology topology;             ///< the faces of the mesh
+  std::vector<float> positions;  ///< (V, 3), at the first keyframe, or in the base
+  /// For a glTF mesh, the primitive of each vertex, and the number of the vertex in that primitive, (V) each; otherwise
+  /// empty.
   std::vector<std::int64_t> primitives = {}, vertices = {};
 
-  /// For each row: the subject (Audit::subjects) or the segment of the motion, and the moment, of which either time or
-  /// weight is NaN.
+  /// For each row, the subject (Audit::subjects) or the segment of the motion, and the moment, which is a time or a
+  /// weight. The other of the two is NaN.
   std::vector<std::int64_t> subjects = {};
   std::vector<double> times = {}, weights = {};
-  std::vector<float> degrees = {};  ///< (rows, columns)
+  std::vector<float> degrees = {};  ///< the errors in degrees, (rows, columns)
 
   [[nodiscard]] std::size_t rows() const noexcept { return subjects.size(); }
   [[nodiscard]] std::size_t columns() const noexcept;
-  /// Returns the worst error of each column; NaN if nothing was judged.
+  /// Returns the worst error of each column in degrees; NaN if nothing was judged in a column.
   [[nodiscard]] std::vector<float> worst() const;
 };
 
-/// The largest size of the errors of a table in bytes.
+/// The largest number of bytes that the errors of a table may take.
 inline constexpr std::size_t kMostErrorBytes = std::size_t{1} << 30;
 
-/// Checks before a long computation whether write_errors() would refuse the path. Errors: kUsage for an extension other
-/// than .npz and .ply; those of check_output().
+/// Returns the errors that write_errors() would return for a path, so that a caller can find out before a long
+/// computation. Errors: kUsage for an extension other than .npz and .ply; those of check_output().
 [[nodiscard]] Status check_errors_output(const std::string& path, bool force);
 
 /// Writes tables as a file atomically:

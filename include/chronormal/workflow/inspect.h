@@ -1,8 +1,8 @@
 /// Inspects a motion: its contents, and problems for programs that need its normals. For a glTF file also the normals
 /// that it stores, the targets that change them, and tracks of weights.
 ///
-/// Faces at keyframes or in segments are counted as Places: the number of (face, keyframe) pairs, the number of
-/// different faces in these, and the first pair, by keyframe or segment and then by face.
+/// Faces at keyframes or in segments are counted as Places. A Places has the number of (face, keyframe) combinations,
+/// the number of different faces in these, and the first combination, by keyframe or segment and then by face.
 ///
 /// Units      positions as in the file; radians; seconds; bytes.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_H_
@@ -24,68 +24,71 @@
 
 namespace chronormal {
 
-/// Counts of faces at keyframes or in segments.
+/// The counts of faces that have some property at keyframes or in segments.
 struct Places {
   std::size_t pairs = 0;
   std::size_t faces = 0;
-  std::size_t first_at = 0;    ///< the keyframe or segment of the first pair
-  std::size_t first_face = 0;  ///< its face
-  double first_t = 0;          ///< local t of the first pair, if it has an instant
+  std::size_t first_at = 0;    ///< the keyframe or segment of the first combination
+  std::size_t first_face = 0;  ///< the face of the first combination
+  double first_t = 0;          ///< the local t of the first combination, if it happens at an instant
 };
 
 /// The largest value of a quantity, and the first place where it occurs.
 struct Largest {
   double value = 0;
-  std::size_t segment = 0, element = 0;  ///< `element` is a vertex or a face
+  std::size_t segment = 0, element = 0;  ///< the number of the segment, and of the vertex or face
 };
 
-/// The inspection of a segment, or for targets of a target.
+/// The inspection of a segment. For morph targets, a segment is a target.
 struct SegmentInspection {
   std::size_t moved_vertices = 0;
-  Largest motion;                   ///< the longest displacement of a vertex
-  Largest turn;                     ///< the largest angle between the normals of a face at both ends
-  std::size_t turned_far = 0;       ///< number of faces with an angle of more than 90 degrees
-  std::size_t collapses = 0;        ///< number of faces with no area, or nearly none, at an instant inside
-  std::size_t vanishing = 0;        ///< number of these faces that have exactly no area
-  std::size_t turned_over = 0;      ///< number of these faces that have the opposite normal afterwards
+  Largest motion;              ///< the longest displacement of a vertex, in units of length of the file
+  Largest turn;                ///< the largest angle in radians between the normals of a face at both ends
+  std::size_t turned_far = 0;  ///< number of faces whose normals at both ends differ by more than 90 degrees
+  /// Number of faces that have no area, or nearly none, at an instant inside the segment.
+  std::size_t collapses = 0;
+  std::size_t vanishing = 0;        ///< number of the faces in `collapses` that have exactly no area
+  std::size_t turned_over = 0;      ///< number of the faces in `collapses` that have the opposite normal afterwards
   std::size_t without_normals = 0;  ///< number of faces without area in the whole segment
   std::size_t flagged = 0;          ///< number of faces that are evaluated in double (NormalCurves)
-  std::size_t bytes = 0;            ///< memory of its NormalCurves
+  std::size_t bytes = 0;            ///< bytes of memory that its NormalCurves take
 };
 
 struct Inspection {
   std::size_t vertices = 0, faces = 0, keyframes = 0;
-  double first_time = 0, last_time = 0;  ///< times of keyframes
-  Vec3d low, high;                       ///< bounding box over all keyframes
-  double diagonal = 0;                   ///< diagonal of that box
-  Largest motion, turn;                  ///< largest values over all segments
-  Found doubled;                         ///< vertices that coincide with a lower one in all keyframes
-  /// Vertices that coincide with a lower one in keyframe 0: at least as many as `doubled`.
+  double first_time = 0, last_time = 0;  ///< the times of the first and the last keyframe
+  Vec3d low, high;                       ///< the corners of the bounding box over all keyframes
+  double diagonal = 0;                   ///< the diagonal of the bounding box
+  Largest motion, turn;                  ///< the largest values over all segments
+  Found doubled;                         ///< vertices that coincide with a vertex of lower number in all keyframes
+  /// Vertices that coincide with a vertex of lower number in keyframe 0; there are at least as many as in `doubled`.
   Found doubled_at_start;
   Surface surface;
-  Found cut;  ///< faces that a fan around the first corner does not cover in keyframe 0, so that they are cut by ears
+  /// Faces that a fan around the first corner does not cover in keyframe 0, so that another triangulation is used.
+  Found cut;
   std::vector<SegmentInspection> segments;
 
   Places no_area;  ///< at keyframes: faces without area
-  Places slivers;  ///< at keyframes: slivers (see inspect())
-  /// In segments: faces whose normal vanishes inside, or falls below 1e-6 of its control normals.
+  Places slivers;  ///< at keyframes: faces that are slivers, as inspect() defines them
+  /// In segments: faces whose normal vanishes at an instant inside, or becomes shorter there than 1e-6 of its control
+  /// normals.
   Places collapses;
-  Places vanishing;         ///< in segments: faces whose normal is exactly zero inside (analysis/signs.h)
+  Places vanishing;         ///< in segments: faces whose normal is exactly zero at an instant inside (analysis/signs.h)
   Places turned_over;       ///< in segments: collapsing faces with the opposite normal afterwards
-  Places turned_far;        ///< in segments: faces whose end normals are more than 90 degrees apart
-  Places without_normals;   ///< in segments: faces without area throughout, which have no normal
-  std::size_t flagged = 0;  ///< (face, segment) pairs that are evaluated in double
+  Places turned_far;        ///< in segments: faces whose normals at both ends are more than 90 degrees apart
+  Places without_normals;   ///< in segments: faces without area in the whole segment, which have no normal
+  std::size_t flagged = 0;  ///< number of (face, segment) combinations that are evaluated in double
 
-  std::size_t keyframe_bytes = 0;  ///< memory for the positions of all keyframes
-  std::size_t normal_bytes = 0;    ///< memory for the NormalCurves of all segments at once
+  std::size_t keyframe_bytes = 0;  ///< bytes of memory for the positions of all keyframes
+  std::size_t normal_bytes = 0;    ///< bytes of memory for the NormalCurves of all segments at once
 };
 
-/// Inspects a motion, or a mesh: a motion of one keyframe and no segment. progress(done, total), if given, is called
-/// from the calling thread.
+/// Inspects a motion. A mesh may be given as a motion of one keyframe and no segment. progress(done, total), if given,
+/// is called from the calling thread.
 ///
-/// A face is a sliver at a keyframe if it has an area, but one that is so small that it may only be the rounding of the
-/// positions to float32: moving positions by half a unit in the last place could turn its normal in any direction.
-/// Slivers and boxes use float32 positions; everything else uses the residuals of a computed motion.
+/// A face is a sliver at a keyframe if its area is not zero, but so small that it may only be the rounding of the
+/// positions to float32. Moving its positions by half a unit in the last place could then turn its normal in any
+/// direction. Slivers and boxes use float32 positions; everything else uses the residuals of a computed motion.
 ///
 /// Threads    uses all threads (core/parallel.h); the result is the same for any number of threads.
 /// Memory     about 100 bytes per face, for the edges between faces; no memory grows with faces x segments.
@@ -94,46 +97,48 @@ struct Inspection {
 /// Precondition: the motion is valid (validate() in motion/motion.h), except that it may have no segment
 [[nodiscard]] Inspection inspect(const Motion& motion,
                                  const std::function<void(std::size_t done, std::size_t total)>& progress = {});
-/// Inspects a stream, holding two keyframes, or for small meshes enough keyframes to keep all threads busy. Errors:
-/// those of the stream.
+/// Inspects a stream while holding two keyframes, or for small meshes enough keyframes to keep all threads busy.
+/// Errors: those of the stream.
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// A primitive with faces; GltfPrimitive has further properties.
+/// The inspection of a primitive with faces. GltfPrimitive has further properties of it.
 struct GltfPrimitiveInspection {
   std::size_t mesh = 0, primitive = 0;
   std::size_t triangles = 0;
-  std::size_t off_length = 0;  ///< stored normals whose length is not 1 within the rounding of 8-bit integers
-  /// Vertices that coincide with a lower one in the base, and the number of them with another normal than the lowest
-  /// one (by more than kSplitNormalTolerance of normals/normal_groups.h).
+  std::size_t off_length = 0;  ///< number of stored normals whose length is not 1 within the rounding of 8-bit integers
+  /// `doubled` is the number of vertices that coincide in the base with a vertex of lower number. `split` is the number
+  /// of these whose normal differs from that of the vertex with the lowest number, by more than kSplitNormalTolerance
+  /// of normals/normal_groups.h.
   std::size_t doubled = 0, split = 0;
-  /// Targets that move positions, and the numbers of these that also change normals or tangents.
+  /// The number of targets that move positions, and the numbers of these targets that also change normals or tangents.
   std::size_t moving = 0, moving_normals = 0, moving_tangents = 0;
 };
 
-/// A track of weights.
+/// The inspection of a track of weights. Times are in seconds.
 struct GltfTrackInspection {
   std::size_t animation = 0, track = 0;
   double first_time = 0, last_time = 0;
-  double lowest = 0, highest = 0;  ///< range of the weights, also between keys
+  double lowest = 0, highest = 0;  ///< the range of the weights, also between keys
 };
 
 struct GltfInspection {
   std::vector<GltfPrimitiveInspection> primitives;
   std::vector<GltfTrackInspection> tracks;
-  std::vector<std::size_t> instances;  ///< the number of nodes of each mesh
-  std::size_t skinned_nodes = 0;       ///< nodes with a skin and a mesh
-  std::size_t without_faces = 0;       ///< primitives of points or lines, or without positions
+  std::vector<std::size_t> instances;  ///< for each mesh, the number of nodes that show it
+  std::size_t skinned_nodes = 0;       ///< number of nodes with a skin and a mesh
+  std::size_t without_faces = 0;       ///< number of primitives of points or lines, or without positions
 };
 
 /// Reads all geometry and all weight tracks one after the other. Memory: that of the largest primitive, and data that
 /// the document keeps. Errors: those of GltfDocument.
 [[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
 
-/// Counts the vertices of a motion that coincide with a lower vertex in all keyframes, but have a different stored
-/// normal than the lowest such vertex with a normal. They are a part of Inspection::doubled, also across primitives.
-/// (Coinciding vertices belong to the same mesh and node, so normals need no transform.) Memory and errors are those of
-/// inspect(). The motion must belong to this document and these parts.
+/// Counts the vertices of a motion that coincide with a vertex of lower number in all keyframes, but have another
+/// stored normal. The normal is compared with that of the coinciding vertex that has the lowest number among those with
+/// a normal. The counted vertices are among those of Inspection::doubled, also across primitives. (Coinciding vertices
+/// belong to the same mesh and node, so normals need no transform.) Memory and errors are those of inspect().
+/// Precondition: the motion belongs to this document and these parts.
 [[nodiscard]] Result<std::size_t> count_split_normals(const GltfDocument& document, const Motion& motion,
                                                       std::span<const GltfPart> parts);
 
@@ -141,28 +146,30 @@ struct GltfInspection {
 struct InspectedGltf {
   const GltfDocument* document = nullptr;  ///< the document of the input
   GltfInspection inspection;
-  std::span<const GltfPart> parts;       ///< the origin of vertices and faces of the input
-  double curve_error = 0;                ///< the error of the cut curves, as in Input
-  std::size_t split = 0;                 ///< result of count_split_normals()
-  std::optional<std::size_t> animation;  ///< the inspected animation; nothing for targets or a mesh at rest
+  std::span<const GltfPart> parts;  ///< the primitives from which the vertices and faces of the input come
+  /// Input::curve_error(): the error of the cut curves, in units of length of the file.
+  double curve_error = 0;
+  std::size_t split = 0;                 ///< the result of count_split_normals()
+  std::optional<std::size_t> animation;  ///< the animation that was inspected; no value for targets or a mesh at rest
 };
 
 /// An opened input, and the results of its inspection.
 struct Inspected {
   Input opened;
-  std::optional<Inspection> inspection;  ///< nothing for a glTF file without faces
+  std::optional<Inspection> inspection;  ///< no value for a glTF file without faces
   std::vector<std::string> keyframe_names;
   std::vector<Motion::SegmentKeys> segments;
   MotionKind kind = MotionKind::kSequence;
   std::optional<InspectedGltf> gltf;
 
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
-  /// Returns true if the input has morph targets: segment k goes from keyframe 0 to target k, from weight 0 to 1.
+  /// Returns true if the input has morph targets. Segment k then goes from keyframe 0 at weight 0 to target k at weight
+  /// 1.
   [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
 };
 
-/// Inspects an input of any kind that was opened with allow_mesh; `animation` is the one of its options. `progress` is
-/// the same as for inspect(). Errors: those of Input::motion() and GltfDocument.
+/// Inspects an input of any kind that was opened with allow_mesh. `animation` is the animation in the options with
+/// which it was opened; `progress` is called as by inspect(). Errors: those of Input::motion() and GltfDocument.
 [[nodiscard]] Result<Inspected> inspect_input(
     Input input, const std::string& animation,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});

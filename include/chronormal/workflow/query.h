@@ -1,8 +1,8 @@
 /// Answers queries about the normals of a motion over whole intervals of time, as arrays, for `chronormal query`.
 ///
 /// A query takes a motion and a span of its time, processes every segment in the span, and returns tables of equally
-/// long columns. The headers in analysis/ define the answer for a segment and its guarantees; here the answers become
-/// rows with their segment and face.
+/// long columns. The headers in analysis/ define the answer for one segment and its guarantees. Here the answers for
+/// all segments become rows, which name their segment and face.
 ///
 ///     const Result<QueryAnswer> answer = query_collapse(motion);
 ///     write_query(answer.value(), "collapses.npz", false);
@@ -29,64 +29,66 @@
 namespace chronormal {
 
 inline namespace internal {
-class Expansion;  // limits the memory and output that a file may cause
+class Expansion;  // limits the memory and the output that reading a file may cause
 }
 
-/// The span of a query, in times of the motion, or in weights for targets. Defaults are the beginning and the end of
-/// the motion.
+/// The span of time of a query, in times of the motion, or in weights for targets. The defaults are the beginning and
+/// the end of the motion.
 struct QuerySpan {
   std::optional<double> from = {}, to = {};
-  /// The limit of the answer's size, which the program sets; nullptr means no limit. If a query has a row for every
-  /// face of every segment, its rows are counted before anything is computed; other rows are counted as they are found.
+  /// The limit on the size of the answer, which the program sets; nullptr means no limit. If a query has a row for
+  /// every face of every segment, the rows are counted before anything is computed. Other rows are counted as they are
+  /// found.
   const Expansion* expansion = nullptr;
 };
 
-/// The part of one segment in a span: [t0, t1], with t0 < t1.
+/// The part of one segment that is inside a span: t from t0 to t1, with t0 < t1.
 struct SegmentPart {
   std::size_t segment = 0;
   double t0 = 0, t1 = 1;
 };
 
-/// Returns the parts of all segments in a span, ascending. Errors: kUsage, with --from or --to as the place, for an
-/// empty span or a span outside of the motion.
+/// Returns the parts of all segments that are inside a span, in ascending order. Errors: kUsage, with --from or --to as
+/// the place, for an empty span or a span outside of the motion.
 [[nodiscard]] Result<std::vector<SegmentPart>> segment_parts(const Motion& motion, const QuerySpan& span);
 
-/// A column of an answer: an array whose first dimension is the number of rows of its table.
+/// A column of an answer, which is an array with one entry for each row of its table.
 struct QueryColumn {
-  /// The numbers of a column; booleans are one byte each, 0 or 1.
+  /// The numbers of a column. A boolean is one byte, which is 0 or 1.
   using Values =
       std::variant<std::vector<std::int64_t>, std::vector<double>, std::vector<float>, std::vector<std::uint8_t>>;
 
   std::string name;
   Values values;
-  std::size_t width = 1;  ///< 3 for an array (rows, 3)
+  std::size_t width = 1;  ///< 1, or 3 if each entry is a vector of three numbers
 
   [[nodiscard]] std::size_t rows() const noexcept;
 };
 
 struct QueryTable {
-  /// Prefix of its arrays in a file: with "crossing", the arrays are crossing_face and so on; may be empty.
+  /// The prefix of the names of its arrays in a file, or empty. The table "crossing" has the arrays crossing_face and
+  /// so on.
   std::string name;
-  std::string meaning;  ///< description of the rows for people: "collapses of faces"
+  std::string meaning;  ///< a description of the rows for users: "collapses of faces"
   std::vector<QueryColumn> columns = {};
 
   [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().rows(); }
 };
 
-/// A number that summarises the answer.
+/// A single number that belongs to the answer of a query.
 struct QueryFact {
-  std::string name;     ///< its key in JSON: "faces"
-  std::string meaning;  ///< description of the number for people: "faces that collapse"
+  std::string name;     ///< the key of the number in JSON: "faces"
+  std::string meaning;  ///< a description of the number for users: "faces that collapse"
   double value = 0;
 };
 
 struct QueryAnswer {
-  std::string question;  ///< "collapse"
+  std::string question;  ///< the name of the query: "collapse"
   std::vector<QueryFact> facts;
   std::vector<QueryTable> tables;
 };
 
-/// A function that is called with (done, total) in the calling thread.
+/// A function that is called in the calling thread with the amount of work that is done and the total amount.
 using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 
 /// Finds when and where faces collapse (analysis/signs.h), exactly. Tables:
@@ -147,11 +149,13 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// the table has no name. Errors: kUsage for another extension; those of write_output().
 [[nodiscard]] Status write_query(const QueryAnswer& answer, const std::string& path, bool force);
 
-/// Return the size of an answer in bytes: of its arrays, in memory and as .npz, and an upper bound of its JSON.
+/// Return the size of an answer in bytes. bytes_of_query() counts its arrays, which take as many bytes in memory as in
+/// .npz. json_bytes_of_query() is an upper bound for its JSON.
 [[nodiscard]] std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept;
 [[nodiscard]] std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept;
 
-/// Checks before a long computation whether write_query() would refuse the path.
+/// Returns the errors that write_query() would return for a path, so that a caller can find out before a long
+/// computation.
 [[nodiscard]] Status check_query_output(const std::string& path, bool force);
 
 }  // namespace chronormal

@@ -16,9 +16,9 @@
 /// Degenerate An element without a normal gets (0, 0, 0). If n(t) is zero only at this time, area-weighted unit normals
 /// are the limit (Direction in normals/control_normals.h), and all other normals are (0, 0, 0).
 ///
-/// Schemes    With a scheme, normals are interpolated by it, and only normals at the ends of a segment are exact. At
-///            weights, a scheme interpolates from the base to one target, whose weight must be in [0, 1]; all other
-///            weights must be 0.
+/// Schemes    If a scheme is given, it interpolates the normals, and only the normals at the ends of a segment are
+///            exact. At weights, a scheme interpolates from the base to one target, whose weight must be in [0, 1]; all
+///            other weights must be 0.
 ///
 /// Files      write_samples() writes them as
 ///     npy    an array (moments, outputs, 3) of float32
@@ -55,33 +55,36 @@ class SchemeNormals;
 }
 
 enum class NormalLength {
-  kUnit,  ///< 1
-  kArea,  ///< n itself, whose length is twice the area of a face; for a vertex or corner the sum over faces
+  kUnit,  ///< unit vectors
+  kArea,  ///< n itself, which has a length of twice the area of a face; for a vertex or corner the sum over its faces
 };
 
-/// The steps of sequential access (section 3 of the paper): normals at t = 0, 1/steps, ..., 1 of each segment, each
-/// computed from the previous ones by additions or by a rotation.
+/// The steps of sequential access (section 3 of the paper). Normals are computed at t = 0, 1/steps, ..., 1 of each
+/// segment, each from the previous ones by additions or by a rotation.
 struct Stepping {
-  std::size_t steps = 1;  ///< per segment, at least 1
-  /// The number of steps after which the state is recomputed; 0 means never, as in the paper.
+  std::size_t steps = 1;  ///< number of steps per segment, at least 1
+  /// The number of steps after which the state is computed anew, so that errors do not add up further. 0 means never,
+  /// as in the paper.
   std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
 struct SampleOptions {
   ElementOptions elements = {ElementKind::kVertices};
   Weighting weighting = Weighting::kArea;
-  NormalLength length = NormalLength::kUnit;  ///< kArea only for the weighting kArea
-  /// Interpolates by this scheme (schemes/scheme.h) between the exact normals at the ends of a segment; if empty,
-  /// normals are exact. Only for the weighting kArea and the length kUnit.
+  NormalLength length = NormalLength::kUnit;  ///< kArea is allowed only for Weighting::kArea
+  /// The name of a scheme (schemes/scheme.h) that interpolates between the exact normals at the ends of a segment. If
+  /// it is empty, all normals are exact. A scheme is allowed only for Weighting::kArea and NormalLength::kUnit.
   std::string scheme = {};
-  std::optional<Stepping> stepping = {};  ///< plays the scheme step by step, only at the times of step_moments()
+  /// If given, the scheme is played step by step, and only the times of step_moments() can be computed.
+  std::optional<Stepping> stepping = {};
 };
 
-/// Checks that a pose can have these weights. Errors: kUsage for a motion that is not blend shapes, for a number of
-/// weights other than that of targets, and for a weight that is not finite.
+/// Checks that a motion can have a pose with these weights. Errors: kUsage for a motion that is not blend shapes, for a
+/// number of weights other than the number of targets, and for a weight that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);
 
-/// The moments in the order of the output. At most one list is not empty; if both are empty, the mesh is at rest.
+/// The moments at which normals are computed, in the order of the output. At most one of the two lists is not empty. If
+/// both are empty, the mesh is at rest.
 struct Moments {
   std::vector<double> times;
   std::vector<std::vector<double>> weights;
@@ -91,53 +94,54 @@ struct Moments {
   }
 };
 
-/// The largest angle between played normals and the normals of the same scheme at random access, at the same t.
+/// The error of playback: the largest angle between normals that a scheme plays step by step and normals that it
+/// computes directly at the same t.
 struct Drift {
-  double largest = 0;      ///< radians
+  double largest = 0;      ///< the angle in radians
   std::size_t output = 0;  ///< the first output with this angle
-  double time = 0;         ///< time, or the weight of the target
+  double time = 0;         ///< the time, or the weight of the target, at which this angle occurs
 };
 
-/// A mesh at one moment.
+/// The positions and normals of a mesh at one moment.
 struct Pose {
-  std::vector<float> positions;  ///< (V, 3)
-  std::vector<float> normals;    ///< (elements, 3)
+  std::vector<float> positions;  ///< positions of all vertices, (V, 3)
+  std::vector<float> normals;    ///< normals of all elements, (elements, 3)
 };
 
 class NormalSampler {
  public:
-  /// Makes a sampler. The motion must be valid or a mesh at rest, and must outlive the sampler. Errors: those of
+  /// Makes a sampler of a motion, which must be valid or a mesh at rest, and must outlive the sampler. Errors: those of
   /// make_groups() and make_scheme(). kUsage for faces with a weighting other than area, and for the length kArea with
   /// another weighting. kUsage for a scheme with another weighting, with the length kArea, with elements that it does
-  /// not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that has no sequential
-  /// form.
+  /// not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that cannot be played
+  /// step by step.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
-  /// Makes a sampler of a stream: a pose at a time reads the two keyframes around it, and a pose of weights reads all
-  /// keyframes. Errors: also those of the stream, here and for each pose.
+  /// Makes a sampler of a stream. A pose at a time reads the two keyframes around the time, and a pose of weights reads
+  /// all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
-  /// Computes the pose at a time. `evaluations` is the number of consecutive times in its segment, including this one;
-  /// data that is prepared for the first of them serves all. Errors: those of find_instant(); kUsage if the time is not
-  /// a step of the playback.
+  /// Computes the pose at a time in seconds. `evaluations` tells how many consecutive requests, including this one, are
+  /// for times in the same segment. The sampler uses it to decide whether preparing the segment pays. Errors: those of
+  /// find_instant(); kUsage if the sampler plays steps and the time is not one of them.
   [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
 
   /// Computes the pose for weights. Errors: those of check_weights(); kUsage for weights with which a vertex exceeds
   /// the range of float32 and, with a scheme, for weights that are not between the base and one target.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
-  /// Computes the pose of keyframe 0, the only pose of a mesh at rest. A stream must hold that keyframe.
+  /// Computes the pose of keyframe 0, which is the only pose of a mesh at rest. A stream must hold keyframe 0.
   [[nodiscard]] Pose at_rest() const;
 
-  /// Returns the number of faces, vertices or corners.
+  /// Returns the number of outputs: faces, vertices or corners.
   [[nodiscard]] std::size_t output_count() const noexcept;
 
-  /// Returns the element of each vertex or corner; empty for faces.
+  /// Returns the element of each output; the span is empty for faces, which are their own elements.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept;
 
-  /// Returns the normals of a pose for every output: (outputs, 3).
+  /// Returns the normals of a pose, copied to every output: (outputs, 3).
   [[nodiscard]] std::vector<float> normals_of_outputs(const Pose& pose) const;
 
-  /// Returns the largest drift of all poses so far; zero without stepping.
+  /// Returns the largest drift of all poses so far; it is zero without stepping.
   [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
  private:
@@ -146,25 +150,26 @@ class NormalSampler {
 
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
-  // Computes area-weighted normals, and prepares for further moments of the segment.
+  // Computes area-weighted normals at t, and prepares data for later moments in the same segment if this pays.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
-  // Computes normals for this moment only.
+  // Computes normals for this moment only, without preparing data for others.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
-  // Computes normals by the scheme; `time` is used to report the drift.
+  // Computes normals with the scheme. `time` is only used to report where the drift is largest.
   [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
-  // Scales the normals to length 1 if the options demand it.
+  // Returns the normals as floats, scaled to length 1 if the options demand it.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   }
 
-  std::unique_ptr<MotionStream> whole_ = {};  // used if a motion was given
+  std::unique_ptr<MotionStream> whole_ = {};  // the stream around the motion, if a motion was given to make()
   MotionStream* stream_;
   const Motion* motion_;  // the motion of the stream
   SampleOptions options_;
-  std::unique_ptr<const NormalGroups> groups_;     // except for faces; prepared normals refer to these groups
-  NormalCurves curves_;                            // curves of the current segment
-  std::shared_ptr<SchemeNormals> scheme_normals_;  // used with a scheme, for the current segment
+  // The groups of vertices or corners, to which prepared normals refer; nullptr for faces.
+  std::unique_ptr<const NormalGroups> groups_;
+  NormalCurves curves_;                            // the curves of the current segment
+  std::shared_ptr<SchemeNormals> scheme_normals_;  // the scheme for the current segment; nullptr without a scheme
   std::optional<std::size_t> segment_;             // the number of the current segment
   Drift drift_;
 };
@@ -174,8 +179,8 @@ class NormalSampler {
 /// the motion has no segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
-/// Returns, for each time, the number of consecutive times in the same segment, counted from this time on: the argument
-/// `evaluations` of NormalSampler::at_time(). Errors: those of find_instant()
+/// Returns, for each time, how many consecutive times from this one on are in the same segment. This number is the
+/// argument `evaluations` of NormalSampler::at_time(). Errors: those of find_instant().
 [[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };
@@ -183,33 +188,36 @@ enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 /// Finds a format by its name. Errors: kUsage, with all names.
 [[nodiscard]] Result<SampleFormat> make_sample_format(std::string_view name);
 
-/// Finds the format of a file by its extension; returns nothing for another extension.
+/// Finds the format of a file by its extension; returns no value for another extension.
 [[nodiscard]] std::optional<SampleFormat> find_sample_format(std::string_view path);
 
-/// The largest total size of arrays in a .npz file for a pipe, since they are in memory until it is written.
+/// The largest number of bytes of the arrays in a .npz file for a pipe. These arrays stay in memory until the file is
+/// written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 struct SampleOutput {
-  /// "-" is the standard output; %d or %0Nd in a name of .ply or .obj is replaced by the number of the moment.
+  /// The path of the output; "-" is the standard output. In a name of .ply or .obj, %d or %0Nd is replaced by the
+  /// number of the moment.
   std::string path;
   SampleFormat format = SampleFormat::kNpy;
   bool force = false;
 };
 
-/// Returns the names of the files for `count` moments, and checks before a long computation that they can be written.
-/// Errors: kUsage for normals of corners in PLY, and for several moments in one .ply or .obj; those of check_output().
+/// Returns the names of the files for `count` moments, and checks that they can be written, so that a caller can find
+/// out before a long computation. Errors: kUsage for normals of corners in PLY, and for several moments in one .ply or
+/// .obj; those of check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 
 struct SampleSummary {
-  std::size_t normals = 0;  ///< number of written normals: moments x outputs
-  std::size_t zeros = 0;    ///< number of these that are (0, 0, 0)
-  Drift drift = {};         ///< with stepping: the largest drift in this call
+  std::size_t normals = 0;  ///< number of written normals, which is moments x outputs
+  std::size_t zeros = 0;    ///< number of written normals that are (0, 0, 0)
+  Drift drift = {};         ///< the largest drift in this call; zero without stepping
 };
 
-/// Computes the poses and writes each of them immediately, so that only one is in memory. Only a .npz file for a pipe
-/// is collected in memory, since its checksums precede the bytes that they cover. progress(done, total), if given, is
-/// called after each moment.
+/// Computes the poses and writes each of them immediately, so that only one pose is in memory. Only a .npz file for a
+/// pipe is collected in memory, since its checksums precede the bytes that they are for. progress(done, total), if
+/// given, is called after each moment.
 ///
 /// Errors: those of NormalSampler, sample_files() and write_output(); kUsage for more than kMostSampleBytes in memory.
 /// All moments are checked before the first is computed, and if one of the files exists, nothing is written unless

@@ -1,5 +1,5 @@
-/// Viewers, which are programs that show a glTF file, and compressors, which rewrite it first, with their rules for
-/// stored normals.
+/// Viewers and their rules for stored normals. A viewer is a program that shows a glTF file, or a compressor, which
+/// rewrites the file before it is shown.
 ///
 /// The specification demands normalize(N + sum_k w_k D_k), with the weights of the file's tracks. Every viewer here
 /// renders normalize(N' + sum_k w'_k D'_k) instead, where N', D'_k and w'_k are the values that it stores:
@@ -33,49 +33,53 @@
 
 namespace chronormal {
 
-/// The rule by which a viewer computes the rendered normal.
+/// The rules by which viewers compute the rendered normal, which the comment at the top of this file explains.
 enum class NormalRule { kSum, kUnit, kClamped };
 
-/// The rule by which a viewer plays a track of weights. Resampled tracks have 30 samples per second and are linear in
+/// The rules by which viewers play a track of weights. A resampled track has 30 samples per second and is linear in
 /// between (steps stay steps).
 enum class TrackRule {
-  kSpecified,               ///< by appendix C of the glTF specification
-  kSplinesResampled,        ///< CUBICSPLINE is resampled from time 0 on, including the last key; others as specified
-  kAllResampled,            ///< every track is resampled from the first key of the animation on
-  kSplinesWithoutDuration,  ///< CUBICSPLINE with tangents multiplied by the elapsed share of the time between keys
-  kSplinesMisread,          ///< CUBICSPLINE by the first third of its numbers, and zero weights afterwards
+  kSpecified,  ///< as appendix C of the glTF specification demands
+  /// A CUBICSPLINE track is resampled from time 0 on, including its last key; other tracks as specified.
+  kSplinesResampled,
+  kAllResampled,  ///< every track is resampled, from the first key of the animation on
+  /// Tangents of a CUBICSPLINE track are multiplied by the elapsed share of the time between two keys.
+  kSplinesWithoutDuration,
+  /// A CUBICSPLINE track is read as the first third of its numbers, and weights are zero afterwards.
+  kSplinesMisread,
 };
 
-/// The rule by which a viewer transforms a normal by the skin of a node (docs/decisions/0022).
+/// The rules by which viewers transform a normal by the skin of a node (docs/decisions/0022).
 enum class SkinRule {
-  kBlended,           ///< by the linear part of the blended matrix of the joints
-  kInverseTranspose,  ///< by the inverse transpose of that matrix
-  kByJoint            ///< by the cofactors of each joint, then blending the unit vectors
+  kBlended,           ///< transforms by the linear part of the blended matrix of the joints
+  kInverseTranspose,  ///< transforms by the inverse transpose of that linear part
+  kByJoint            ///< transforms by the cofactors of each joint, and then blends the unit vectors
 };
 
-inline constexpr double kViewerSampleRate = 30;  ///< samples per second of resampled tracks
+inline constexpr double kViewerSampleRate = 30;  ///< number of samples per second of resampled tracks
 
 struct Viewer {
-  std::string_view name;   ///< on the command line
-  std::string_view title;  ///< for people: "three.js", "after gltfpack"
+  std::string_view name;   ///< the name on the command line
+  std::string_view title;  ///< the name for users: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
-  /// The number of bits. For kSum: of the float that stores a component of a delta. For kUnit: of each of the two
-  /// octahedral numbers that store a direction, or of the four numbers of a quaternion. For kClamped: of the integer
-  /// that stores a component, including its sign.
+  /// The number of bits of a stored number. For kSum: of the float that stores a component of a delta. For kUnit: of
+  /// each of the two octahedral numbers that store a direction, or of each of the four numbers of a quaternion. For
+  /// kClamped: of the integer that stores a component, including its sign.
   int bits = 32;
-  /// For kUnit: u is the third axis of the rotation of a quaternion. This quaternion stands for the frame that
-  /// Frisvad's rule makes from the vector as if the vector had length 1. (Building an Orthonormal Basis from a 3D Unit
-  /// Vector Without Normalization, 2012.)
+  /// For kUnit, true if u is the third axis of the rotation of a stored quaternion. The quaternion stands for the frame
+  /// that Frisvad's rule makes from the vector. The rule is for unit vectors, and is applied to a vector of any length
+  /// without change. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
   bool by_frame = false;
   bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;
   SkinRule skins = SkinRule::kBlended;
-  int weight_bits = 32;  ///< bits of a weight in a track
+  int weight_bits = 32;  ///< number of bits of a weight in a track
   double least_weight = 0;
-  bool adds_tangents = true;     ///< adds up tangents of targets; otherwise the tangents of the base are used
+  bool adds_tangents = true;     ///< true to add up tangents of targets; otherwise the tangents of the base are used
   std::size_t most_targets = 0;  ///< largest number of targets of a primitive; 0 if there is no known limit
-  std::string_view beyond = {};  ///< what the viewer does with a file that has more targets, if there is a limit
-  std::string_view source = {};  ///< where this is documented
+  /// A description of how the viewer treats a file with more targets, if there is a limit.
+  std::string_view beyond = {};
+  std::string_view source = {};  ///< the place where this behaviour is documented
 
   [[nodiscard]] constexpr bool keeps_halves() const noexcept { return normals == NormalRule::kSum && bits == 16; }
   friend bool operator==(const Viewer& a, const Viewer& b) noexcept { return a.name == b.name; }
@@ -152,33 +156,33 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
                "packages/extensions/src/ext-meshopt-compression/encoder.ts"},
 }};
 
-/// Finds the viewers of a list of names with commas between them, in the order of the list and each once; "all" selects
-/// the viewers that show a file unchanged, but not compressors. Errors: kUsage for an unknown name, with all names, and
-/// a similar one if there is one.
+/// Finds the viewers in a list of names with commas between them, in the order of the list and each once. "all" selects
+/// the viewers that show a file unchanged, which leaves out compressors. Errors: kUsage for an unknown name, with all
+/// names, and with the most similar name if there is one.
 [[nodiscard]] Result<std::vector<Viewer>> find_viewers(std::string_view names);
 
-/// Returns the value that a viewer stores for the base normal N; (0, 0, 0) for zero.
+/// Returns the value N' that a viewer stores for the base normal N; (0, 0, 0) if N is zero.
 [[nodiscard]] Vec3f kept_normal(const Viewer& viewer, const Vec3f& normal) noexcept;
 
-/// Returns the value that a viewer stores for the delta D of a target. For each unit of weight, this value is
-/// added to kept_normal().
+/// Returns the value D' that a viewer stores for the delta D of a target. For each unit of the target's weight, a
+/// viewer adds D' to kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
-/// Returns the delta that a viewer keeps, as above, from a known result of kept_normal().
+/// Returns the same value as the function above, for callers that already know the result of kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
-/// Sets weights that a viewer ignores to zero. There is a weight for each named target, or for every target if none is
-/// named.
+/// Sets those weights to zero that a viewer ignores. There is a weight for each target in `targets`, or for every
+/// target of the mesh if `targets` is empty.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// Returns the vector with which the sum of a vertex begins: N', or zero in viewers with 16-bit floats, which sum
-/// deltas separately. Each target in turn adds its weight times kept_delta() to it, in float32.
+/// Returns the vector with which the sum of a vertex begins. It is N', or zero in viewers with 16-bit floats, which sum
+/// deltas separately. Each target in turn adds its weight times kept_delta() to this vector, in float32.
 [[nodiscard]] constexpr Vec3f first_of_sum(const Viewer& viewer, const Vec3f& kept_normal) noexcept {
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// Return the normal that a viewer renders for a sum: vector_of_sum() a vector in its direction, and shown_of_sum() the
-/// unit normal itself. Both are zero or not finite if the sum is.
+/// Return the normal that a viewer renders, computed from the sum of a vertex. vector_of_sum() returns a vector in its
+/// direction, and shown_of_sum() the unit normal. The result is zero or not finite if the sum is.
 [[nodiscard]] Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 
