@@ -1,5 +1,5 @@
-/// Reads the bits of a value as another type: std::bit_cast, also where the standard library has none yet (libc++ 13).
-/// Private.
+/// Reads the bits of a value as another type, like std::bit_cast. Some standard libraries do not have std::bit_cast yet
+/// (libc++ 13).
 #ifndef CHRONORMAL_CORE_BITS_H_
 #define CHRONORMAL_CORE_BITS_H_
 

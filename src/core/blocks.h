@@ -1,4 +1,4 @@
-/// Loops over blocks of indices, in sequence or on all cores. The blocks are the same for every number of threads.
+/// Loops over blocks of indices, on this thread or on all cores. The blocks are the same for every number of threads.
 #ifndef CHRONORMAL_CORE_BLOCKS_H_
 #define CHRONORMAL_CORE_BLOCKS_H_
 
@@ -15,7 +15,7 @@ namespace chronormal::inline internal {
   return (count + block - 1) / block;
 }
 
-/// Calls body(range) for ranges of up to `block` indices that cover [0, count).
+/// Calls body(range) on all cores, for ranges of up to `block` indices that together cover [0, count).
 template <class Body>
 void parallel_blocks(std::size_t count, std::size_t block, Body body) {
   parallel_for(block_count(count, block), [&](std::size_t i) {
@@ -23,8 +23,8 @@ void parallel_blocks(std::size_t count, std::size_t block, Body body) {
   });
 }
 
-/// Calls body(i, first, last) for the ranges [first, last), numbered by i. A single range runs on this thread, since it
-/// is not worth a task.
+/// Calls body(i, first, last) on all cores for the ranges [first, last) of up to `block` indices, where i is the number
+/// of the range. A single range runs on this thread, since it is not worth a task.
 template <class Body>
 void numbered_blocks(std::size_t count, std::size_t block, const Body& body) {
   if (count == 0) return;
@@ -40,8 +40,8 @@ void parallel_each(std::size_t count, std::size_t block, const Body& body) {
   });
 }
 
-/// Calls body(i, result) for every i in [0, count), in blocks on all cores, with a separate result for each block; then
-/// calls merge(all, result) in the order of the blocks. Returns all.
+/// Calls body(i, result) for every i in [0, count), in blocks on all cores. Each block has its own result. Then calls
+/// merge(all, result) with the result of each block, in the order of the blocks, and returns `all`.
 template <class T, class Body, class Merge>
 [[nodiscard]] T parallel_fold(std::size_t count, std::size_t block, const Body& body, const Merge& merge) {
   std::vector<T> of_blocks(block_count(count, block));
@@ -53,8 +53,8 @@ template <class T, class Body, class Merge>
   return all;
 }
 
-/// Calls parallel_blocks() on all cores, or body for the whole range on this thread. A single block is not worth a
-/// task.
+/// Calls body(range) for blocks on all cores, or once for the whole range on this thread if `threads` is kOne or if
+/// there is only one block.
 template <class Body>
 void blocks_on(Threads threads, std::size_t count, std::size_t block, Body body) {
   if (threads == Threads::kOne || (0 < count && count <= block)) {

@@ -1,7 +1,8 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
-#ifdef CHRONORMAL_ALONE  // the two files of tools/two_files.py, which format numbers only for messages, and have no fmt
+// For the two files of tools/two_files.py, which are built without fmt and format numbers only for messages.
+#ifdef CHRONORMAL_ALONE
 
 #include <cstdio>
 #include <cstdlib>
@@ -58,8 +59,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// Formats a number like std::to_chars(): in the shorter of scientific and fixed notation, or in fixed notation if both
-// have the same length. fmt only provides the digits; the point and the exponent are placed here.
+// Formats a number like std::to_chars(): in the shorter one of scientific and fixed notation, or in fixed notation if
+// both have the same length. fmt provides only the digits, and this function places the point and the exponent.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);
@@ -72,7 +73,7 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
   std::string digits(mantissa.substr(0, point));
   if (point < mantissa.size()) digits += mantissa.substr(point + 1);
-  // The number is 0.DIGITS times 10 to the power of before_point.
+  // The number is 0.DIGITS times 10^before_point.
   int before_point = static_cast<int>(point) + (e < number.size() ? std::atoi(number.data() + e + 1) : 0);
   const std::size_t zeros = digits.find_first_not_of('0');
   before_point -= static_cast<int>(zeros);
@@ -87,8 +88,8 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   if (before_point <= 0) {
     fixed = "0." + std::string(static_cast<std::size_t>(-before_point), '0') + digits;
   } else if (before_point >= count) {
-    // The number is an integer with more digits than are needed to identify it: prints all of its digits instead of
-    // zeros.
+    // The number is an integer with more digits than are needed to tell it from other numbers. All of its digits are
+    // printed, and not zeros in place of the last ones.
     fixed = fmt::format("{:.0f}", value).substr(sign.size());
   } else {
     fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' +

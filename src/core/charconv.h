@@ -1,8 +1,9 @@
-/// Conversions of numbers from and to text, like <charconv>. Some standard libraries do not support floating point yet
-/// (libc++ 13, which the wasm module uses): then fast_float reads and fmt writes the same characters. Private.
+/// Converts numbers from and to text, like <charconv>. Some standard libraries cannot convert floating-point numbers
+/// yet (libc++ 13, which the wasm module uses). In their place, fast_float reads numbers and fmt writes the same
+/// characters.
 ///
-/// Libraries differ for numbers out of range: from_chars() returns result_out_of_range, or an infinite number or
-/// 0. Callers must expect both.
+/// For numbers out of range, libraries differ: from_chars() returns result_out_of_range, or an infinite number or 0.
+/// Callers must expect all of these.
 #ifndef CHRONORMAL_CORE_CHARCONV_H_
 #define CHRONORMAL_CORE_CHARCONV_H_
 
@@ -15,8 +16,8 @@ namespace chronormal::inline internal {
 using std::from_chars;
 using std::to_chars;
 #else
-// Leaves only integers to the standard library. Its names are not imported, since it may have some of the functions for
-// floating point.
+// The standard library converts only integers here. Its names are not imported, since it may have some of the functions
+// for floating-point numbers.
 template <std::integral T>
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, T& value, int base = 10) {
   return std::from_chars(first, last, value, base);
@@ -27,11 +28,12 @@ template <std::integral T>
 }
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, float& value) noexcept;
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, double& value) noexcept;
-/// Writes the fewest digits from which the same number is read back, in scientific or fixed notation, whichever is
+/// Write the fewest digits from which the same number is read back. They use scientific or fixed notation, whichever is
 /// shorter.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, float value);
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value);
-/// Writes `precision` digits: after the point, or in all if the format is `general`.
+/// Writes a number with `precision` digits after the point, or with `precision` digits in total if the format is
+/// `general`.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value, std::chars_format format,
                                             int precision);
 #endif

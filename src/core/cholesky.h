@@ -1,4 +1,5 @@
-/// Systems with a symmetric positive definite matrix, such as normal equations with a ridge.
+/// Solves linear systems with a symmetric positive definite matrix, such as normal equations with a ridge (a small
+/// number added to the diagonal).
 #ifndef CHRONORMAL_CORE_CHOLESKY_H_
 #define CHRONORMAL_CORE_CHOLESKY_H_
 
@@ -17,10 +18,10 @@ namespace chronormal::inline internal {
 class Cholesky {
  public:
   Cholesky() = default;
-  /// Factors a matrix (n, n), of which only the lower half is read. Squared pivots are replaced by `least` if they are
-  /// smaller, since rounding could make them negative. `least` must be positive
+  /// Factors a matrix (n, n), of which only the lower half is read. Rounding could make a squared pivot negative, so
+  /// squared pivots smaller than `least` are replaced by `least`, which must be positive.
   Cholesky(std::vector<double> matrix, std::size_t n, double least) : lower_(std::move(matrix)), n_(n) {
-    // Subtracts each column from everything to its right, so that inner loops go along rows.
+    // Each column is subtracted from everything to its right, so that inner loops go along rows.
     std::vector<double> column(n_);
     for (std::size_t k = 0; k < n_; ++k) {
       const double pivot = std::sqrt(std::max(lower_[k * n_ + k], least));
@@ -34,7 +35,7 @@ class Cholesky {
     }
   }
 
-  /// Replaces right-hand sides by their solutions. `values` must have n elements
+  /// Replaces right-hand sides by their solutions. Precondition: `values` has n elements.
   void solve(std::span<Vec3d> values) const {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t k = 0; k < i; ++k) values[i] = values[i] - at(i, k) * values[k];

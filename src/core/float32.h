@@ -1,6 +1,6 @@
-/// Rounds a double to the float32 that a file stores. Private.
+/// Rounds a double to the float32 that a file stores.
 ///
-/// A cast to float and back is not enough: the vectorizer of GCC 12 removes the narrowing and widening of two adjacent
+/// A cast to float and back is not enough. The vectorizer of GCC 12 removes the narrowing and widening of two adjacent
 /// values, so a vector would not be rounded.
 #ifndef CHRONORMAL_CORE_FLOAT32_H_
 #define CHRONORMAL_CORE_FLOAT32_H_

@@ -31,7 +31,7 @@ std::byte* allocate_aligned(std::size_t size) {
 #endif
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef __linux__
-  if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // the system may refuse: small pages then
+  if (alignment == kHugePage) (void)madvise(memory, whole, MADV_HUGEPAGE);  // if the system refuses, pages stay small
 #endif
   return static_cast<std::byte*>(memory);
 }

@@ -1,4 +1,5 @@
-/// Memory for arrays that are streamed: aligned to cache lines, and with huge pages for large arrays.
+/// Memory for arrays that are read or written from front to back. It is aligned to cache lines, and has huge pages for
+/// large arrays.
 #ifndef CHRONORMAL_CORE_MEMORY_H_
 #define CHRONORMAL_CORE_MEMORY_H_
 
@@ -9,18 +10,20 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes read and written in one pass from which on results bypass the caches. All arrays of results must
-/// then be aligned to 64 bytes (in recompute and the schemes, also packed). In a shared cache of 32 MiB, such results
-/// would evict data that is read next, and would be evicted before anybody reads them. Measurements on such a machine,
-/// with and without a reader afterwards, show that bypassing is faster from 20 to 30 MiB on.
+/// The number of bytes read and written in one pass from which results are written to memory directly, without the
+/// caches. All arrays of results must then be aligned to 64 bytes (in recompute and the schemes, also packed). In a
+/// shared cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody reads
+/// them. Measurements on a machine with such a cache, with and without a reader afterwards, show that this is faster
+/// from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
-/// Allocates `size` bytes, aligned as AlignedBytes are. Throws std::bad_alloc.
+/// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees them with free_aligned(). Throws
+/// std::bad_alloc.
 [[nodiscard]] std::byte* allocate_aligned(std::size_t size);
 void free_aligned(void* memory) noexcept;
 
-/// Uninitialised bytes, aligned to 64. From 8 MiB on they are aligned to 2 MiB and, on Linux, marked for huge pages,
-/// which spares most misses of the address translation. Pages that are never written cost no memory.
+/// Uninitialised bytes, aligned to 64 bytes. Arrays of 8 MiB or more are aligned to 2 MiB and, on Linux, marked for
+/// huge pages, with which most addresses are translated without a miss. Pages that are never written cost no memory.
 class AlignedBytes {
  public:
   AlignedBytes() = default;
@@ -34,15 +37,15 @@ class AlignedBytes {
     return *this;
   }
 
-  /// Sets the size, without touching the bytes or moving them. size must not be larger than capacity()
+  /// Sets the size, without touching or moving the bytes. Precondition: size is not larger than capacity().
   void resize(std::size_t size) noexcept;
-  /// Returns the memory after size() to the system if it is in huge pages; it can still be used.
+  /// Returns the memory after size() to the system if it is in huge pages. That memory can still be used.
   void release_rest() noexcept;
 
   [[nodiscard]] std::byte* data() noexcept { return data_.get(); }
   [[nodiscard]] const std::byte* data() const noexcept { return data_.get(); }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  /// Returns the largest size that there is memory for, which is the size that the object was made with.
+  /// Returns the largest possible size, which is the size that the object was made with.
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
 
  private:
@@ -73,7 +76,7 @@ class AlignedArray {
   AlignedBytes bytes_;
 };
 
-/// An allocator that gives a std::vector the memory of AlignedBytes, for streaming.
+/// An allocator with which a std::vector takes memory from AlignedBytes, for arrays that are streamed.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

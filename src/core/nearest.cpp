@@ -8,8 +8,9 @@ namespace chronormal::inline internal {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last,
-      // Rows of edit distances to the prefixes of `b`: for the prefix of `a` that is two letters shorter, one letter
-      // shorter, and for the present one.
+      // The rows of the table of edit distances between prefixes of `a` and prefixes of `b`. Each row is for one prefix
+      // of `a`: `row` for the present prefix, `last` for the prefix one letter shorter, `before` for the prefix two
+      // letters shorter.
       row(b.size() + 1);
   for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
   for (std::size_t i = 0; i < a.size(); ++i) {

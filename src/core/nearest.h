@@ -1,4 +1,4 @@
-/// Guesses which name was meant by a mistyped one. Private.
+/// Guesses which name a user meant who mistyped it.
 #ifndef CHRONORMAL_CORE_NEAREST_H_
 #define CHRONORMAL_CORE_NEAREST_H_
 
@@ -9,12 +9,13 @@
 
 namespace chronormal::inline internal {
 
-/// Returns how many letters must be inserted, deleted, replaced, or swapped with their neighbour to turn one word into
-/// the other, where no letter is edited twice (optimal string alignment). O(product of lengths).
+/// Returns the number of edits that turn one word into the other, where no letter is edited twice (optimal string
+/// alignment). An edit inserts, deletes or replaces a letter, or swaps it with its neighbour. O(product of the
+/// lengths).
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// Returns the name that is nearest to a word, the first of equals. Returns "" if none is within two letters or a third
-/// of the word, whichever is less, or if the word has more than 32 letters.
+/// Returns the name with the smallest edit distance to a word, and the first of several such names. Returns "" if that
+/// distance is more than two or more than a third of the word's length, or if the word has more than 32 letters.
 [[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string> names);
 
 }  // namespace chronormal::inline internal

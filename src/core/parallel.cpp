@@ -1,6 +1,6 @@
-// Runs loops on a pool of threads for the whole process. A loop is a Job on the stack of its caller, and is in the
-// pool's list while it may have pieces left. The caller takes pieces in order, and so do workers, whose number is
-// limited by seats.
+// Runs loops on one pool of threads for the whole process. A loop is a Job on the stack of its caller, and is in the
+// pool's list while it may have pieces that no thread has taken. The caller takes pieces in order, and so do workers.
+// The number of workers of a loop is limited; a worker that may join takes a seat.
 //
 //     a loop in a piece   is a job whose parent is the job of that piece. It shares the seats of the outermost job, so
 //                         that a ThreadLimit applies to all nested loops. Workers join nested loops when they find
@@ -38,13 +38,15 @@ namespace {
 
 constexpr std::size_t kMostThreads = 64;
 
-thread_local std::size_t thread_limit = 0;          // the limit in force for this thread; 0: none
-thread_local Interruption* interruption = nullptr;  // interruption of the computation that this thread works for
+// The limit of threads for loops that this thread begins; 0 if there is none.
+thread_local std::size_t thread_limit = 0;
+// The interruption that can end the computation for which this thread works.
+thread_local Interruption* interruption = nullptr;
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
-// Makes this thread work for the computation of an Interruption while the object lives; nullptr stands for a
-// computation that nobody can end.
+// Lets this thread work for the computation of an Interruption while the object lives. nullptr stands for a computation
+// that nobody can end.
 class InterruptionScope {
  public:
   explicit InterruptionScope(Interruption* of) : before_(std::exchange(interruption, of)) {}
@@ -88,23 +90,24 @@ ThreadLimit::~ThreadLimit() { thread_limit = before_; }
 namespace {
 
 struct Job;
-thread_local Job* current_job = nullptr;  // the job whose piece this thread runs
+thread_local Job* current_job = nullptr;  // the job one of whose pieces this thread runs
 
 // A running loop. The pool's mutex guards all members that are not constant or atomic.
 struct Job {
   const std::function<void(std::size_t)>& body;
   const std::size_t count;
-  const std::size_t threads;  // limit of the outermost job and the jobs inside it
-  Job* const parent;          // nullptr for an outermost job
+  const std::size_t threads;  // the largest number of threads for the outermost job and the jobs inside it
+  Job* const parent;          // the job in one of whose pieces this job began; nullptr for an outermost job
   Job* const outermost = parent != nullptr ? parent->outermost : this;
   Interruption* const asked = interruption;
   std::fenv_t rounding = {};
 
   std::atomic<std::size_t> next = 0;  // index of the next piece that no thread has taken
-  std::size_t seated = 1;             // threads of the outermost job and the jobs inside it
-  std::size_t helpers = 0;            // threads that run pieces of this job, beside its caller
+  // For an outermost job: number of threads that work on it and on the jobs inside it.
+  std::size_t seated = 1;
+  std::size_t helpers = 0;  // number of threads that run pieces of this job, not counting its caller
   std::exception_ptr failure = nullptr;
-  Job* after = nullptr;  // next job in the pool's list
+  Job* after = nullptr;  // the next job in the pool's list
 
   [[nodiscard]] bool has_pieces() const noexcept { return next.load(std::memory_order_relaxed) < count; }
   [[nodiscard]] bool is_inside(const Job& other) const noexcept {
@@ -130,7 +133,8 @@ std::size_t thread_count_without_limit() noexcept {
 
 class Pool {
  public:
-  // Creates the missing threads. Returns the number of threads including the caller, at most `wanted`.
+  // Creates threads that are missing. Returns the number of threads that a loop may use, including the caller; at most
+  // `wanted`.
   std::size_t provide(std::size_t wanted) noexcept {
     if (wanted <= 1 || is_forked_) return 1;
     if (worker_count_ + 1 < wanted) {
@@ -161,7 +165,8 @@ class Pool {
     mutex_.unlock();
   }
 
-  // Ends all workers when the process ends or the library is unloaded. If loops still run, it waits for no thread.
+  // Ends all workers when the process ends or when the library is unloaded. If loops still run, it does not wait for
+  // any thread.
   void end() noexcept {
     if (is_forked_) return;
     {
@@ -218,14 +223,15 @@ class Pool {
     if (--job.helpers == 0 && waiting_ > 0) changed_.notify_all();
   }
 
-  // Waits until no other thread works on the job, and meanwhile helps with the jobs inside it.
+  // Removes the job from the list, and waits until no other thread works on it. Meanwhile helps with the jobs inside
+  // it.
   void finish(Job& job) noexcept {
     std::unique_lock lock(mutex_);
     Job** place = &jobs_;
     while (*place != &job) place = &(*place)->after;
     *place = job.after;
     while (job.helpers > 0) {
-      if (is_forked_) {  // the pieces that helpers had begun are not done in this process
+      if (is_forked_) {  // pieces that helpers had begun will not be done in this process
         job.failure = std::make_exception_ptr(Interrupted());
         return;
       }
@@ -243,7 +249,8 @@ class Pool {
         changed_.wait(lock);
       }
       --waiting_;
-      if (job.asked != nullptr) {  // the interruption may belong to this thread, which alone may call its callback
+      // The interruption may belong to this thread, and only this thread may call its callback.
+      if (job.asked != nullptr) {
         lock.unlock();
         try {
           check_interruption();
@@ -265,7 +272,8 @@ class Pool {
         opened_.wait(lock);
         continue;
       }
-      // The outermost job may be destroyed as soon as nobody helps with this one, so it is read first.
+      // The job, which is on its caller's stack, may be destroyed as soon as nobody helps with it. So its outermost job
+      // is read first.
       Job& outermost = *job->outermost;
       ++outermost.seated, ++busy_;
       help(*job, lock);
@@ -274,16 +282,16 @@ class Pool {
   }
 
   std::mutex mutex_;
-  std::condition_variable opened_;  // notifies workers that there is a job
-  // Notifies callers that a job has no helpers any more, or that there is a job to help with.
+  std::condition_variable opened_;  // notified when there is a job for workers
+  // Notified when a job has no helpers any more, or when there is a job with which a waiting caller can help.
   std::condition_variable changed_;
   std::vector<std::thread> workers_;
   std::atomic<std::size_t> worker_count_ = 0;
   std::atomic<bool> is_forked_ = false;
   bool has_all_ = false, has_ended_ = false;
-  std::size_t busy_ = 0;     // workers that help
-  std::size_t waiting_ = 0;  // callers that wait for helpers
-  Job* jobs_ = nullptr;      // list of jobs in the order in which they began
+  std::size_t busy_ = 0;     // number of workers that help with a job
+  std::size_t waiting_ = 0;  // number of callers that wait for helpers
+  Job* jobs_ = nullptr;      // list of the jobs, in the order in which they began
 };
 
 // The pool is never destroyed, since a thread may use it until the very end.

@@ -1,6 +1,6 @@
-// Computes sine, cosine, arc sine, arc tangent, exponential and logarithm of one number by the polynomials of Google
-// Highway's math-inl.h. Every operation is rounded separately, so that all compilers give the same bits, which are also
-// the bits of all earlier versions of the library.
+// Computes sine, cosine, arc sine, arc tangent, exponential and logarithm of one number by the polynomials in Google
+// Highway's math-inl.h. Every operation is rounded separately, so all compilers give the same bits, which also do not
+// change from version to version of this library.
 #include "core/portable_math.h"
 
 #include <algorithm>
@@ -17,9 +17,9 @@ namespace chronormal::inline internal::portable {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The arguments beyond which exp() is infinite or 0.
+// The arguments above and below which exp() is infinite or 0.
 constexpr double kLargestExponent = 709.8, kSmallestExponent = -746;
-// The bound of |x| below which the argument reduction of exp() is valid.
+// The largest |x| for which the argument reduction of exp() is valid.
 constexpr double kFarExponent = 700;
 
 constexpr double kSine[] = {
@@ -50,7 +50,7 @@ constexpr double kExp[] = {+0.5,
                            +2.51112930892876518610661e-8,
                            +2.08860621107283687536341e-9};
 
-// Returns the sum of coefficients[i] x^i by Estrin's scheme: it splits the sum at the largest power of two, and
+// Returns the sum of coefficients[i] x^i by Estrin's scheme. The scheme splits the sum at the largest power of two, and
 // multiplies the upper half by that power of x.
 template <std::size_t kCount>
 double polynomial(double x, const double* coefficients) noexcept {
@@ -68,13 +68,13 @@ double polynomial(double x, const double (&coefficients)[kCount]) noexcept {
   return polynomial<kCount>(x, static_cast<const double*>(coefficients));
 }
 
-// Returns the sine of r, with its sign changed if `half_turns` is odd. |r| must be at most pi / 2
+// Returns the sine of r, or minus the sine if `half_turns` is odd. Precondition: |r| is at most pi / 2.
 double sine_of_reduced(double r, std::uint32_t half_turns) noexcept {
   const double x = (half_turns & 1) != 0 ? -r : r, y = x * x;
   return polynomial(y, kSine) * (y * x) + x;
 }
 
-// Returns x - q pi in extended precision.
+// Returns x - q pi in extended precision, with pi as a sum of four numbers.
 double reduced(double x, double q) noexcept {
   x = x + q * -3.1415926218032836914;
   x = x + q * -3.1786509424591713469e-8;
@@ -82,7 +82,7 @@ double reduced(double x, double q) noexcept {
   return x + q * -1.2736634327021899816e-24;
 }
 
-// Returns the integer part of x >= 0, or the largest 31-bit number if x is larger or NaN.
+// Returns the integer part of x >= 0, or 2^31 - 1 if x is larger or NaN.
 std::uint32_t whole_part(double x) noexcept { return x < 0x7FFFFFFF ? static_cast<std::uint32_t>(x) : 0x7FFFFFFF; }
 
 double power_of_two(std::int32_t exponent) noexcept {
@@ -101,7 +101,8 @@ double sin(double x) noexcept {
 double cos(double x) noexcept {
   if (x == 0) return 1;
   const double size = std::fabs(x);
-  const std::uint32_t q = 2 * whole_part(size * 0.31830988618379067153) + 1;  // an odd number of quarter turns
+  // An odd number, in units of quarter turns.
+  const std::uint32_t q = 2 * whole_part(size * 0.31830988618379067153) + 1;
   return sine_of_reduced(reduced(size, 0.5 * static_cast<std::int32_t>(q)), (q & 2) == 0 ? 1 : 0);
 }
 
@@ -147,15 +148,15 @@ double exp(double x) noexcept {
 }
 
 double exp2(double x) noexcept {
-  const double whole = std::nearbyint(x);  // its power of two is exact
+  const double whole = std::nearbyint(x);  // 2 to this power is exact
   return std::ldexp(exp((x - whole) * std::numbers::ln2), static_cast<int>(std::clamp(whole, -3000.0, 3000.0)));
 }
 
 double log(double x) noexcept {
   if (x == 0) return -kInfinity;
   if (!(x > 0) || std::isinf(x)) return x > 0 ? x : std::numeric_limits<double>::quiet_NaN();
-  // Writes x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), using the upper half of its bits; subnormal numbers are
-  // first made larger.
+  // The following writes x as 2^exponent y with y in [sqrt(1/2), sqrt(2)), using the upper half of the bits. Subnormal
+  // numbers are first multiplied by 2^54.
   constexpr std::uint64_t kOne = 0x3FF0000000000000, kRootOfHalf = 0x3FE6A09E00000000;
   const bool is_subnormal = x < std::numeric_limits<double>::min();
   const auto bits = bit_cast<std::uint64_t>(is_subnormal ? x * 0x1p54 : x);

@@ -1,4 +1,4 @@
-/// Random numbers that are the same for every standard library.
+/// Random numbers that are the same with every standard library.
 #ifndef CHRONORMAL_CORE_RANDOM_NUMBERS_H_
 #define CHRONORMAL_CORE_RANDOM_NUMBERS_H_
 
@@ -8,10 +8,10 @@
 
 namespace chronormal::inline internal {
 
-/// Returns a number in [0, 1).
+/// Returns a random number in [0, 1).
 [[nodiscard]] inline double random_part(std::mt19937& random) { return static_cast<double>(random()) / 4294967296.0; }
 
-/// Returns an index below count, which must not be 0.
+/// Returns a random index below count, which must not be 0.
 [[nodiscard]] inline std::size_t random_below(std::mt19937& random, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(random_part(random) * static_cast<double>(count)));
 }

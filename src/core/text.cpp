@@ -11,7 +11,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the number of bytes of the first character, or 0 if the text does not begin with valid UTF-8 (RFC 3629).
+// Reads the first character of a text in UTF-8 (RFC 3629) and returns its number of bytes. Returns 0 if the text does
+// not begin with valid UTF-8.
 std::size_t length_of_character(std::string_view text, std::uint32_t& character) {
   const auto byte = [text](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t first = byte(0);
@@ -55,7 +56,7 @@ std::string hexadecimal(std::uint32_t value, std::size_t digits) {
   return text;
 }
 
-// Returns the number of characters of a text in UTF-8.
+// Returns the number of characters, not of bytes, of a text in UTF-8.
 std::size_t characters_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -63,7 +64,7 @@ std::size_t characters_of(std::string_view text) {
 
 std::string digits_of(double value, std::chars_format format, int precision) {
   if (!std::isfinite(value)) return "-";
-  std::array<char, 400> text{};  // 309 digits before the point of the largest double
+  std::array<char, 400> text{};  // the largest double has 309 digits before the point
   return {text.data(), to_chars(text.data(), text.data() + text.size(), value, format, precision).ptr};
 }
 
@@ -129,7 +130,7 @@ std::string with_decimals(double value, int decimals) { return digits_of(value, 
 std::string with_digits(double value, int digits) { return digits_of(value, std::chars_format::general, digits); }
 
 std::string rounded_text(double value, std::initializer_list<double> others) {
-  constexpr int kFewest = 6, kAll = 17;  // all: these tell any two doubles apart
+  constexpr int kFewest = 6, kAll = 17;  // kAll digits tell any two doubles apart
   constexpr std::size_t kShort = 8;
   std::array<char, 32> shortest{};
   const auto end = to_chars(shortest.data(), shortest.data() + shortest.size(), value).ptr;

@@ -1,9 +1,9 @@
-/// Numbers with twice the digits of double, for sums of products that cancel. Each is the sum of two doubles, the
-/// second of which is at most half a unit in the last place of the first.
+/// Numbers with twice the digits of double, for sums of products that cancel. Each number is the sum of two doubles,
+/// and the second double is at most half a unit in the last place of the first.
 ///
-/// Source: Dekker, A floating-point technique for extending the available precision (1971). Sums and products of
-/// doubles are exact without overflow and underflow. Sums and products of two Twofold have an error of at most 2^-100
-/// relative to their operands.
+/// Source: Dekker, A floating-point technique for extending the available precision (1971). Sums and products of two
+/// doubles are exact if nothing overflows or underflows. Sums and products of two Twofold have an error of at most
+/// 2^-100 relative to their operands.
 #ifndef CHRONORMAL_CORE_TWOFOLD_H_
 #define CHRONORMAL_CORE_TWOFOLD_H_
 
@@ -23,7 +23,7 @@ struct Twofold {
     return {high, (a - of_a) + (b - of_b)};
   }
   [[nodiscard]] static Twofold product(double a, double b) noexcept {
-    // The factor that splits doubles into halves of 26 digits, whose products are exact.
+    // The factor that splits doubles into halves of 26 bits, whose products are exact.
     constexpr double kSplit = 0x1p27 + 1;
     const double a_scaled = kSplit * a, b_scaled = kSplit * b;
     const double a1 = a_scaled - (a_scaled - a), a2 = a - a1, b1 = b_scaled - (b_scaled - b), b2 = b - b1;
@@ -44,35 +44,37 @@ struct Twofold {
   }
 };
 
-/// Returns a + a_low - (b + b_low) with an error of one rounding, plus 2^-9 of that at most, even if terms cancel.
-/// |a_low| and |b_low| must be at most 2^-23 of |a| and |b|
+/// Returns a + a_low - (b + b_low). The error is at most one rounding plus 2^-9 of a rounding, even if terms cancel.
+/// Precondition: |a_low| and |b_low| are at most 2^-23 of |a| and |b|.
 [[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
   const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
-  // Most differences of floats are exact, and much larger than the difference of the low parts.
+  // Most differences of floats are exact, and much larger than the difference of the low parts. A sum in double is then
+  // good enough.
   if (a - of_high == b && b + of_high == a && std::fabs(of_low) <= 0x1p-10 * std::fabs(sum)) return sum;
   const Twofold high = Twofold::sum(a, -b), low = Twofold::sum(a_low, -b_low), both = Twofold::sum(high.high, low.high);
   return both.high + (both.low + (high.low + low.low));
 }
 
-/// Sums of products in twice the digits of double, for many sums side by side, so that cancellation leaves no rounding
+/// Many sums of products side by side, each in twice the digits of double, so that cancellation leaves no rounding
 /// error. The part that an addition loses is added up separately.
 class LongSums {
  public:
   explicit LongSums(std::size_t count) : high_(count), low_(count) {}
 
-  /// Adds factor * values. Each product is split into two that are exact.
+  /// Adds factor * values[i] to sum i. Each product is split into two products that are exact.
   void add(double factor, std::span<const float> values) noexcept {
-    // The upper half of the factor has 26 digits (Dekker 1971), so its products have 50.
+    // The upper half of the factor has 26 bits (Dekker 1971), so its products with floats have at most 50 bits.
     const double far = 0x1p27 * factor, large = far + factor - far;
     const double upper = std::isfinite(large) ? large : factor;
     add_products(upper, values);
     if (upper != factor) add_products(factor - upper, values);
   }
-  /// Adds factor * values. Each product has 53 digits and is rounded, which is enough for products that are small
-  /// against the sums.
+  /// Adds factor * values[i] to sum i. Each product is rounded to 53 bits, which is enough for products that are small
+  /// compared with the sums.
   void add(double factor, std::span<const double> values) noexcept { add_products(factor, values); }
 
-  /// Makes low at most half a unit in the last place of high. The sums are high + low.
+  /// Normalises the two parts of each sum: low becomes at most half a unit in the last place of high. The sums are high
+  /// + low.
   void settle() noexcept {
     for (std::size_t i = 0; i < high_.size(); ++i) set(i, Twofold::sum(high_[i], low_[i]));
   }

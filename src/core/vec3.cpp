@@ -5,7 +5,8 @@
 namespace chronormal {
 
 double angle_between(const Vec3d& a, const Vec3d& b) noexcept {
-  // Adding 0.0 turns -0 into 0. The product is -0 for a zero vector beside one whose components are all negative.
+  // Adding 0.0 turns -0 into 0. The dot product is -0 if one vector is zero and all components of the other are
+  // negative.
   return portable::atan2(length(cross(a, b)), dot(a, b) + 0.0);
 }
 

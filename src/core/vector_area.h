@@ -5,10 +5,11 @@
 ///
 ///     n = sum over c = 2 ... n of (p[c-1] - p0) x (p[c] - p0)
 ///
-/// which does not depend on how the polygon is cut, also if it is concave or not flat. The formula uses edges from one
-/// corner; the products of positions in Newell's formula would lose the digits of a small polygon far from the origin.
+/// This sum does not depend on the way in which the polygon is cut, even if the polygon is concave or not flat. The
+/// formula uses edges from one corner, since the products of positions in Newell's formula would lose the digits of a
+/// small polygon far from the origin.
 ///
-/// The edges need not be vectors: intervals, pairs for both ends of a segment and polynomials in t are summed by the
+/// The edges need not be vectors. Intervals, pairs for both ends of a segment, and polynomials in t are summed by the
 /// same function. A caller that bounds the error of n computes its bound in the same loop.
 #ifndef CHRONORMAL_CORE_VECTOR_AREA_H_
 #define CHRONORMAL_CORE_VECTOR_AREA_H_
@@ -20,8 +21,9 @@
 
 namespace chronormal::inline internal {
 
-/// Calls body(e, f) for each triangle of the fan of a polygon, with its edges from the first corner, in the order of
-/// the corners. edge_to(c) makes the edge to corner c, once for each c = 1 ... corners - 1.
+/// Calls body(e, f) for each triangle of the fan of a polygon, in the order of the corners. e and f are the edges of
+/// the triangle from the first corner. edge_to(c) returns the edge to corner c, and is called once for each c = 1 ...
+/// corners - 1.
 template <class EdgeTo, class Body>
 constexpr void for_fan(std::size_t corners, const EdgeTo& edge_to, const Body& body) {
   auto e = edge_to(std::size_t{1});
@@ -32,7 +34,8 @@ constexpr void for_fan(std::size_t corners, const EdgeTo& edge_to, const Body& b
   }
 }
 
-/// Returns the normal of a polygon with the positions vertex(0) ... vertex(corners - 1). Rounding errors stay in it.
+/// Returns the normal of a polygon with the positions vertex(0) ... vertex(corners - 1), which is twice its vector
+/// area. The result may contain rounding errors.
 template <class VertexAt>
 [[nodiscard]] constexpr auto twice_vector_area(std::size_t corners, const VertexAt& vertex) {
   const auto origin = vertex(std::size_t{0});

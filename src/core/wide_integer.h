@@ -1,14 +1,15 @@
-/// Integers as wide as needed, for sums of products of floats that must not round.
+/// Integers as wide as needed, for sums of products of floats that must not be rounded.
 ///
-/// Every finite float is an integer times 2^-149, so a product of two is an integer times 2^-298, and so is every sum
-/// of such products. Stored completely, it has no rounding error, even if terms cancel. It is also independent of the
-/// floating-point unit: the result is the same in every rounding mode, and with subnormal numbers flushed to zero.
+/// Every finite float is an integer times 2^-149, so the product of two floats is an integer times 2^-298, and so is
+/// every sum of such products. If the whole integer is stored, there is no rounding error, even if terms cancel. The
+/// result does not depend on the floating-point unit either: it is the same in every rounding mode, and if subnormal
+/// numbers are flushed to zero.
 ///
 ///     value = sum of digit(k) 2^(24 k),   24 bits each and signed
 ///
-/// The product of two digits has 48 bits, so thousands of them add up in 64 bits before a digit must carry. After
-/// settle() all digits lie in [-2^23, 2^23). The highest digit that is not zero then has the sign of the value, and the
-/// value is zero only if all digits are.
+/// The product of two digits has 48 bits, so thousands of products can be added up in 64 bits before a digit must
+/// carry. After settle() all digits are in [-2^23, 2^23). The highest nonzero digit then has the sign of the value, and
+/// the value is zero only if all digits are.
 ///
 /// Source: Kulisch, Computer Arithmetic and Validity (2008): an accumulator as long as the range of its products.
 #ifndef CHRONORMAL_CORE_WIDE_INTEGER_H_
@@ -29,7 +30,7 @@ namespace chronormal::inline internal {
 inline constexpr int kDigitBits = 24;
 inline constexpr std::int64_t kDigitBase = std::int64_t{1} << kDigitBits;
 
-/// A finite float as mantissa * 2^(shift - 149): a signed integer of 24 bits, and 0 <= shift <= 253.
+/// A finite float as mantissa * 2^(shift - 149). The mantissa is a signed integer of 24 bits, and 0 <= shift <= 253.
 struct FloatParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;
@@ -42,7 +43,7 @@ struct FloatParts {
   }
 };
 
-/// A finite double as mantissa * 2^(shift - 1074): a signed integer of 53 bits, and 0 <= shift <= 2045.
+/// A finite double as mantissa * 2^(shift - 1074). The mantissa is a signed integer of 53 bits, and 0 <= shift <= 2045.
 struct DoubleParts {
   std::int64_t mantissa = 0;
   unsigned shift = 0;
@@ -55,7 +56,7 @@ struct DoubleParts {
   }
 };
 
-/// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale, with the smallest possible scale.
+/// A double t in [2^-200, 1], or 0, as an integer of 53 bits times 2^-scale. The scale is as small as possible.
 struct UnitFraction {
   std::array<std::int64_t, 3> digits{};
   unsigned scale = 0;
@@ -74,7 +75,7 @@ struct UnitFraction {
   }
 };
 
-/// An integer of up to kMost digits. Only the digits that it needs are in use.
+/// An integer of up to kMost digits, of which only those that it needs are in use.
 template <std::size_t kMost>
 class WideInteger {
  public:
@@ -104,14 +105,14 @@ class WideInteger {
     digits_[k + 1] += (mantissa >> kDigitBits) * power;
   }
 
-  /// Adds factor * other. The digits of other must be settled, and |factor| at most 2^24.
+  /// Adds factor * other. The digits of `other` must be settled, and |factor| must be at most 2^24.
   template <std::size_t kOther>
   void add(const WideInteger<kOther>& other, std::int64_t factor) noexcept {
     grow(other.size());
     for (std::size_t k = 0; k < other.size(); ++k) digits_[k] += factor * other.digit(k);
   }
 
-  /// Adds sign * a * b. The digits of both must be settled; thousands of products may be added before settle().
+  /// Adds sign * a * b. The digits of a and b must be settled. Thousands of products may be added before settle().
   template <std::size_t kA, std::size_t kB>
   void add_product(const WideInteger<kA>& a, const WideInteger<kB>& b, std::int64_t sign = 1) noexcept {
     if (a.size() == 0 || b.size() == 0) return;
@@ -123,7 +124,7 @@ class WideInteger {
     }
   }
 
-  /// Adds other * t 2^t.scale, or other * 2^shift. The digits of other must be below 2^26.
+  /// Add other * t 2^t.scale, and other * 2^shift. The digits of `other` must be below 2^26.
   template <std::size_t kOther>
   void add_product(const WideInteger<kOther>& other, const UnitFraction& t) noexcept {
     for (std::size_t i = 0; i < t.digits.size(); ++i) {
@@ -140,7 +141,7 @@ class WideInteger {
     for (std::size_t k = 0; k < other.size(); ++k) digits_[k + by] += power * other.digit(k);
   }
 
-  /// Brings every digit into [-2^23, 2^23), and drops leading zeros.
+  /// Carries until every digit is in [-2^23, 2^23), and drops leading zeros.
   void settle() noexcept {
     std::int64_t carry = 0;
     for (std::size_t k = 0; k < size_ || carry != 0; ++k) {
@@ -162,11 +163,11 @@ class WideInteger {
     digits_[k] = value;
   }
 
-  /// Returns value * 2^exponent with a relative error of at most 2^-51, if it is in the range of normal doubles. The
-  /// digits must be settled.
+  /// Returns value * 2^exponent with a relative error of at most 2^-51, if the result is in the range of normal
+  /// doubles. The digits must be settled.
   [[nodiscard]] double to_double(int exponent) const noexcept {
-    // The four highest digits have at least 71 bits, counted from the highest bit that is set. The digits below them
-    // are less than one unit of the last of the four.
+    // The four highest digits have at least 71 bits, counted from the highest bit that is set. All lower digits
+    // together are less than one unit of the last of these four.
     constexpr std::size_t kTaken = 4;
     const std::size_t end = size_ < kTaken ? 0 : size_ - kTaken;
     double value = 0;
@@ -182,7 +183,7 @@ class WideInteger {
   }
 
   std::array<std::int64_t, kMost> digits_{};
-  std::size_t size_ = 0;  // number of digits in use; all higher ones are zero
+  std::size_t size_ = 0;  // number of digits in use; all higher digits are zero
 };
 
 }  // namespace chronormal::inline internal
