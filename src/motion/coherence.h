@@ -1,4 +1,5 @@
-/// Measures how well the order of vertices and faces suits the caches, from a sample of a mesh at a fixed stride.
+/// Measures how well the order of vertices and faces suits the caches. Looks only at a sample of the faces of a mesh,
+/// at equal distances.
 #ifndef CHRONORMAL_MOTION_COHERENCE_H_
 #define CHRONORMAL_MOTION_COHERENCE_H_
 
@@ -11,12 +12,13 @@
 
 namespace chronormal::inline internal {
 
-/// A small set of numbers below 2^32 - 1.
+/// A set of a few numbers below 2^32 - 1.
 class SmallSet {
  public:
   SmallSet() { slots_.fill(kEmpty); }
 
-  /// Adds a number. Returns true if the set did not have the number before. The set must hold fewer than kMost numbers
+  /// Adds a number. Returns true if the set did not have the number before. Precondition: the set has fewer than kMost
+  /// numbers.
   bool add(std::uint32_t number) {
     for (std::size_t slot = number * 2654435761U >> 22;; slot = (slot + 1) % slots_.size()) {
       if (slots_[slot] == number) return false;
@@ -33,15 +35,16 @@ class SmallSet {
   std::array<std::uint32_t, 2 * kMost> slots_;
 };
 
-/// The largest size of positions, in bytes, that may be read in any order, since they fit into a cache near the core.
+/// The largest size of positions, in bytes, at which the order of reading does not matter, since they fit into a cache
+/// near the core.
 inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 
-/// The largest number of cache lines per face (lines_per_face()) for which caches and their prefetchers need no help.
+/// The largest result of lines_per_face() for which the caches and their prefetchers need no help.
 inline constexpr double kMostLinesPerFace = 1;
 
-/// Returns the number of cache lines of packed positions that a face reads and the preceding faces did not: about 0.2
-/// on a mesh in grid order, and 3 if vertices are in random order. A pure function of the topology; takes less than
-/// 0.02 ms.
+/// Returns the number of cache lines of packed positions that a face reads and that the faces before it did not read,
+/// on average. It is about 0.2 on a mesh in grid order, and 3 if vertices are in random order. The result is a pure
+/// function of the topology. Cost: less than 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {
   constexpr std::size_t kSamples = 16, kRun = 64, kVerticesOfLine = 5;
   const std::size_t count = topology.face_count();
@@ -60,8 +63,8 @@ inline constexpr double kMostLinesPerFace = 1;
   return static_cast<double>(lines) / static_cast<double>(faces);
 }
 
-/// The number of cache lines per face above which neighbours in the mesh are not neighbours in memory. Curves are then
-/// prepared from a copy of both ends, which takes kScatteredBytes per vertex.
+/// The result of lines_per_face() above which neighbours in the mesh are not neighbours in memory. Curves are then
+/// prepared from a copy of the positions at both ends, which takes kScatteredBytes per vertex.
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 

@@ -16,7 +16,7 @@ namespace {
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
-// Returns a / b, rounded once. a must not be above b
+// Returns a / b, rounded once. Precondition: a is not above b.
 double quotient(const Twofold& a, const Twofold& b) noexcept {
   const double first = a.high / b.high;
   if (a.low == 0 && b.low == 0) return first;
@@ -78,13 +78,13 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   assert(start < end);
   if (!(start < time)) return std::isnan(time) ? time : 0.0;
   if (!(time < end)) return 1.0;
-  // Numbers whose difference exceeds the range of double are halved first. Such numbers are so large that halving is
-  // exact where it matters.
+  // If the difference of two times exceeds the range of double, all times are halved first. Such times are so large
+  // that halving is exact where it matters.
   const double scale = std::isfinite(end - start) ? 1 : 0.5;
   const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
                 whole = Twofold::sum(scale * end, -scale * start);
   LocalTime result(quotient(done, whole));
-  // The dividend below which the remainder of the division may be smaller than any double.
+  // The size of a dividend below which the remainder of the division may be smaller than any double.
   constexpr double kSmallest = 0x1p-900;
   const bool is_exact =
       done.low == 0 && whole.low == 0 && done.high >= kSmallest && std::fma(result.t, whole.high, -done.high) == 0;

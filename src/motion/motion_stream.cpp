@@ -1,5 +1,5 @@
-// A window of keyframes moves over a motion. Keyframes that leave the window give their memory to keyframes that enter
-// it, so that memory is allocated only once, for the window and for the keyframe that is read in advance.
+// Moves a window of keyframes over a motion. Keyframes that leave the window give their memory to keyframes that enter
+// it. Memory is therefore allocated only once, for the window and for the keyframe that is read in advance.
 #include "chronormal/motion/motion.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace chronormal {
 namespace {
 
-// Reads a keyframe while the caller computes. Without threads, nothing is read ahead.
+// Reads a keyframe on another thread while the caller computes. On systems without threads, nothing is read in advance.
 class ReadAhead {
  public:
 #ifndef __EMSCRIPTEN__
@@ -28,7 +28,8 @@ class ReadAhead {
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
-  // Starts to read. `read` takes the keyframe and its positions, and must live until finish().
+  // Starts to read a keyframe. `read` is called with the number of the keyframe and with memory for its positions, and
+  // must live until finish().
   template <class Read>
   void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);
@@ -37,12 +38,12 @@ class ReadAhead {
       done_ = std::async(std::launch::async, [read, keyframe, this] { return read(keyframe, positions_); });
       keyframe_ = keyframe;
     } catch (const std::system_error&) {
-      keyframe_.reset();  // without a thread, the keyframe is read on demand
+      keyframe_.reset();  // no thread was granted, so the keyframe is read when it is needed
     }
 #endif
   }
 
-  // Waits until the keyframe is read, and returns its memory.
+  // Waits until the keyframe is read, and returns the memory with its positions.
   Status finish(std::vector<float>& positions) {
     Status status = Success{};
 #ifndef __EMSCRIPTEN__
@@ -64,14 +65,14 @@ class ReadAhead {
 }  // namespace
 
 struct MotionStream::State {
-  const Motion* whole = nullptr;  // the motion in memory; otherwise nullptr, and the other members are used
+  const Motion* whole = nullptr;  // the motion in memory, or nullptr; if it is set, the other members are not used
   Motion outline = {};
   Reader read = {};
   Watcher watcher = {};
   bool keeps_all = false;
-  std::size_t first = 0, end = 0;              // the window
+  std::size_t first = 0, end = 0;              // the keyframes in the window: from `first` to before `end`
   std::vector<std::vector<float>> spare = {};  // memory of keyframes that left the window
-  // Last member, since reading must end before the data that it uses are destroyed.
+  // The last member, since reading must end before the data that it uses are destroyed.
   ReadAhead ahead = {};
 
   [[nodiscard]] std::vector<float> room() {
@@ -84,13 +85,13 @@ struct MotionStream::State {
     return positions;
   }
 
-  // Reads a keyframe, and passes it to the watcher.
+  // Reads a keyframe, and passes its positions to the watcher.
   [[nodiscard]] Status read_keyframe(std::size_t keyframe, std::span<float> positions) const {
     const Status status = read(outline, keyframe, positions);
     return status && watcher ? watcher(keyframe, positions) : status;
   }
 
-  // Waits for the keyframe that is read ahead, and drops it.
+  // Waits for the keyframe that is being read in advance, and drops it.
   void drop_ahead() {
     if (!ahead.is_under_way()) return;
     std::vector<float> read_positions;

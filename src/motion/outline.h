@@ -1,5 +1,4 @@
-/// The two parts of validate(): one checks a motion without its positions, the other the positions of one keyframe.
-/// Private.
+/// The two parts of validate(). One checks a motion without its positions, the other the positions of one keyframe.
 #ifndef CHRONORMAL_MOTION_OUTLINE_H_
 #define CHRONORMAL_MOTION_OUTLINE_H_
 
@@ -14,7 +13,7 @@ namespace chronormal::inline internal {
 /// Checks everything that validate() checks, except positions.
 [[nodiscard]] Status validate_outline(const Motion& motion);
 
-/// Checks positions that keyframe k is to get.
+/// Checks positions that are to become those of keyframe k.
 [[nodiscard]] Status validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions);
 
 }  // namespace chronormal::inline internal

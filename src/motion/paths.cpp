@@ -1,20 +1,20 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// Let e and f be edges of a face over one piece, as chords, and let the cubics differ from them by p and q times s (1 -
-// s). p is linear, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, where the derivatives are by s: both
-// sides are cubics that vanish at s = 0 and 1, with the same second derivatives. So the normal of the curve differs
-// from the normal n of the chords by
+// Let e and f be the edges of a face over one piece, as chords. Let the cubics differ from the chords by p and q times
+// s (1 - s). p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, with the derivatives by s of
+// the cubic. To see this, note that p s (1 - s) and the difference of cubic and chord are cubics that vanish at s = 0
+// and 1 and have the same second derivatives. So the normal of the curve differs from the normal n of the chords by
 //
 //     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
 //
 // added up over the triangles of the face. Both products are quadratics in s, and so is n. A quadratic is never longer
-// than the longest of its Bernstein coefficients, and nowhere shorter than the shortest of their projections on a
-// direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from below by l, and the angle between n and
-// n + d by asin(r / l). Sums over faces differ by no more than the sum of their r, so that the same bounds serve
-// vertices and corners.
+// than the longest of its Bernstein coefficients, and never shorter than the shortest projection of these coefficients
+// on a direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from below by l. The angle between n
+// and n + d is then at most asin(r / l). A sum over several faces changes by at most the sum of their r, so the same
+// bounds serve vertices and corners.
 //
-// Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of it, which changes (1) in the same way: up to
-// |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below this effect gains nothing.
+// Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of its value. This changes the normal like (1),
+// by up to |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below this change gains nothing.
 #include "chronormal/motion/paths.h"
 
 #include <algorithm>
@@ -37,7 +37,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;  // faces, or vertices
+constexpr std::size_t kBlock = 1024;  // number of faces or vertices
 
 Error wrong_path(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
@@ -45,7 +45,8 @@ VectorView<const float> packed(const std::vector<float>& numbers) {
   return VectorView<const float>::packed(std::span(numbers));
 }
 
-// Returns the velocities that a path takes from a keyframe itself. They are empty if velocities follow from positions.
+// Returns the velocities that a keyframe stores and that this kind of path uses. They are empty if velocities must be
+// computed from positions.
 const std::vector<float>& given_velocities(const Motion::Keyframe& keyframe, PathKind kind) noexcept {
   static const std::vector<float> kNone;
   if (kind == PathKind::kLinear) return kNone;
@@ -69,8 +70,8 @@ std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyfr
   return keys;
 }
 
-// Holds the keyframes that determine the cubics of a segment: its ends, and one more on each side. The first and the
-// last segment need two on their only other side.
+// Holds the keyframes that determine the cubics of a segment. They are its two ends and one more keyframe on each side,
+// or two more on the only other side for the first and the last segment.
 Status hold_cubics(MotionStream& stream, std::size_t segment) {
   const std::size_t end = stream.motion().keyframes.size() - 1;
   const std::size_t before = segment - std::min<std::size_t>(segment, 1);
@@ -82,12 +83,12 @@ struct BendSums {
   double bent = 0, way = 0;
 };
 
-// Adds the contribution of one keyframe to the two sums that bend_of() divides. The keyframe and its neighbours must be
-// held.
+// Adds the contribution of one keyframe to the two sums that bend_of() divides. Precondition: the keyframe and its
+// neighbours are held.
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
-  // Times may be uneven, so compare the middle keyframe with the point of the straight line at its time.
+  // Times may be uneven. So the middle keyframe is compared with the point of the straight line at its time.
   const double part = (middle.time - from.time) / (to.time - from.time);
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {
@@ -98,19 +99,19 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   }
 }
 
-// A vector that changes linearly over a piece, by its values at both ends.
+// A vector that changes linearly over a piece, given by its values at both ends.
 struct Ends {
   Vec3d from, to;
 };
 
-// The edge from the first corner of a face, over a piece: its chord, the deviation of the cubic from the chord, and a
-// bound of the rounding of either end.
+// The edge from the first corner of a face to another corner, over a piece: its chord, the deviation of the cubic from
+// the chord, and a bound of the rounding error at either end.
 struct PieceEdge {
   Ends chord, beside;
   double rounding = 0;
 };
 
-// Sums of products of edges, as quadratics.
+// Sums of cross products of edges, as quadratics in s.
 class Products {
  public:
   void add(const Ends& e, const Ends& f) noexcept {
@@ -128,13 +129,14 @@ class Products {
   Vec3d from_, middle_, to_;
 };
 
-// The bounds that decide, for faces of a segment, if a number of pieces is sufficient.
+// The bounds by which faces of a segment tell whether a number of pieces is sufficient.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)
       : topology_(topology), cubics_(cubics), sine_(sine) {}
 
-  // Returns the faces for which the pieces are not enough, in their order. nullptr stands for all faces.
+  // Returns the faces for which a number of pieces is not enough, in their order. If `faces` is nullptr, all faces are
+  // tried.
   [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
                                                       std::size_t pieces) const {
     const std::size_t count = faces != nullptr ? faces->size() : topology_.face_count();
@@ -180,7 +182,7 @@ class PieceBounds {
 
   [[nodiscard]] PieceEdge edge(std::uint32_t a, std::uint32_t b, double start, double end) const {
     Bernstein<Vec3d, 3> e;
-    double size = 0;  // largest coordinate
+    double size = 0;  // the largest coordinate
     for (std::size_t k = 0; k < e.size(); ++k) {
       const Vec3d &p = cubics_.control[k][a], &q = cubics_.control[k][b];
       e[k] = q - p;
@@ -203,11 +205,12 @@ struct Pieces {
   std::size_t count = 1, beyond = 0;
 };
 
-// Returns the fewest pieces that suffice for all faces for which some number of pieces suffices, or `most` if that is
-// fewer.
+// Returns the fewest pieces that suffice for all faces that any number of pieces can satisfy. Returns at most `most`,
+// even if more would be needed.
 Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);
-  std::vector<std::size_t> ladder, left;  // number of pieces of each rung, and of faces that it leaves
+  // Numbers of pieces in ascending order; for each, the number of faces for which it does not suffice.
+  std::vector<std::size_t> ladder, left;
   for (std::size_t n = 1; n <= tried; n *= 2) {
     ladder.push_back(n);
     if (n > 1 && n + n / 2 <= tried) ladder.push_back(n + n / 2);
@@ -219,8 +222,8 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
     left.push_back(never.size());
   }
   auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces should suffice for every face for which larger pieces did. This is checked once more, because the
-  // tolerance is guaranteed.
+  // Smaller pieces should suffice for every face for which larger pieces did. The code checks this once more, because
+  // the tolerance is guaranteed.
   for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
     const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
     if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;
@@ -230,11 +233,11 @@ Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
   return {ladder[rung], bounds.not_within(nullptr, ladder[rung]).size()};
 }
 
-// A maker of the keyframes of pieces, which reads the keyframes of the original stream when they are needed.
+// Computes the keyframes of pieces. Reads the keyframes of the original stream when they are needed.
 struct Cutter {
   MotionStream source;
   PathKind kind;
-  std::vector<std::size_t> first;  // keyframe of each segment, and of the end
+  std::vector<std::size_t> first;  // the first keyframe of each segment, and the last keyframe of the motion
   std::size_t segment = static_cast<std::size_t>(-1);
   CubicSegment cubics = {};  // the cubics of `segment`
 
@@ -261,8 +264,8 @@ struct Cutter {
   }
 };
 
-// Appends the keyframes of a segment except the last, without positions. Takes fewer pieces if their times would not
-// ascend.
+// Appends the keyframes of a segment except the last, without positions. Takes fewer pieces than `count` if the times
+// of the keyframes would not ascend.
 std::size_t append_pieces(const Motion::Keyframe& from, const Motion::Keyframe& to, std::size_t count, Motion& result) {
   const auto time = [&](std::size_t i) {
     const double t = static_cast<double>(i) / static_cast<double>(count);
@@ -329,7 +332,8 @@ std::vector<float> VelocityShares::velocities(std::span<const std::span<const fl
   return result;
 }
 
-// Returns the shares for the derivative at a key of the polynomial through it and its neighbours, in Lagrange form.
+// The shares are those of the derivative, at a key, of the polynomial through the key and its neighbours, in Lagrange
+// form.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());
@@ -435,7 +439,7 @@ Result<CutStream> cut_into_segments(MotionStream stream, const Path& path, std::
   outline.body_of_vertex = source.body_of_vertex;
   const double sine = portable::sin(path.tolerance / kDegreesPerRadian);
   BendSums bend;
-  double largest = 0;  // coordinate
+  double largest = 0;  // the largest coordinate
   for (std::size_t s = 0; s < cut.segments; ++s) {
     if (const Status status = cutter->enter(s); !status) return status.error();
     if (s > 0) add_bend(source, s, 1, bend);
@@ -458,7 +462,7 @@ Result<CutStream> cut_into_segments(MotionStream stream, const Path& path, std::
     if (!fit) return fit.error();
     cut.velocities = fit.value();
   }
-  cutter->segment = static_cast<std::size_t>(-1);  // marks that the keyframes of the segment are no longer held
+  cutter->segment = static_cast<std::size_t>(-1);  // the keyframes of this segment are no longer held
   const auto read = [cutter](const Motion&, std::size_t keyframe, std::span<float> positions) {
     return cutter->write(keyframe, positions);
   };

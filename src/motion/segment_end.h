@@ -1,6 +1,6 @@
 /// One end of a segment in full precision: float32 positions, and the residuals of their rounding if the motion was
 /// computed (motion/motion.h). All code that computes normals in double or in integers reads positions here. Code that
-/// loads float32 positions directly must call fits_lanes() first. Private.
+/// loads float32 positions directly must call fits_lanes() first.
 #ifndef CHRONORMAL_MOTION_SEGMENT_END_H_
 #define CHRONORMAL_MOTION_SEGMENT_END_H_
 
@@ -29,8 +29,8 @@ class SegmentEnd {
   /// Returns the position of a vertex without its residual.
   [[nodiscard]] Vec3f position(std::size_t vertex) const noexcept { return positions_[vertex]; }
 
-  /// Returns the vector from vertex a to vertex b, or from a vertex to a point. Each component is rounded once, also
-  /// far from the origin (up to a fraction of a rounding: core/twofold.h).
+  /// Return the vector from vertex a to vertex b, and the vector from a vertex to a point. Each component is rounded
+  /// once, also far from the origin (with residuals slightly more: see core/twofold.h).
   [[nodiscard]] Vec3d edge(std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(positions_[a]), q = to_double(positions_[b]);
     return has_residuals() ? difference(q, residuals_[b], p, residuals_[a]) : q - p;
@@ -39,14 +39,14 @@ class SegmentEnd {
     const Vec3d p = to_double(positions_[vertex]);
     return has_residuals() ? difference(point, {}, p, residuals_[vertex]) : point - p;
   }
-  /// Returns the vector from vertex a at another end of the segment to vertex b at this one.
+  /// Returns the vector from vertex a at the other end of the segment to vertex b at this end.
   [[nodiscard]] Vec3d way_from(const SegmentEnd& other, std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(other.positions_[a]), q = to_double(positions_[b]);
     if (!has_residuals() && !other.has_residuals()) return q - p;
     return difference(q, residual(b), p, other.residual(a));
   }
 
-  /// Calls body(part) for vectors of floats that add up to the position of a vertex.
+  /// Calls body(part) for vectors of floats whose sum is the exact position of a vertex.
   template <class Body>
   void for_parts(std::size_t vertex, const Body& body) const {
     body(positions_[vertex]);
@@ -57,7 +57,7 @@ class SegmentEnd {
       left = left - to_double(part);
     }
   }
-  static constexpr std::size_t kMostParts = 4;  // a float, and a residual of 53 bits in floats of 24 bits
+  static constexpr std::size_t kMostParts = 4;  // a float, and a residual of 53 bits as floats of 24 bits
 
   [[nodiscard]] Vec3d residual(std::size_t vertex) const noexcept {
     return has_residuals() ? residuals_[vertex] : Vec3d{};
@@ -82,7 +82,8 @@ class SegmentEnd {
   return segment.from_residuals.count > 0 || segment.to_residuals.count > 0;
 }
 
-/// Returns true if lanes can take the faces of a segment: all are triangles, and all positions are float32.
+/// Returns true if lanes can process the faces of a segment, which they can if all faces are triangles and all
+/// positions are float32 without residuals.
 [[nodiscard]] inline bool fits_lanes(const Segment& segment) noexcept {
   return segment.topology->all_triangles() && !has_residuals(segment);
 }

@@ -13,8 +13,8 @@ struct Point {
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-// Returns the sign of a sum of doubles that does not overflow. Adds the terms to a list of numbers that do not overlap
-// (Shewchuk 1997, Grow-Expansion); the largest of these has the sign of the sum.
+// Returns the sign of a sum of doubles that does not overflow. Adds the terms to a list of numbers whose bits do not
+// overlap (Shewchuk 1997, Grow-Expansion). The largest number of this list has the sign of the sum.
 int sign_of_sum(const std::array<double, 6>& terms) {
   std::array<double, 6> parts{};
   std::size_t count = 0;
@@ -32,7 +32,7 @@ int sign_of_sum(const std::array<double, 6>& terms) {
   return 0;
 }
 
-// Returns 1 if a, b, c turn left, -1 if they turn right, 0 if they are on a line.
+// Returns 1 if the path a, b, c turns left, -1 if it turns right, and 0 if the three points are on a line.
 int turn(const Point& a, const Point& b, const Point& c) {
   const auto product = [](float x, float y) { return double{x} * double{y}; };
   const std::array<double, 6> terms = {product(a.x, b.y),  -product(a.y, b.x), product(b.x, c.y),
@@ -46,7 +46,7 @@ int turn(const Point& a, const Point& b, const Point& c) {
   return sign_of_sum(terms);
 }
 
-// Returns the polygon projected to a coordinate plane, in which it is counter-clockwise.
+// Returns the polygon projected to a coordinate plane, with its corners in counter-clockwise order.
 std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<const float> positions) {
   std::array<double, 3> area = {};
   const auto at = [&](std::size_t c, std::size_t axis) { return positions[3 * std::size_t{face[c]} + axis]; };
@@ -72,8 +72,8 @@ std::vector<Point> flattened(std::span<const std::uint32_t> face, std::span<cons
   return points;
 }
 
-// Returns true if no triangle of the fan turns right. The fan then covers every part of a polygon that does not cross
-// itself exactly once.
+// Returns true if no triangle of the fan turns right. If the polygon does not cross itself, the fan then covers it
+// exactly once.
 bool is_fan_of(const std::vector<Point>& points) {
   for (std::size_t c = 2; c < points.size(); ++c)
     if (turn(points[0], points[c - 1], points[c]) < 0) return false;
@@ -96,7 +96,8 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   std::vector<std::uint32_t> rest(points.size());
   for (std::uint32_t c = 0; c < rest.size(); ++c) rest[c] = c;
   const auto corner = [&](std::size_t i) { return rest[i % rest.size()]; };
-  // Tells whether corner i can be cut off: it turns left, and no other point is in its triangle.
+  // Returns true if corner i can be cut off: the polygon turns left there, and no other point is in the triangle of the
+  // corner.
   const auto is_ear = [&](std::size_t i) {
     const Point &a = points[corner(i + rest.size() - 1)], &b = points[corner(i)], &c = points[corner(i + 1)];
     if (turn(a, b, c) <= 0) return false;
@@ -110,8 +111,8 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   };
   std::size_t at = 1;
   while (rest.size() > 3) {
-    // Cuts ears in turn, so that triangles do not all meet in one corner; then corners on a line, which have no area. A
-    // polygon that crosses itself may have neither.
+    // Ears are cut in turn, so that triangles do not all meet in one corner. If there is no ear, a corner between two
+    // edges on one line is cut, whose triangle has no area. A polygon that crosses itself may have neither.
     std::size_t found = rest.size();
     for (std::size_t i = 0; i < rest.size() && found == rest.size(); ++i)
       if (is_ear((at + i) % rest.size())) found = (at + i) % rest.size();

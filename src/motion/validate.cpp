@@ -15,7 +15,7 @@ std::string keyframe_place(const Motion& motion, std::size_t k) {
   return place;
 }
 
-// Returns the fault of a segment in a motion of this kind, or nullptr if there is none.
+// Returns what is wrong with a segment in a motion of this kind, or nullptr if nothing is.
 const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::SegmentKeys& keys) {
   switch (kind) {
     case MotionKind::kSequence:
