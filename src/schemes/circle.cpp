@@ -1,12 +1,12 @@
-// The circle through three exact normals u0, u(1/2), u1. This circle gives the frames that interpolate best, in closed
-// form (docs/theory.md, section 4.7).
+// The schemes circle and circle:timed. They follow the circle through three exact normals, u0, u(1/2) and u1. This
+// circle gives, in closed form, the frames with which quaternion slerp interpolates best (docs/theory.md, section 4.7).
 //
 //   circle         at constant speed
 //   circle:timed   reaches the middle normal at t = 1/2 as well: t is replaced by r t / ((1-r)(1-t) + r t), where r is
 //                  the share of the arc that lies before the middle; monotone for every r in (0, 1)
 //
-// If the three normals do not span a circle (u1 = u0, or the middle one is equal or opposite to an end), both schemes
-// fall back to slerp.
+// If the three normals do not determine a circle (u1 = u0, or the middle normal is equal or opposite to an end), both
+// schemes fall back to slerp.
 
 #include "schemes/arc.h"
 #include "schemes/makers.h"
@@ -16,7 +16,7 @@ namespace {
 
 struct ThroughMiddle {
   Arc arc;
-  double share = 0.5;  // share of the arc up to the middle normal
+  double share = 0.5;  // the share of the arc's angle that lies before the middle normal
 };
 
 ThroughMiddle circle_through_middle(ElementMotion& element) {
@@ -24,7 +24,8 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
   const Vec3d to_middle = middle - u0, to_end = u1 - u0;
   const Vec3d normal = cross(to_middle, to_end);
 
-  // A circle needs three different points. On short arcs the triangle that they span is small of third order.
+  // A circle needs three different points. On a short arc, the area of their triangle is of third order in the length
+  // of the arc.
   constexpr double kSmallestChord = 1e-12, kSmallestSine = 1e-10;
   const double chords = length(to_middle) * length(to_end);
   if (length(to_end) > kSmallestChord && length(middle + u0) > kSmallestChord &&
@@ -34,8 +35,8 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     const double middle_angle = angle_along(arc, middle);
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
-  // A turn too small for float32 loses nothing, so it does not count as a fallback. Every other case without a circle
-  // does.
+  // If the turn is too small for float32, nothing is lost, so the case does not count as a fallback. Every other case
+  // without a circle does.
   constexpr double kInvisibleTurn = 1e-7;
   if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);

@@ -1,5 +1,5 @@
-/// A scalar that counts the operations on it. The evaluation of a scheme, instantiated with this scalar, counts its own
-/// operations, so the figures cannot differ from the code.
+/// A number type that counts the operations on its values. Schemes run their own evaluation with this type, so the
+/// counts that they report cannot differ from the code.
 #ifndef CHRONORMAL_SCHEMES_COUNTING_H_
 #define CHRONORMAL_SCHEMES_COUNTING_H_
 
@@ -10,14 +10,15 @@
 
 namespace chronormal::inline internal {
 
-/// A scalar whose comparisons and changes of sign are free. Branches depend on the values.
+/// A float whose additions, multiplications and so on are counted. Comparisons and changes of sign are not counted.
+/// Branches depend on the values, as with float.
 class Counting {
  public:
   Counting() = default;
   explicit Counting(float value) : value_(value) {}
   explicit Counting(int value) : value_(static_cast<float>(value)) {}
 
-  /// Returns the counts of this thread since the last reset().
+  /// Returns the counts of this thread since the last call of reset().
   static OperationCounts& counts() {
     thread_local OperationCounts counts;
     return counts;

@@ -15,12 +15,12 @@
 ///
 ///     WeightBasis basis() const                          these polynomials; may be std::optional
 ///
-/// (for a sum without it, or another formula with its own shared(), no bound below half a turn is certified), and if it
-/// reads the face itself,
+/// (for a sum without basis(), or another formula with its own shared(), no bound below half a turn is certified), and
+/// if the scheme reads the vertices of the face,
 ///
 ///     bool needs_faces = true
 ///
-/// and if elements are faster to fit together,
+/// and if elements can be fitted faster together,
 ///
 ///     void begin(const ElementBlock& block)              reads all elements before they are fitted
 ///
@@ -29,7 +29,8 @@
 ///     std::size_t state_planes() const                   how many floats the state of an element has; 0: not played
 ///     void anchor(ElementCoefficients c, double t, double step, double* state)  makes the state at t
 ///
-/// An element that has no direction at all is not fitted: its coefficients are zero, and it gets (0, 0, 0).
+/// An element that has no direction at any time is not fitted. Its coefficients are zero, and its normals are (0, 0,
+/// 0).
 #ifndef CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 #define CHRONORMAL_SCHEMES_CURVE_SCHEME_H_
 
@@ -46,7 +47,7 @@
 
 namespace chronormal::inline internal {
 
-/// One element while it is fitted.
+/// One element of a block while a scheme is fitted to it.
 class ElementMotion {
  public:
   /// Creates the i-th element of a block.
@@ -64,12 +65,12 @@ class ElementMotion {
   [[nodiscard]] std::size_t element() const { return element_; }
   [[nodiscard]] bool is_face() const { return is_face_; }
   [[nodiscard]] const ControlNormals& control_normals() const { return normals_; }
-  /// Return the exact unit normals at the ends: u0, u1 of docs/theory.md.
+  /// Return the exact unit normals at t = 0 and t = 1, which are u0 and u1 in docs/theory.md.
   [[nodiscard]] const UnitNormal& start() const { return start_; }
   [[nodiscard]] const UnitNormal& end() const { return end_; }
 
-  /// Returns the exact unit normal inside the segment. A collapse exactly there counts as a fallback, and the result is
-  /// the limit from before.
+  /// Returns the exact unit normal at a t inside the segment. If the element collapses exactly there, the result is the
+  /// limit from earlier times, and counts as a fallback.
   [[nodiscard]] Vec3d node(double t) {
     const Vec3d exact = block_.exact ? unit(block_.exact(index_, t)) : Vec3d{};
     if (exact != Vec3d{}) return exact;
@@ -78,7 +79,7 @@ class ElementMotion {
     return u.vector;
   }
 
-  /// Records that this element got a stated fallback.
+  /// Records that a documented fallback was used for this element.
   void use_fallback() { used_fallback_ = true; }
   [[nodiscard]] bool used_fallback() const { return used_fallback_; }
 
@@ -93,19 +94,20 @@ class ElementMotion {
   bool used_fallback_ = false;
 };
 
-/// Writes a vector into the planes 3k, 3k + 1, 3k + 2 of one element that is being fitted.
+/// Writes vector k of an element that is being fitted, which has the planes 3k, 3k + 1 and 3k + 2.
 inline void put_vector(double* c, std::size_t k, const Vec3d& v) {
   c[3 * k] = v.x;
   c[3 * k + 1] = v.y;
   c[3 * k + 2] = v.z;
 }
 
-/// A store for values of elements in blocks (kernels/curve_kernels.h) while they are computed.
+/// A store for float32 values of elements in the layout of blocks (kernels/curve_kernels.h), which schemes fill when
+/// they are fitted or played.
 class BlockedValues {
  public:
   BlockedValues() = default;
 
-  /// Sets all values to zero. Keeps its memory if it is large enough.
+  /// Sets the size and all values to zero. Reuses the memory if it is large enough.
   void assign(std::size_t plane_count, std::size_t element_count) {
     plane_count_ = plane_count;
     element_count_ = element_count;
@@ -113,7 +115,7 @@ class BlockedValues {
     std::fill_n(values_.data(), size(), 0.0f);
   }
 
-  /// Stores one value per plane of element i.
+  /// Stores the values of element i, one for each plane.
   void put(std::size_t i, std::span<const double> values) noexcept {
     assert(values.size() == plane_count_);
     float* to = values_.data() + offset(i);
@@ -124,7 +126,7 @@ class BlockedValues {
 
   [[nodiscard]] CoefficientBlocks view() const noexcept { return {values_.data(), plane_count_, element_count_}; }
   [[nodiscard]] float* data() noexcept { return values_.data(); }
-  /// Returns the number of bytes, without the filling of the last block.
+  /// Returns the number of bytes of the values, without those that fill up the last block.
   [[nodiscard]] std::size_t bytes() const noexcept { return element_count_ * plane_count_ * sizeof(float); }
 
  private:
@@ -139,19 +141,19 @@ class BlockedValues {
   AlignedArray<float> values_;
 };
 
-/// A policy that has its own shared(), which computes the values that all elements have in common at t.
+/// A policy with a member shared(), which computes the values that all elements have in common at t.
 template <class Policy>
 concept SharesValues = requires(const Policy& policy, float* values) {
   policy.shared(0.0, values);
 };
 
-/// A policy that can be played.
+/// A policy whose scheme can be played step by step.
 template <class Policy>
 concept Playable = requires(const Policy& policy) {
   policy.state_planes();
 };
 
-/// Plays the coefficients of a CurveScheme.
+/// Plays the coefficients of a CurveScheme step by step.
 template <Playable Policy>
 class CurvePlayback final : public SchemePlayback {
  public:
@@ -191,7 +193,7 @@ class CurvePlayback final : public SchemePlayback {
   std::size_t anchor_interval_;
   std::size_t index_ = 0;
   BlockedValues state_;
-  std::vector<double> exact_state_;  // state of one element
+  std::vector<double> exact_state_;  // the state of one element in double
 };
 
 template <class Policy>
@@ -284,8 +286,8 @@ class CurveScheme final : public Scheme {
     }
   }
 
-  // Returns the coefficients of an example for counting operations: a face that turns from +x to +y, so that no formula
-  // takes a shortcut.
+  // Returns the coefficients of an example for counting operations. It is a face whose normal turns from +x to +y, so
+  // that no formula takes a shortcut.
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();
@@ -296,7 +298,8 @@ class CurveScheme final : public Scheme {
     return {c.begin(), c.end()};
   }
 
-  // Returns the segment of the example, whose triangle has edges, for schemes that read the face itself.
+  // Returns the segment of the example. Its triangle has edges that are not zero, for schemes that read the vertices of
+  // faces.
   [[nodiscard]] static Segment example_segment() {
     static const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
     static const float from[] = {0, 0, 0, 0, 1, 0, 0, 0, 1};

@@ -1,5 +1,5 @@
-/// The coefficients of a scheme for a block of elements, exactly as the scheme evaluates them. Certificates need these
-/// curves, and not samples of them.
+/// The coefficients of a scheme for a block of elements, exactly as the scheme evaluates them. Certificates bound the
+/// errors of these curves; samples of the curves would not be enough.
 #ifndef CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 #define CHRONORMAL_SCHEMES_FITTED_CURVES_H_
 
@@ -12,12 +12,12 @@
 
 namespace chronormal::inline internal {
 
-/// The coefficients of one element in a block.
+/// The coefficients of one element in a block, by the number of the plane.
 struct ElementCoefficients {
   const float* first;
 
   float operator[](std::size_t plane) const { return first[plane * kBlock]; }
-  /// Returns the vector in the planes 3k, 3k + 1, 3k + 2.
+  /// Returns the vector that is stored in the planes 3k, 3k + 1, 3k + 2.
   [[nodiscard]] Vec3f vector(std::size_t k) const { return {(*this)[3 * k], (*this)[3 * k + 1], (*this)[3 * k + 2]}; }
 };
 
@@ -26,12 +26,12 @@ struct ElementCoefficients {
   return {blocks.values + i / kBlock * kBlock * blocks.plane_count + i % kBlock};
 }
 
-/// A formula, the coefficients of a block, which are valid until the scheme is prepared again, and the weights if the
-/// formula is a sum. Other formulas are evaluated with their shared_values().
+/// The formula of a scheme, and the coefficients of a block, which are valid until the scheme is prepared again. If the
+/// formula is a sum, `basis` has its weights. Other formulas are evaluated with their shared_values().
 struct FittedCurves {
   Formula formula = Formula::kSum;
   CoefficientBlocks coefficients;
-  std::optional<WeightBasis> basis;  ///< for a sum, with a weight for each vector
+  std::optional<WeightBasis> basis;  ///< the weights of a sum, one for each vector, if they are known
 };
 
 }  // namespace chronormal::inline internal

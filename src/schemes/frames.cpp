@@ -8,8 +8,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The edges at the first corner of a face: e to the next corner, f to the previous corner. For a polygon, the edges are
-// projected into the plane of its vector area.
+// The edges at the first corner of a face: e leads to the next corner, f to the previous corner. For a polygon, the
+// edges are projected into the plane of its vector area.
 struct FaceEdges {
   Vec3d e, f;
 };
@@ -43,7 +43,7 @@ std::optional<FramePair> pair_of(const std::optional<Frame>& start, const std::o
   return FramePair{*start, *end};
 }
 
-// Returns the frame turned about its own normal.
+// Returns a frame turned about its own normal by an angle in radians.
 Frame turned(const Frame& frame, double angle) {
   const double c = portable::cos(angle), s = portable::sin(angle);
   return {c * frame.tangent + s * frame.binormal, c * frame.binormal - s * frame.tangent, frame.normal};
@@ -66,8 +66,8 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
   const double square = dot(e0, e0);
   if (square == 0) return std::nullopt;
 
-  // binormal0 = normal x tangent is f0 without its part along e0, so M maps it to the same combination of f1 and e1.
-  // The paper prints tangent1 = n1 x b1, which would be a left-handed frame with b = n x t.
+  // binormal0 = normal0 x tangent0 is f0 without its part along e0, so M maps it to f1 minus the same multiple of e1.
+  // The paper prints tangent1 = n1 x b1, which would give a left-handed frame with b = n x t.
   const Vec3d binormal = unit(within_plane(f1 - (dot(e0, f0) / square) * e1, element.end().vector));
   if (binormal == Vec3d{}) return std::nullopt;
   const Vec3d& u1 = element.end().vector;
@@ -76,7 +76,7 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
 
 std::optional<FramePair> edge_frames(const ElementMotion& element) {
   const EdgeMotion edges = edges_of(element);
-  // An edge of length zero gets the direction in which it begins to grow, or from which it has shrunk to zero.
+  // If an edge has length zero, the direction is used in which it begins to grow, or from which it has shrunk to zero.
   const Vec3d& u0 = element.start().vector;
   const Vec3d& u1 = element.end().vector;
   const Vec3d start = edges.start.e == Vec3d{} ? within_plane(edges.e_delta, u0) : edges.start.e;
@@ -111,7 +111,7 @@ std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64
 }
 
 Rotation shorter_rotation(const FramePair& frames) {
-  // R = F1 F0^T takes F0 to F1.
+  // R = F1 F0^T is the rotation that takes F0 to F1; c0, c1, c2 are its columns.
   const Frame& a = frames.at_start;
   const Frame& b = frames.at_end;
   const auto column = [](double x, const Vec3d& u, double y, const Vec3d& v, double z, const Vec3d& w) {
@@ -121,7 +121,7 @@ Rotation shorter_rotation(const FramePair& frames) {
   const Vec3d c1 = column(a.tangent.y, b.tangent, a.binormal.y, b.binormal, a.normal.y, b.normal);
   const Vec3d c2 = column(a.tangent.z, b.tangent, a.binormal.z, b.binormal, a.normal.z, b.normal);
 
-  // Compute the quaternion of R, times four times its largest component, so that no digit cancels (Shepperd 1978).
+  // v and w are the quaternion of R times four times its largest component, so that no digits cancel (Shepperd 1978).
   const double trace = c0.x + c1.y + c2.z;
   const std::array<double, 4> squares = {trace, c0.x, c1.y, c2.z};
   std::size_t largest = 0;
@@ -148,8 +148,8 @@ Rotation shorter_rotation(const FramePair& frames) {
       v = {c2.x + c0.z, c1.z + c2.y, 1 + 2 * c2.z - trace};
       break;
   }
-  // The quaternions q and -q are the same rotation; the one with w >= 0 gives the shorter arc. At exactly half a turn w
-  // is 0, and the sign of v decides, so that the choice is always the same.
+  // The quaternions q and -q are the same rotation; the quaternion with w >= 0 gives the shorter arc. At exactly half a
+  // turn w is 0, and the sign of v decides, so that the choice is always the same.
   if (w < 0) {
     w = -w;
     v = -v;

@@ -1,8 +1,8 @@
 /// The frames that a face can have, and the rotation between two frames (section 2.5 of the paper).
 ///
 /// A frame F = (tangent, binormal, normal) is an orthonormal, right-handed triple with binormal = normal x tangent. The
-/// paper asks which F0 and F1 make quaternion slerp interpolate normals best; each function here is one answer. The
-/// functions return nothing if their construction fails (singular M, an edge of no length).
+/// paper asks for which F0 and F1 quaternion slerp interpolates normals best; each function here is one answer. A
+/// function returns no value if its construction fails (singular M, an edge of length zero).
 #ifndef CHRONORMAL_SCHEMES_FRAMES_H_
 #define CHRONORMAL_SCHEMES_FRAMES_H_
 
@@ -21,25 +21,26 @@ struct FramePair {
   Frame at_start, at_end;
 };
 
-/// Returns frames through the paper's matrix M, which maps the face at t = 0, with its normal, to the face at t = 1.
+/// Returns frames by the paper's matrix M, which maps the edges and the normal of the face at t = 0 to those at t = 1.
 [[nodiscard]] std::optional<FramePair> matrix_frames(const ElementMotion& element);
-/// Returns frames whose tangent is along the first edge of the face at both ends.
+/// Returns frames whose tangents are along the first edge of the face, at t = 0 and at t = 1.
 [[nodiscard]] std::optional<FramePair> edge_frames(const ElementMotion& element);
-/// Returns frames in which F1 is F0 turned by the rotation of M (see matrix_frames()), by its polar decomposition.
+/// Returns the edge frame at t = 0, and this frame turned by the rotation in the polar decomposition of M (see
+/// matrix_frames()).
 [[nodiscard]] std::optional<FramePair> polar_frames(const ElementMotion& element);
-/// Returns the edge frames, with the second frame turned about its normal by an angle that is drawn from (seed,
-/// segment, element).
+/// Returns the edge frames, but with the second frame turned about its normal by a pseudo-random angle that depends on
+/// seed, segment and element.
 [[nodiscard]] std::optional<FramePair> random_frames(const ElementMotion& element, std::uint64_t seed);
 
-/// A rotation about an axis.
+/// A rotation about an axis through the origin.
 struct Rotation {
-  Vec3d axis;        ///< unit length, or zero if nothing turns
-  double angle = 0;  ///< radians
+  Vec3d axis;        ///< unit vector, or zero if the angle is zero
+  double angle = 0;  ///< the angle of the rotation in radians
 };
-/// Returns the rotation that takes F0 to F1, by at most half a turn.
+/// Returns the rotation that takes F0 to F1 by at most half a turn.
 [[nodiscard]] Rotation shorter_rotation(const FramePair& frames);
 
-/// Returns the path of the normal under quaternion slerp from F0 to F1 on the shorter arc (eq. 7).
+/// Returns the path of the normal when quaternion slerp turns F0 to F1 on the shorter arc (eq. 7).
 [[nodiscard]] Arc shorter_arc(const FramePair& frames);
 
 }  // namespace chronormal::inline internal

@@ -1,8 +1,9 @@
-// Lagrange interpolation through the exact unit normals at K + 1 equidistant nodes, then normalised: linear is K = 1,
-// quadratic 2, cubic 3 (section 2.2 of the paper).
+// The schemes linear, quadratic, cubic and lagrange:K. They interpolate the exact unit normals at K + 1 equidistant
+// nodes by a Lagrange polynomial of degree K, and then scale the result to length 1 (section 2.2 of the paper). K is 1
+// for linear, 2 for quadratic and 3 for cubic.
 //
-// The weights L_k(t) are the same for all elements and are computed once per t, in double; an element is a weighted
-// sum.
+// The weights L_k(t) are the same for all elements, and are computed once per t in double. The vector of an element is
+// a sum with these weights.
 
 #include <array>
 #include <cmath>
@@ -48,8 +49,8 @@ class Lagrange {
     return WeightBasis::lagrange(degree_);
   }
 
-  // Curves are played by forward differences, with K additions per component and step. This works only up to degree 3:
-  // differences of high order are smaller than the rounding of float32.
+  // Curves are played by forward differences, with K additions per component and step. This works only up to degree 3,
+  // since differences of higher order are smaller than the rounding of float32.
   [[nodiscard]] std::size_t state_planes() const { return degree_ <= 3 ? plane_count() : 0; }
 
   void anchor(ElementCoefficients c, double t, double step, double* state) const {
@@ -68,7 +69,7 @@ class Lagrange {
  private:
   [[nodiscard]] std::array<double, kMaxLagrangeDegree + 1> weights_at(double t) const {
     std::array<double, kMaxLagrangeDegree + 1> weights;
-    const double x = t * static_cast<double>(degree_);  // the nodes are 0, 1, ..., degree
+    const double x = t * static_cast<double>(degree_);  // in units in which the nodes are 0, 1, ..., degree
     for (std::size_t k = 0; k <= degree_; ++k) {
       weights[k] = 1;
       for (std::size_t j = 0; j <= degree_; ++j) {

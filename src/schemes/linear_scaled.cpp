@@ -1,6 +1,7 @@
-// Linear interpolation with one end scaled: u0 + t (s u1 - u0) has the same ends for every s > 0, and the best s makes
-// the curve faster where the true normal is faster (docs/theory.md, section 4.8). A viewer that only adds one delta can
-// do no better. The best s is found per element by a search over its logarithm.
+// The scheme linear:scaled, which is linear interpolation with one end scaled. The direction of u0 + t (s u1 - u0) is
+// right at both ends for every s > 0. With the best s, the curve is faster where the true normal is faster
+// (docs/theory.md, section 4.8). A viewer that only adds one delta can do no better. The best s of each element is
+// found by a search over its logarithm.
 
 #include "core/portable_math.h"
 #include "schemes/makers.h"
@@ -12,7 +13,7 @@ namespace {
 
 class ScaledLinear {
  public:
-  [[nodiscard]] std::size_t plane_count() const { return 6; }  // u0, s u1
+  [[nodiscard]] std::size_t plane_count() const { return 6; }  // u0 and s u1
 
   void fit(ElementMotion& element, double* c) const {
     const Vec3d u0 = element.start().vector, u1 = element.end().vector;
@@ -30,13 +31,13 @@ class ScaledLinear {
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
     if (u0 == u1) return 1;
-    // The curve would practically jump if s were beyond e^6, and in float32 the other end would lose digits.
+    // If s were beyond e^6, the curve would practically jump, and the shorter end would lose digits in float32.
     constexpr double kRange = 6;
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;
     for (std::size_t i = 0; i < kGrid; ++i)
-      points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among the points
-    // The ratio of the areas at both ends is exact for an element of degree 1, so it is one of the points.
+      points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among these points
+    // The ratio of the areas at both ends is the exact s for an element of degree 1, so it is one of the points.
     const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
     points[kGrid] = std::isnormal(areas) ? std::clamp(portable::log(areas), -kRange, kRange) : 0;
     std::sort(points.begin(), points.end());

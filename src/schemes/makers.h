@@ -1,4 +1,5 @@
-/// The functions that create schemes, one or more for each file of this folder. scheme.cpp finds them by name.
+/// The functions that create schemes, one or more for each file of this folder. scheme.cpp calls them by the name of a
+/// scheme.
 #ifndef CHRONORMAL_SCHEMES_MAKERS_H_
 #define CHRONORMAL_SCHEMES_MAKERS_H_
 

@@ -1,4 +1,5 @@
-/// The mean angular error over t as an objective, which quaternion:optimal and linear:scaled minimise per element.
+/// Computes the mean angular error of a curve over t. The schemes quaternion:optimal and linear:scaled minimise it for
+/// each element.
 #ifndef CHRONORMAL_SCHEMES_MEAN_ERROR_H_
 #define CHRONORMAL_SCHEMES_MEAN_ERROR_H_
 
@@ -13,10 +14,11 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the angle between unit vectors whose difference has this squared length, with an error below 1e-8 rad. The
-/// function uses a polynomial instead of the arc sine, since a search calls it hundreds of times per element.
+/// Returns the angle in radians between two unit vectors, given the square of the length of their difference. The error
+/// is below 1e-8 rad. The function uses a polynomial instead of the arc sine, since a search calls it hundreds of times
+/// per element.
 [[nodiscard]] inline double angle_of_squared_chord(double square) noexcept {
-  // The angle is 2 asin(sqrt(y)), y = square / 4, and asin(sqrt(y)) = pi/2 - asin(sqrt(1 - y)) in the upper half.
+  // The angle is 2 asin(sqrt(y)) with y = square / 4. For y > 1/2, asin(sqrt(y)) = pi/2 - asin(sqrt(1 - y)).
   const double y = std::min(0.25 * square, 1.0);
   const bool upper = y > 0.5;
   const double z = upper ? 1 - y : y;
@@ -32,12 +34,13 @@ namespace chronormal::inline internal {
   return upper ? kPi - 2 * half : 2 * half;
 }
 
-/// The exact unit normals of one element at equidistant interior t. (At the ends, schemes are exact.)
+/// The exact unit normals of one element at equidistant t inside the segment. (At the ends, schemes have no error.)
 class ExactSamples {
  public:
   explicit ExactSamples(const ControlNormals& normals) {
     sample(normals, kIntervals);
-    // If the normal turns fast between two samples, a coarse sum would reward the wrong curve.
+    // If the normal turns fast between two samples, a sum over few samples would favour a wrong curve. More samples are
+    // then taken.
     constexpr double kFastTurn = 0.15;
     double longest = 0;
     for (std::size_t i = 0; i + 1 < count_; ++i) {
@@ -47,9 +50,9 @@ class ExactSamples {
     if (longest > kFastTurn * kFastTurn) sample(normals, kFineIntervals);
   }
 
-  /// Returns the mean angle between the exact normal and the arc, over t.
+  /// Returns the mean angle in radians, over t, between the exact normal and the arc.
   [[nodiscard]] double mean_error(const Arc& arc) const {
-    // Positions on the arc follow from each other by a rotation, so the loop computes no sine.
+    // Each point on the arc follows from the previous one by a rotation, so the loop computes no sine.
     const double step_cosine = portable::cos(arc.angle / intervals_), step_sine = portable::sin(arc.angle / intervals_);
     double cosine = 1, sine = 0, sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -62,7 +65,7 @@ class ExactSamples {
     return sum / intervals_;
   }
 
-  /// Returns the mean angle between the exact normal and normalise((1 - t) u0 + t v), over t.
+  /// Returns the mean angle in radians, over t, between the exact normal and (1 - t) u0 + t v.
   [[nodiscard]] double mean_error_of_line(const Vec3d& u0, const Vec3d& v) const {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -1,4 +1,4 @@
-/// Finds the minimum of a function of one variable that may have several.
+/// Finds the minimum of a function of one variable that may have several local minima.
 #ifndef CHRONORMAL_SCHEMES_MINIMIZE_H_
 #define CHRONORMAL_SCHEMES_MINIMIZE_H_
 
@@ -10,13 +10,15 @@
 
 namespace chronormal::inline internal {
 
-/// Evaluates f at every point, then refines the lowest local minima by golden section. Returns the best x seen, which
-/// is never worse than the best point given. points must ascend; at most 64 of them
+/// Returns an x at which f is small. Evaluates f at every point, and then refines the lowest local minima by golden
+/// section. f is never larger at the result than at any of the given points. Precondition: points ascend, and there are
+/// at most 64.
 template <class F>
 [[nodiscard]] double minimize(std::span<const double> points, F f) {
   constexpr std::size_t kMaxPoints = 64, kMinima = 3;
   constexpr double kGolden = 0.6180339887498949;
-  // A bracket is narrow enough if the gain that is left is far below what anybody measures.
+  // A bracket is narrow enough if a better x could gain at most this fraction of f, or if the bracket itself is
+  // narrower than kNarrowest.
   constexpr double kGain = 2e-3, kNarrowest = 1e-7;
   const std::size_t n = points.size();
   assert(0 < n && n <= kMaxPoints);
@@ -50,7 +52,7 @@ template <class F>
     while (b - a > kNarrowest) {
       offer(x1, f1);
       offer(x2, f2);
-      // The slope across the bracket bounds the gain that is left, whether the minimum is smooth or a kink.
+      // The slope across the bracket bounds the possible gain, whether the minimum is smooth or a kink.
       const double span = b - a;
       if (std::fabs(f1 - f2) / (x2 - x1) * span < kGain * best && span < 1e-2) break;
       if (f1 <= f2) {

@@ -1,6 +1,6 @@
-// The t-variant cross product, eq. 5, which is exact. Random access works like NormalCurves (normals/normal_curves.h).
-// Sequential access works as in the paper, with two additions per component and step, in float32, and starts again at
-// anchors.
+// The scheme polynomial: the cross product as a quadratic in t, eq. 5, which is exact. Random access works like
+// NormalCurves (normals/normal_curves.h). Sequential access works as in the paper, with two additions per component and
+// step in float32, and starts again after every anchor_interval steps.
 
 #include <algorithm>
 #include <vector>
@@ -14,13 +14,14 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The factor beyond which an element shrinks too much to be played, since the error of the state is absolute
-// (docs/theory.md, section 4.9).
+// The largest factor by which a normal may shrink if its element is to be played in float32. The error of the state
+// does not shrink with it (docs/theory.md, section 4.9).
 constexpr double kMaxShrinkage = 4;
-// The sizes between which squares of normals and of their differences are normal (not subnormal) numbers of float32.
+// The bounds of the size of control normals. Between them, squares of normals and of their differences are normal (not
+// subnormal) numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
-// Returns whether the drift of an element stays within the stated bound.
+// Returns true if the drift of an element stays within the stated bound when it is played.
 bool can_be_played(const ControlNormals& c) {
   const double largest = largest_component(c);
   if (!(largest > kSmallestPlayed && largest < kLargestPlayed)) return false;
@@ -29,7 +30,8 @@ bool can_be_played(const ControlNormals& c) {
   return stays_above(n, kMaxShrinkage, {longest, longest, longest});
 }
 
-// Returns control normals as blocks of curves store them: rounded, and with the middle halfway if n(t) is linear.
+// Returns control normals as blocks of curves store them: rounded to float32, and with m halfway between n0 and n1 if
+// n(t) is linear.
 ControlNormals rounded(const ControlNormals& c) {
   const Vec3d n0 = to_double(to_float(c.n0)), n1 = to_double(to_float(c.n1));
   return {n0, degree(c) == 2 ? to_double(to_float(c.m)) : 0.5 * (n0 + n1), n1};
@@ -74,7 +76,7 @@ class PolynomialPlayback final : public SchemePlayback {
   std::span<const ControlNormals> normals_;
   double start_, step_;
   std::size_t anchor_interval_;
-  std::size_t index_ = 0;  // number of the current step
+  std::size_t index_ = 0;  // the number of the current step
   std::vector<QuadraticState<float>> states_;
   std::vector<bool> is_played_;
 };
@@ -100,7 +102,7 @@ class Polynomial final : public Scheme {
     return std::make_unique<PolynomialPlayback>(normals_, start, step, anchor_interval);
   }
 
-  // Counts the operations for an element of degree 2, evaluated in float32.
+  // The operations are counted for an element of degree 2 that is evaluated in float32.
   [[nodiscard]] OperationCounts operations() const override {
     using C = Counting;
     const Vec3<C> n0{C(1), C(0), C(0)}, m{C(0.7f), C(0.6f), C(0.2f)}, n1{C(0), C(1), C(0)};
@@ -120,7 +122,7 @@ class Polynomial final : public Scheme {
   }
 
  private:
-  std::span<const ControlNormals> normals_;  // control normals of the block
+  std::span<const ControlNormals> normals_;  // the control normals of the block
   NormalCurves curves_;
 };
 

@@ -1,8 +1,9 @@
-// Quaternion slerp of the frames of a face, and the normal from it (section 2.5 of the paper), for frames that are
-// constructed: matrix (the paper's), edge, polar, random. quaternion_optimal.cpp has the frames that are searched for.
+// The schemes quaternion:matrix (the paper's), quaternion:edge, quaternion:polar and quaternion:random. They construct
+// a frame of the face at each end, and interpolate the frames by quaternion slerp, which gives the normal (section 2.5
+// of the paper). quaternion_optimal.cpp has the scheme that searches for frames.
 //
-// Slerp on the shorter arc is a rotation about a fixed axis at constant speed, so it is kept as an arc (arc.h). If the
-// frames cannot be built, slerp takes their place and counts as a fallback.
+// Quaternion slerp on the shorter arc is a rotation about a fixed axis at constant speed, so its result is stored as an
+// arc (arc.h). If the frames cannot be constructed, slerp of the normals takes their place and counts as a fallback.
 
 #include "schemes/frames.h"
 #include "schemes/makers.h"

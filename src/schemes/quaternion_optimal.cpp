@@ -1,10 +1,11 @@
-// The frames that interpolate best, which answers the paper's open question (docs/theory.md, section 4.6).
+// The scheme quaternion:optimal. It uses the frames that interpolate normals best, which answers the paper's open
+// question (docs/theory.md, section 4.6).
 //
-// All pairs of frames are described by one angle phi (eq. 6), so the best is found by a search over one variable per
-// face. If a face turns mildly, the search starts from the circle through the exact normal in the middle
-// (kernels/optimal_arcs.h). Otherwise the search starts from a grid and the frames that are known by construction, and
-// uses golden section in the lowest valleys. The mean angular error of the result over t is within 0.2 percent of the
-// smallest that any quaternion slerp on the shorter arc can have.
+// All pairs of frames are described by one angle phi (eq. 6), so the best pair is found by a search over one variable
+// per face. If a face turns mildly, the search starts from the circle through the exact normal in the middle
+// (kernels/optimal_arcs.h). Otherwise the search starts from a grid of phi and from the frames that other schemes
+// construct, and refines the lowest points by golden section. The mean angular error of the result over t is within 0.2
+// percent of the smallest that any quaternion slerp on the shorter arc can have.
 
 #include <cmath>
 #include <limits>
@@ -41,15 +42,15 @@ struct OptimalQuaternion : UniformArc {
 
   static double best_phi(const ElementMotion& element, const CircleFamily& circles) {
     const ExactSamples exact(element.control_normals());
-    // If the ends are antipodal, they are half a turn apart about every axis of the family, in both directions.
+    // If the ends are antipodal, every arc of the family is half a turn, for phi in both directions.
     const double limit = circles.kind == CircleFamily::Kind::kAntipodal ? kPi : kPi / 2;
     constexpr std::size_t kGrid = 21;
     std::array<double, kGrid + 4> points;
     std::size_t count = 0;
     for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
 
-    // The grid contains slerp. Add the frames that are constructed from the edges of a face, and the circle through the
-    // middle.
+    // The grid contains slerp. The frames that are constructed from the edges of a face, and the circle through the
+    // middle normal, are added to it.
     if (element.is_face()) {
       for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
         if (!frames) continue;
@@ -66,7 +67,7 @@ struct OptimalQuaternion : UniformArc {
   }
 
   std::size_t first_ = 0;
-  std::vector<double> phis_;  // phi of each element of a block; NaN if the slower search is needed
+  std::vector<double> phis_;  // phi of each element of a block; NaN for elements that need the slower search
 };
 
 }  // namespace

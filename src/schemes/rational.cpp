@@ -1,7 +1,7 @@
-// The t-variant cross product with its normalisation in the formula (eq. 3 of the paper): three quadratics over the
-// square root of one quartic, |n(t)|^2, whose coefficients are prepared. At run time this saves a sum of squares, but
-// reads five more coefficients. The direction is that of `polynomial`, without the evaluation in double where n(t) is
-// small.
+// The scheme rational: the cross product as a function of t, with its normalisation in the formula (eq. 3 of the
+// paper). It is three quadratics over the square root of one quartic, |n(t)|^2, whose coefficients are prepared. This
+// saves a sum of squares in each evaluation, but reads five more coefficients. The direction is that of `polynomial`,
+// but without the evaluation in double where n(t) is small.
 
 #include "chronormal/core/polynomial.h"
 #include "schemes/curve_scheme.h"
@@ -10,20 +10,20 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A length, relative to control normals of length 1, that is below the rounding of float32 but whose square is well
-// above zero.
+// The length of an end that vanishes, if the longest control normal has length 1. It is below the rounding of float32,
+// but its square is well above zero.
 constexpr double kVanishingLength = 1e-7;
 
 class Rational {
  public:
-  [[nodiscard]] std::size_t plane_count() const { return 14; }  // n0, m, n1, and the quartic
+  [[nodiscard]] std::size_t plane_count() const { return 14; }  // n0, m, n1, and the five coefficients of the quartic
 
   void fit(ElementMotion& element, double* c) const {
     const ControlNormals& exact = element.control_normals();
     const double largest = maximum_number(length(exact.n0), maximum_number(length(exact.m), length(exact.n1)));
     const double scale = 1 / largest;
-    // An end that (almost) vanishes keeps its direction, with a length that only matters where the other control
-    // normals vanish too.
+    // An end that vanishes, or nearly does, keeps its direction. Its length is so small that it only matters where the
+    // other control normals have no weight.
     const auto end = [scale](const Vec3d& n, const UnitNormal& u) {
       const Vec3d scaled = scale * n;
       return length(scaled) > kVanishingLength ? scaled : kVanishingLength * u.vector;

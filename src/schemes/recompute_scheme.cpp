@@ -1,6 +1,6 @@
-// The cross product, computed again at every t: eq. 1 on the vertices at t, then eq. 2. The scheme runs
-// normals/recompute.h, and counts the operations of its formula. Interpolating two edges instead of three vertices
-// gives the same normal, costs less, and stays precise far from the origin.
+// The scheme recompute: the cross product, computed again at every t. It takes eq. 1 for the vertices at t, and then
+// eq. 2. The scheme runs normals/recompute.h, and counts the operations of its formula. Two edges are interpolated
+// instead of three vertices. This gives the same normal, costs less, and stays precise far from the origin.
 
 #include "chronormal/normals/recompute.h"
 #include "normals/curves/curve_elements.h"
@@ -37,8 +37,8 @@ class Recompute final : public Scheme {
   [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
-  // Counts the indices of all corners, and six floats for each vertex, for both ends. A closed triangle mesh has half
-  // as many vertices as faces.
+  // The bytes are those of the indices of all corners, and of six floats for each vertex, three at each end. A closed
+  // triangle mesh has half as many vertices as faces.
   [[nodiscard]] std::size_t bytes() const noexcept override {
     const std::size_t faces = segment_.topology == nullptr ? 0 : segment_.topology->face_count();
     if (faces == 0) return 0;

@@ -33,7 +33,7 @@ constexpr std::array kDescriptions = {
     SchemeDescription{"circle:timed", "the same circle, meeting the middle at t = 1/2"},
 };
 
-// The two parts of "family:parameter". The parameter may be empty.
+// The two parts of a scheme's name, "family:parameter". The parameter is empty if there is no colon.
 struct Name {
   std::string_view family, parameter;
 

@@ -1,8 +1,10 @@
-// Vector slerp: the shortest arc from u0 to u1 at constant speed (section 2.3 of the paper, its eq. 5).
+// The scheme slerp. It takes the shortest arc from u0 to u1 at constant speed (section 2.3 of the paper, eq. 5 of the
+// paper).
 //
-// If q is perpendicular to u0 in the plane of both, u(t) = cos(t T) u0 + sin(t T) q is the same curve as (sin((1-t) T)
-// u0 + sin(t T) u1) / sin T, without the division that fails at T = 0 and T = pi. Equal ends stay; antipodal ends turn
-// about a fixed perpendicular, and count as a fallback.
+// Let q be the unit vector perpendicular to u0 in the plane of u0 and u1, and T the angle between these. Then u(t) =
+// cos(t T) u0 + sin(t T) q is the same curve as (sin((1-t) T) u0 + sin(t T) u1) / sin T, but without the division that
+// fails at T = 0 and T = pi. If the ends are equal, the curve stays there. Antipodal ends turn about a fixed
+// perpendicular, and count as a fallback.
 
 #include "schemes/arc.h"
 #include "schemes/makers.h"
@@ -11,7 +13,7 @@ namespace chronormal::inline internal {
 namespace {
 
 struct Slerp {
-  [[nodiscard]] std::size_t plane_count() const { return 7; }  // u0, q, T
+  [[nodiscard]] std::size_t plane_count() const { return 7; }  // u0, q and T
 
   void fit(ElementMotion& element, double* c) const {
     const CircleFamily circles(element.start().vector, element.end().vector);
@@ -24,7 +26,8 @@ struct Slerp {
 
   [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
 
-  // The curve is played by a rotation per step (Barrera 2004, as cited by the paper, in the form that drifts least).
+  // The curve is played by a rotation per step. The paper cites Barrera (2004) for such playback; this is the form that
+  // drifts least.
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
   void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[6]), step * static_cast<double>(c[6]));

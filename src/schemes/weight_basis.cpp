@@ -27,7 +27,8 @@ WeightBasis::WeightBasis(std::size_t degree, std::vector<Coefficients> weights, 
     : degree_(degree), weights_(std::move(weights)) {
   assert(degree >= 1 && degree <= kMostDegree);
   conversion_error_ = 32 * static_cast<double>(degree) * kUnitRoundoff * largest_sum;
-  // The sum is bounded piece by piece, since a polynomial is at most its largest Bernstein coefficient.
+  // The sum of |weights| is bounded piece by piece. On a piece, a polynomial is at most its largest Bernstein
+  // coefficient.
   const std::size_t pieces = 4 * degree;
   for (std::size_t i = 0; i < pieces; ++i) {
     double sum = 0;
@@ -48,7 +49,8 @@ WeightBasis WeightBasis::lagrange(std::size_t degree) {
   std::vector<Coefficients> weights;
   Coefficients sums{};
   for (std::size_t k = 0; k <= degree; ++k) {
-    // Multiply the factors (degree x - j) / (k - j), each of degree 1, one after the other.
+    // Weight k is the product of the factors (degree x - j) / (k - j) over all j except k. Each factor has degree 1;
+    // they are multiplied one after the other.
     Coefficients p{1}, sizes{1};
     std::size_t so_far = 0;
     for (std::size_t j = 0; j <= degree; ++j) {

@@ -1,4 +1,5 @@
-/// The weights of a sum of vectors as polynomials in t. A certificate needs them besides the coefficients of a scheme.
+/// The weights in a sum of vectors, as polynomials in t. Certificates need them in addition to the coefficients of a
+/// scheme.
 #ifndef CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 #define CHRONORMAL_SCHEMES_WEIGHT_BASIS_H_
 
@@ -9,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Restrict a polynomial, given by its Bernstein coefficients, to the part after t or the part before t, in place, by
-/// de Casteljau's algorithm.
+/// Restrict a polynomial, given by its Bernstein coefficients, to the part after t, or to the part before t. Both work
+/// in place, by de Casteljau's algorithm.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {
@@ -31,8 +32,8 @@ void restrict_in_place(std::span<T> p, double a, double b) {
 
 class WeightBasis {
  public:
-  /// The largest degree. Lagrange weights of a higher degree are so large that results in float32 are mere rounding
-  /// error.
+  /// The largest degree. Lagrange weights of a higher degree are so large that results in float32 are nothing but
+  /// rounding error.
   static constexpr std::size_t kMostDegree = 27;
   using Coefficients = std::array<double, kMostDegree + 1>;
 
@@ -41,20 +42,21 @@ class WeightBasis {
   ///     WeightBasis(1, {{1, 0}, {0, 1}})        WeightBasis(3, {{1, 1, 0, 0}, {0, 0, 1, 1}})
   /// degree must be in [1, kMostDegree]
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights);
-  /// Makes the basis of Lagrange polynomials at equidistant nodes; weight k is 1 at node k.
+  /// Makes the basis of Lagrange polynomials at equidistant nodes. Weight k is 1 at node k and 0 at the other nodes.
   [[nodiscard]] static WeightBasis lagrange(std::size_t degree);
 
   [[nodiscard]] std::size_t degree() const noexcept { return degree_; }
   [[nodiscard]] std::size_t count() const noexcept { return weights_.size(); }
   [[nodiscard]] const Coefficients& weight(std::size_t k) const noexcept { return weights_[k]; }
-  /// Returns a number that is at least the sum of the |weights| at any t.
+  /// Returns a bound of the sum of |weights| at any t.
   [[nodiscard]] double most_weight() const noexcept { return most_weight_; }
-  /// Returns the error of a curve through unit vectors whose Bernstein coefficients are computed and split in double.
+  /// Returns a bound of the error that arises when the Bernstein coefficients of a curve through unit vectors are
+  /// computed and split in double.
   [[nodiscard]] double conversion_error() const noexcept { return conversion_error_; }
 
  private:
-  // Makes a basis whose weights may cancel. largest_sum is the largest sum of the |coefficients| of all weights at one
-  // place, before any cancellation in the weights.
+  // Makes a basis whose weights may be the result of cancellation. largest_sum is the largest sum of |coefficients| of
+  // all weights at one place, before anything cancels.
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights, double largest_sum);
 
   std::size_t degree_;

@@ -24,12 +24,12 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 enum class Layout { kPacked, kPackedPastCaches, kPlanes };
 
-// The place for the normals of whole blocks.
+// The memory to which the normals of whole blocks are written, and its layout.
 struct BlockResult {
   float *x, *y, *z;
   Layout layout;
 
-  // Stores the elements i, i + 1, ..., i + kStep - 1.
+  // Stores the normals of the elements i, i + 1, ..., i + kStep - 1.
   HWY_INLINE void store(std::size_t i, const Triple<Lanes>& u) const {
     store(i, Lanes3{u.x.low, u.y.low, u.z.low});
     store(i + kLanes, Lanes3{u.x.high, u.y.high, u.z.high});
@@ -48,7 +48,7 @@ struct BlockResult {
   }
 };
 
-// Prefetches the block that is read about 2 KiB later.
+// Prefetches the coefficients that are about 2 KiB further, since they are read soon.
 HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
   constexpr std::size_t kAhead = 2048 / sizeof(float);
   constexpr std::size_t kCacheLine = 64 / sizeof(float);
@@ -58,7 +58,7 @@ HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
 template <class F>
 HWY_NOINLINE void EvaluateBlocks(const CoefficientBlocks& curves, std::size_t first_block, std::size_t block_count,
                                  const SharedValues& shared, const BlockResult& result_of_caller) {
-  // The result and the shared values are copied, so that the compiler sees that no store changes them.
+  // The result and the shared values are copied, so that the compiler knows that no store changes them.
   const BlockResult result = result_of_caller;
   const SharedValues common = shared;
 
@@ -89,7 +89,7 @@ HWY_NOINLINE void AdvanceBlocks(const CoefficientBlocks& curves, std::size_t fir
   }
 }
 
-// Calls visit() with the class of the formula.
+// Calls visit() with an object of the class of the formula, for formulas that can be played.
 template <class Visitor>
 auto VisitPlayable(Formula formula, Visitor visit) {
   switch (formula) {
@@ -123,12 +123,12 @@ auto Visit(Formula formula, Visitor visit) {
   }
 }
 
-// Calls write(first block, number of blocks, memory) until all elements have their normals. The memory is a buffer if
-// vectors cannot be stored in the layout of the result, and for a last block that is not full.
+// Calls write(first block, number of blocks, memory) until the normals of all elements are written. The memory is a
+// buffer if vectors cannot be stored in the layout of the result, and also for a last block that is not full.
 template <class Write>
 void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;
-  std::size_t done = 0;  // blocks
+  std::size_t done = 0;  // number of blocks
   const bool packed = result.is_packed();
   if (packed || result.stride == 1) {
     done = result.count / kBlock;

@@ -1,5 +1,5 @@
-// The formulas of schemes. Each is written once: Lanes runs the formula, and Counting counts its operations
-// (scalars-inl.h).
+// The formulas of schemes. Each formula is written once, as a template on its scalar. With Lanes it computes, and with
+// Counting its operations are counted (scalars-inl.h).
 //
 // A formula is a class with static functions, which are templates on the scalar S, and with the number of planes that
 // it reads (0 means all planes):
@@ -10,8 +10,8 @@
 //     Triple<S> advance(const Coefficients<S>& c, const State<S>& state)   returns the unit normals of the state, and
 //                                                                          advances it by a step
 //
-// Lanes do not branch: results that depend on the element are selected, and a rare case is skipped if no lane has it.
-// Coefficients that are zero give (0, 0, 0).
+// Code for lanes does not branch. Results that depend on the element are selected, and a rare case is skipped if no
+// lane has it. Coefficients that are zero give (0, 0, 0).
 
 #include "simd/highway-inl.h"
 
@@ -30,7 +30,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Returns v scaled to length 1, or `fallback` if v is as good as zero, since opposite unit vectors can cancel.
+// Returns v scaled to length 1, or `fallback` if v is nearly zero, which happens when opposite unit vectors cancel.
 template <class S>
 HWY_INLINE Triple<S> normalized_or(const Triple<S>& v, const Triple<S>& fallback) {
   const S square = dot(v, v);
@@ -39,8 +39,8 @@ HWY_INLINE Triple<S> normalized_or(const Triple<S>& v, const Triple<S>& fallback
   return select(has_length, scale * v, fallback);
 }
 
-// The sum of kCount vectors (0: all that there are) times shared weights, normalised. If the sum vanishes, because
-// opposite ends meet in the middle, the result is the first vector.
+// The sum of kCount vectors times shared weights, scaled to length 1. If kCount is 0, all vectors of the element are
+// added. If the sum vanishes, because opposite ends meet in the middle, the result is the first vector.
 template <std::size_t kCount>
 struct WeightedSum {
   static constexpr std::size_t kPlanes = 3 * kCount, kStatePlanes = 3 * kCount;
@@ -54,7 +54,8 @@ struct WeightedSum {
     return normalized_or(sum, first);
   }
 
-  // Advances the sum and its forward differences, which are the state.
+  // Returns the unit vector of the state, which is the sum and its forward differences, and advances the state by one
+  // step.
   template <class S>
   static HWY_INLINE Triple<S> advance(const Coefficients<S>& c, const State<S>& state) {
     const Triple<S> here = vector_of(state, 0);
@@ -68,7 +69,8 @@ struct WeightedSum {
   }
 };
 
-// Eq. 3 of the paper: three quadratics over the root of a quartic, whose coefficients are in the planes 9 to 13.
+// The scheme rational (eq. 3 of the paper): three quadratics over the root of a quartic, whose coefficients are in the
+// planes 9 to 13.
 struct RationalQuadratic {
   static constexpr std::size_t kPlanes = 14;
 
@@ -78,8 +80,8 @@ struct RationalQuadratic {
         S(weights[0]) * vector_of(c, 0) + S(weights[1]) * vector_of(c, 1) + S(weights[2]) * vector_of(c, 2);
     S square = S(weights[3]) * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + S(weights[3 + k]) * c[9 + k];
-    // If the quartic is below this share of its largest coefficient, too few of its digits are correct, so the length
-    // of n is computed from n itself.
+    // If the quartic is below this fraction of its largest coefficient, too few of its digits are correct. The length
+    // of n is then computed from n itself.
     const auto has_digits = square > S(0.1f);
     const Triple<S> u = (S(1.0f) / sqrt(select(has_digits, square, S(1.0f)))) * n;
     if (!any(!has_digits)) return u;
@@ -88,9 +90,9 @@ struct RationalQuadratic {
   }
 };
 
-// Returns (sine, cosine) of the current angle, and advances it by a step. The state holds (cos, sin) of the angle on
-// the arc, and of the angle of one step. Each step is a rotation. The Chebyshev recurrence x' = 2 cos(step) x - x''
-// would need no sine, but loses digits a hundred times faster.
+// Returns the sine and cosine of the current angle, and advances the angle by one step, which is a rotation. The state
+// has cosine and sine of the angle on the arc, and of the angle of one step. The Chebyshev recurrence x' = 2 cos(step)
+// x - x'' would need no sine, but loses digits a hundred times faster.
 template <class S>
 HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   const S cosine = state[0], sine = state[1], step_cosine = state[2], step_sine = state[3];
@@ -99,7 +101,7 @@ HWY_INLINE SinCos<S> advance_turn(const State<S>& state) {
   return {sine, cosine};
 }
 
-// An arc about the origin, u(t) = cos(t A) u0 + sin(t A) q. Its planes are u0, q, A.
+// An arc of a great circle, u(t) = cos(t A) u0 + sin(t A) q. Its planes are u0, q, A.
 struct GreatArc {
   static constexpr std::size_t kPlanes = 7, kStatePlanes = 4;
 
@@ -119,7 +121,7 @@ struct GreatArc {
   }
 };
 
-// An arc about any centre (eq. 7). Its planes are w, p, q, A.
+// An arc of any circle on the sphere (eq. 7). Its planes are w, p, q, A.
 struct CircleArc {
   static constexpr std::size_t kPlanes = 10, kStatePlanes = 4;
 
@@ -139,7 +141,8 @@ struct CircleArc {
   }
 };
 
-// An arc that reaches the share in plane 10 of its angle at t = 1/2.
+// An arc of any circle that has turned by a given share of its angle at t = 1/2. Plane 10 has this share; the others
+// are those of CircleArc.
 struct TimedCircleArc {
   static constexpr std::size_t kPlanes = 11;
 
@@ -153,7 +156,7 @@ struct TimedCircleArc {
   }
 };
 
-// Turns a by the share t of half a turn about a fixed perpendicular, which is slerp to -a.
+// Turns the unit vector a about a fixed perpendicular by the share t of half a turn. This is slerp from a to -a.
 template <class S>
 HWY_INLINE Triple<S> half_turn_at(const Triple<S>& a, const S& t) {
   const S zero(0.0f), one(1.0f);
@@ -163,7 +166,7 @@ HWY_INLINE Triple<S> half_turn_at(const Triple<S>& a, const S& t) {
   return turn.cos * a + turn.sin * normalized_or(other, a);
 }
 
-// Interpolates by slerp between vectors that are only known at run time. Antipodal ones turn about a fixed
+// Interpolates by slerp between two unit vectors that are only known at run time. Antipodal vectors turn about a fixed
 // perpendicular.
 template <class S>
 HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t) {
@@ -173,7 +176,8 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   const S b_weight = turn.sin / sine;
   const Triple<S> slerp = (turn.cos - b_weight * cosine) * a + b_weight * b;
 
-  // Below 1e-4 rad, the chord and the arc differ by less than rounding, and the quotient may have been 0 / 0.
+  // For angles below 1e-4 rad, the chord is used, which differs from the arc by less than rounding. The quotient above
+  // may have been 0 / 0.
   const auto aligned = sine < S(1e-4f);
   if (!any(aligned)) return slerp;
   const auto opposite = !(cosine > S(0.0f));
@@ -183,7 +187,7 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   return select(opposite, far, chord);
 }
 
-// De Casteljau's triangle over all vectors of the element, with slerp in place of every linear interpolation.
+// De Casteljau's triangular scheme over all vectors of an element, with slerp in place of every linear interpolation.
 struct SphericalDeCasteljau {
   static constexpr std::size_t kPlanes = 0;
 

@@ -1,9 +1,11 @@
-// With the half angle h between u0 and u1, an arc about axis(phi) turns by twice beta,
+// Searches for the arc with the least mean error. Let h be half the angle between u0 and u1. An arc about axis(phi)
+// turns by twice beta, with
 //
 //     tan(beta)^2 = tan(h)^2 + y^2,  y = tan(h) tan(phi),
 //
-// and on a small part of the sphere its middle is g = y / (1 + sqrt(1 + y^2)) half chords away from the chord. The
-// search is for g, since positions along the arc are nearly linear in g, up to half a turn, where g = 1.
+// and on a small part of the sphere, the distance between the middle of the arc and the middle of the chord is g = y /
+// (1 + sqrt(1 + y^2)), in units of half the chord. The search is for g, since positions along the arc are nearly linear
+// in g, up to half a turn, at which g = 1.
 #include "schemes/kernels/optimal_arcs.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -22,12 +24,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-inline constexpr std::size_t kIntervals = 20;  // as in ExactSamples
-inline constexpr double kGain = 1e-4;          // the share of the mean error that may be left to gain
-inline constexpr double kNoError = 1e-10;      // radians; smaller errors are not searched
-inline constexpr double kLargestG = 0.77;      // an arc of 150 degrees
+inline constexpr std::size_t kIntervals = 20;  // number of intervals between samples, as in ExactSamples
+// The search ends if a better arc could gain at most this fraction of the mean error.
+inline constexpr double kGain = 1e-4;
+inline constexpr double kNoError = 1e-10;  // radians; if the error is smaller, there is no search
+inline constexpr double kLargestG = 0.77;  // the g of an arc of 150 degrees
 
-// Returns the sine of x in [0, 0.16], to the rounding of double.
+// Returns the sine of x, which must be in [0, 0.16], with the rounding error of double.
 HWY_INLINE Real small_sine(Real x) {
   const Real z = x * x;
   return x - x * z * (Real(1.0 / 6) - z * (Real(1.0 / 120) - z * (Real(1.0 / 5040) - z * Real(1.0 / 362880))));
@@ -37,8 +40,8 @@ HWY_INLINE Real small_cosine(Real x) {
   return Real(1.0) - z * (Real(1.0 / 2) - z * (Real(1.0 / 24) - z * (Real(1.0 / 720) - z * Real(1.0 / 40320))));
 }
 
-// Returns the angle between unit vectors with this squared distance: angle_of_squared_chord() of mean_error.h below a
-// right angle, and too much beyond.
+// Returns the angle in radians between two unit vectors, given the square of their distance. Below a right angle it is
+// angle_of_squared_chord() of mean_error.h; beyond, it is too large.
 HWY_INLINE Real angle_of_chord(Real square) {
   const Real z = Real(0.25) * square;
   const Real series =
@@ -53,10 +56,10 @@ HWY_INLINE Real angle_of_chord(Real square) {
   return Real(2.0) * sqrt(z) * series;
 }
 
-// A search for one element in each lane.
+// A search with one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
-  Real cosine, tangent;  // cosine and tangent of half the angle between the ends
+  Real cosine, tangent;  // the cosine and the tangent of half the angle between the ends
   Real3 exact[kIntervals - 1];
 
   HWY_INLINE Real mean_error(Real g) const {
@@ -78,13 +81,13 @@ struct Search {
   }
 };
 
-// Three arcs in ascending order, and their errors.
+// Three arcs with ascending g, and their mean errors.
 struct Bracket {
   Real low, middle, high;
   Real at_low, at_middle, at_high;
 
   HWY_INLINE RealMask holds() const { return !((at_low < at_middle) | (at_high < at_middle)); }
-  // Returns a bound of the amount by which a convex function with these three values can fall below the middle one.
+  // Returns a bound of the amount by which a convex function with these three values can fall below the middle value.
   HWY_INLINE Real gain() const {
     const Real left = middle - low, right = high - middle;
     return larger_of((at_low - at_middle) * right / left, (at_high - at_middle) * left / right);
@@ -93,10 +96,10 @@ struct Bracket {
 
 HWY_INLINE Real3 unit(const Real3& v) { return (Real(1.0) / sqrt(dot(v, v))) * v; }
 
-// Returns tan(phi) of the best arcs, and NaN for elements whose best arc this search cannot find.
+// Returns tan(phi) of the best arc of each element, or NaN if this search cannot find the best arc.
 HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) {
   const Real zero(0.0), one(1.0), none(std::numeric_limits<double>::quiet_NaN());
-  // Only elements are accepted whose normals at both ends have squares that neither overflow nor vanish.
+  // Elements are accepted only if the squares of their normals at both ends neither overflow nor vanish.
   const auto has_length = [](const Real3& v) HWY_ATTR {
     const Real square = dot(v, v);
     return (square > Real(1e-200)) & (square < Real(1e200));
@@ -115,7 +118,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   search.cosine = dot(start, search.bisector);
   const Real3 half = Real(0.5) * (end - start);
   search.tangent = sqrt(dot(half, half)) / search.cosine;
-  // An element whose normal is short against its control normals is left to the slower search.
+  // If the normal of an element is short compared with its control normals, the element is left to the slower search.
   const Real size = dot(n0, n0) + dot(m, m) + dot(n1, n1);
   Real3 before = start;
   for (std::size_t i = 0; i < kIntervals; ++i) {
@@ -137,8 +140,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   good = good & (along > zero) & (absolute(g) < Real(kLargestG));
   if (!any(good)) return none;
 
-  // The search starts with the arc through the middle normal and one arc on each side of it, at a distance that is a
-  // part of the mean error.
+  // The search starts with the arc through the middle normal and one arc on each side of it. Their distance in g is a
+  // fraction of the mean error.
   Bracket bracket;
   bracket.middle = select(good, g, zero);
   bracket.at_middle = search.mean_error(bracket.middle);
@@ -173,8 +176,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     open = open & (bracket.gain() > larger_of(Real(kGain) * bracket.at_middle, Real(kNoError)));
     if (!any(open)) break;
     const Real left = bracket.middle - bracket.low, right = bracket.high - bracket.middle;
-    // The next arc is at the lowest point of the parabola through the three arcs, and every third time at the golden
-    // section of the longer side.
+    // The next arc is at the lowest point of the parabola through the three arcs. Every third time it is at the golden
+    // section of the longer side instead.
     const Real of_low = (bracket.at_low - bracket.at_middle) / left,
                of_high = (bracket.at_high - bracket.at_middle) / right;
     const Real sum = of_low + of_high;
@@ -182,14 +185,14 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     const RealMask longer_right = right > left;
     const Real longer = select(longer_right, right, zero - left);
     if (i % 3 == 2) move = Real(0.381966011250105) * longer;
-    // The new point must differ from the middle and from the ends.
+    // The new arc must differ from the middle arc and from the arcs at the ends.
     const Real least = Real(0.05) * smaller_of(left, right);
     move = select(absolute(move) < least, Real(0.05) * longer, move);
     move = larger_of(smaller_of(move, Real(0.95) * right), Real(-0.95) * left);
     const Real x = bracket.middle + move;
     const Real at_x = search.mean_error(select(open, x, zero));
     const RealMask better = at_x<bracket.at_middle, to_right = move> zero;
-    // The old middle becomes an end if the new point is better. Otherwise the new point becomes an end.
+    // If the new arc is better, the old middle becomes an end of the bracket. Otherwise the new arc becomes an end.
     const Real end_x = select(better, bracket.middle, x), at_end = select(better, bracket.at_middle, at_x);
     const RealMask is_low = open & ((better & to_right) | !(better | to_right));
     const RealMask is_high = open & !is_low;

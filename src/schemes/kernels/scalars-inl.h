@@ -1,5 +1,4 @@
-// The types in which the formulas of schemes are written: a scalar S, vectors of three of it, and the planes of an
-// element.
+// The types in which the formulas of schemes are written: a scalar S, vectors of three S, and the planes of an element.
 //
 // S is Lanes, which computes, or Counting, which counts operations, so that each formula is written once. This file is
 // included once for each instruction set, outside of any namespace.
@@ -22,11 +21,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of elements that a step evaluates: as many as two vectors hold. If a formula is a long chain of
-// operations, such as a sine, a processor cannot look far enough ahead to stay busy with one vector after the other.
+// The number of elements that one step evaluates, which is as many as two vectors hold. If a formula is a long chain of
+// operations, such as a sine, a processor with only one vector at a time cannot look far enough ahead to stay busy.
 inline constexpr std::size_t kStep = 2 * kLanes;
 
-// One number of each of kStep elements. Every operation is one IEEE operation on each number.
+// A number for each of kStep elements. Every operation is one IEEE operation on each number.
 struct Lanes {
   Floats low, high;
 
@@ -49,7 +48,7 @@ struct Lanes {
   friend HWY_INLINE Lanes sqrt(const Lanes& a) { return {hn::Sqrt(a.low), hn::Sqrt(a.high)}; }
 };
 
-// The elements for which a condition holds. Counting has bool instead.
+// The elements for which a condition holds. For Counting, a bool takes its place.
 struct LanesMask {
   hn::Mask<FloatTag> low, high;
 };
@@ -66,12 +65,12 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
   return {hn::IfThenElse(mask.low, a.low, b.low), hn::IfThenElse(mask.high, a.high, b.high)};
 }
 
-// Returns true if a condition holds for any of the elements. Code uses this to skip rare cases, which never changes a
+// Return true if a condition holds for any of the elements. Callers use this to skip rare cases, which never changes a
 // result.
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
-// simd/trigonometry-inl.h documents what these functions must do.
+// The functions below are those that simd/trigonometry-inl.h needs, and it documents what they must do.
 HWY_INLINE Lanes absolute(const Lanes& a) { return {hn::Abs(a.low), hn::Abs(a.high)}; }
 HWY_INLINE Lanes larger_of(const Lanes& a, const Lanes& b) { return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)}; }
 HWY_INLINE Lanes smaller_of(const Lanes& a, const Lanes& b) { return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)}; }
@@ -94,7 +93,8 @@ HWY_INLINE Lanes next_bits(const Lanes& s) {
   return {next(s.low), next(s.high)};
 }
 
-// A vector of three components. (Vec3 of core/vec3.h is compiled for no instruction set and cannot take lanes.)
+// A vector of three components. (Vec3 of core/vec3.h is compiled without an instruction set, so its components cannot
+// be lanes.)
 template <class S>
 struct Triple {
   S x, y, z;
@@ -124,7 +124,7 @@ HWY_INLINE Triple<Lanes> select(const LanesMask& mask, const Triple<Lanes>& a, c
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// A reader for the coefficients of the current elements, one value per plane.
+// Reads the coefficients of the current elements, one value per plane.
 template <class S>
 struct Coefficients {
   const S* first;
@@ -133,7 +133,7 @@ struct Coefficients {
   HWY_INLINE S operator[](std::size_t plane) const { return first[plane]; }
 };
 
-// The values that change from step to step while a curve is played, one value per plane.
+// Reads and writes the values that change from step to step while a curve is played, one value per plane.
 template <class S>
 struct State {
   S* first;
@@ -166,7 +166,7 @@ struct State<Lanes> {
   }
 };
 
-// Returns the vector in the planes 3k, 3k + 1, 3k + 2.
+// Returns the vector that is stored in the planes 3k, 3k + 1, 3k + 2.
 template <template <class> class Planes, class S>
 HWY_INLINE Triple<S> vector_of(const Planes<S>& planes, std::size_t k) {
   return {planes[3 * k], planes[3 * k + 1], planes[3 * k + 2]};
