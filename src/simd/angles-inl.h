@@ -1,8 +1,8 @@
-// Finds the angle of a vector in lanes of double, with the bits of portable::atan2() for y >= 0. This file also defines
-// the type Real, with which formulas look the same as for one number.
+// Finds the angle of a vector in lanes of double. The result has the same bits as that of portable::atan2() for y >= 0.
+// This file also defines the type Real, with which formulas for lanes look the same as for one number.
 //
 // This file is included once for each instruction set, as lanes-inl.h is. The polynomial is Highway's for the arc
-// tangent on [0, 1], in the same order but never fused, like core/portable_math for one number.
+// tangent on [0, 1]. Its operations are in the same order but never fused, as in core/portable_math for one number.
 
 #include "simd/highway-inl.h"
 
@@ -21,13 +21,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// One double of each of kDoubleLanes elements. Every operation is one IEEE operation on each of them.
+// A double for each of kDoubleLanes elements. Every operation is one IEEE operation on each double.
 struct Real {
   Doubles v;
 
   Real() = default;
-  // The following two constructors convert implicitly on purpose, so that a formula with lanes and numbers reads like a
-  // formula with double.
+  // The following two constructors convert implicitly on purpose, so that a formula that mixes lanes and numbers reads
+  // like a formula with double.
   HWY_INLINE Real(Doubles of_v) : v(of_v) {}                      // NOLINT(google-explicit-constructor)
   HWY_INLINE Real(double value) : v(hn::Set(kDoubles, value)) {}  // NOLINT(google-explicit-constructor)
   static HWY_INLINE Real load(const double* from) { return hn::LoadU(kDoubles, from); }
@@ -39,7 +39,7 @@ struct Real {
   friend HWY_INLINE Real operator/(Real a, Real b) { return hn::Div(a.v, b.v); }
 };
 
-// The elements for which a condition holds.
+// The elements, one in each lane, for which a condition holds.
 struct RealMask {
   hn::Mask<DoubleTag> m;
 
@@ -56,10 +56,10 @@ HWY_INLINE Real select(RealMask mask, Real a, Real b) { return hn::IfThenElse(ma
 HWY_INLINE bool any(RealMask mask) { return !hn::AllFalse(kDoubles, mask.m); }
 HWY_INLINE Real sqrt(Real a) { return hn::Sqrt(a.v); }
 HWY_INLINE Real absolute(Real a) { return hn::Abs(a.v); }
-// Return the larger and the smaller of two numbers, or b if one of the two is NaN.
+// Return the larger and the smaller of two numbers in each lane, or b if one of the two is NaN.
 HWY_INLINE Real larger_of(Real a, Real b) { return select(a > b, a, b); }
 HWY_INLINE Real smaller_of(Real a, Real b) { return select(a < b, a, b); }
-// Tells whether the sign bit is set, also for -0.
+// Returns the lanes in which the sign bit is set, also for -0.
 HWY_INLINE RealMask has_sign(Real a) {
   const hn::RebindToSigned<DoubleTag> bits;
   return {hn::RebindMask(kDoubles, hn::Lt(hn::BitCast(bits, a.v), hn::Zero(bits)))};
@@ -85,7 +85,7 @@ HWY_INLINE Real max_abs(const Real3& a) {
   return select(largest == largest, largest, select(of_two == of_two, of_two, z));
 }
 
-// Returns the arc tangent of q in [0, 1].
+// Returns the arc tangent of q, which must be in [0, 1].
 HWY_INLINE Real arc_tangent(Real q) {
   const Real x = q * q, x2 = x * x, x4 = x2 * x2, x8 = x4 * x4, x16 = x8 * x8;
   const auto pair = [x](double c0, double c1) HWY_ATTR { return Real(c1) * x + Real(c0); };
@@ -104,8 +104,8 @@ HWY_INLINE Real arc_tangent(Real q) {
   return series * (x * q) + q;
 }
 
-// Returns the angle of the vector (x, y) with y >= 0, in [0, pi]: 0 for the zero vector, pi if its x is -0. If x or y
-// is not finite, the result is NaN.
+// Returns the angle in radians of the vector (x, y) with y >= 0, in [0, pi]. The angle of the zero vector is 0, or pi
+// if x is -0. If x or y is not finite, the result is NaN.
 HWY_INLINE Real upper_angle(Real y, Real x) {
   const Real ax = absolute(x);
   const RealMask steep = y > ax;

@@ -1,5 +1,5 @@
-// A row of four doubles is a vector x y z with a fourth number, at any place in memory. Code adds to rows one by one,
-// or turns one row for each lane into columns.
+// Loads and stores rows of four doubles, and turns one row for each lane into columns. A row is a vector x y z with a
+// fourth number, at any place in memory.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 
@@ -21,8 +21,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of doubles of a row in one register. A row takes one register if a register holds four doubles, otherwise
-// two, or four if Highway is plain C++.
+// The number of doubles of a row that are in one register. A row takes one register if a register holds four doubles,
+// otherwise two, or four if Highway is plain C++.
 inline constexpr std::size_t kRowStep = kDoubleLanes < 4 ? kDoubleLanes : 4;
 using DoubleRowTag = hn::CappedTag<double, kRowStep>;
 
@@ -30,7 +30,7 @@ struct DoubleRow {
   hn::Vec<DoubleRowTag> parts[4 / kRowStep];
 };
 
-// Makes a row of part(i) for each register.
+// Makes a row from its registers: part(i) returns register i.
 template <class PartOf>
 HWY_INLINE DoubleRow MakeRow(const PartOf& part) {
   DoubleRow row;
@@ -41,7 +41,7 @@ HWY_INLINE DoubleRow MakeRow(const PartOf& part) {
 HWY_INLINE DoubleRow LoadDoubleRow(const double* from) {
   return MakeRow([from](std::size_t i) HWY_ATTR { return hn::LoadU(DoubleRowTag(), from + kRowStep * i); });
 }
-// Loads four floats as doubles.
+// Loads four floats and converts them to a row of doubles.
 HWY_INLINE DoubleRow LoadDoubleRow(const float* from) {
   return MakeRow([from](std::size_t i) HWY_ATTR {
     const hn::Rebind<float, DoubleRowTag> some;
@@ -55,7 +55,7 @@ HWY_INLINE void StoreDoubleRow(const DoubleRow& row, double* to) {
 HWY_INLINE DoubleRow operator+(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Add(a.parts[i], b.parts[i]); });
 }
-// Multiplies component by component.
+// Returns the product of two rows, component by component.
 HWY_INLINE DoubleRow operator*(const DoubleRow& a, const DoubleRow& b) {
   return MakeRow([&](std::size_t i) HWY_ATTR { return hn::Mul(a.parts[i], b.parts[i]); });
 }
@@ -65,7 +65,7 @@ struct DoubleColumns {
   Doubles w;
 };
 
-// Returns four columns. Lane i of each column is a component of the row at row(i).
+// Returns the four columns of a matrix whose row i is at row(i). Lane i of a column is from row i.
 template <class RowOf>
 HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
 #if HWY_TARGET == HWY_SCALAR
@@ -86,7 +86,7 @@ HWY_INLINE DoubleColumns ColumnsOfDoubles(const RowOf& row) {
     return {{hn::Load(kDoubles, columns[0]), hn::Load(kDoubles, columns[1]), hn::Load(kDoubles, columns[2])},
             hn::Load(kDoubles, columns[3])};
   } else {
-    Doubles rows[4];  // of 256 bits: rows 0 to 3; or 0 and 2, 1 and 3, 4 and 6, 5 and 7
+    Doubles rows[4];  // rows 0 to 3; or, with vectors of eight doubles, 0 and 2, 1 and 3, 4 and 6, 5 and 7
     for (std::size_t k = 0; k < 4; ++k) rows[k] = LoadTransposable(row, k);
     const Doubles xz0 = hn::InterleaveLower(kDoubles, rows[0], rows[1]);
     const Doubles xz1 = hn::InterleaveLower(kDoubles, rows[2], rows[3]);

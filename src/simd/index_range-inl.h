@@ -25,7 +25,7 @@ using IndexTag = hn::RebindToUnsigned<FloatTag>;
 
 inline constexpr IndexTag kIndices;
 
-// Returns the range from the smallest to the largest index. count > 0
+// Returns the range from the smallest to the largest index. Precondition: count > 0.
 HWY_INLINE IndexRange RangeOf(const std::uint32_t* indices, std::size_t count) {
   std::uint32_t first = indices[0], last = indices[0];
   std::size_t i = 0;

@@ -1,4 +1,4 @@
-// The special cases of instruction sets. Every raw intrinsic of the library is in this file, beside the operations of
+// The special cases of instruction sets. Every raw intrinsic that kernels use is in this file, beside the operations of
 // Highway that give the same bits on all other targets. Today all special cases are for AVX-512, whose permutations and
 // masked loads need fewer instructions than Highway's general shuffles.
 //
@@ -22,7 +22,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Return the larger and the smaller of two absolute values; neither may be NaN.
+// Return the larger and the smaller of the absolute values of two numbers, neither of which may be NaN.
 #if HWY_TARGET == HWY_AVX3
 HWY_INLINE Floats LargerAbs(Floats a, Floats b) { return Floats{_mm512_range_ps(a.raw, b.raw, 0b1011)}; }
 HWY_INLINE Doubles LargerAbs(Doubles a, Doubles b) { return Doubles{_mm512_range_pd(a.raw, b.raw, 0b1011)}; }
@@ -38,7 +38,7 @@ HWY_INLINE V SmallerAbs(V a, V b) {
 }
 #endif
 
-// Returns the lanes of a mask as bits, the lowest first.
+// Returns a number whose bits are the lanes of a mask, with the first lane in the lowest bit.
 template <class Tag>
 HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 #if HWY_TARGET == HWY_AVX3
@@ -51,16 +51,17 @@ HWY_INLINE std::uint32_t BitsOf(Tag tag, hn::Mask<Tag> mask) {
 #endif
 }
 
-// Writes x0 y0 z0 x1 y1 z1 ... : 3 * kLanes floats.
+// Writes the vectors of all lanes one after the other, x0 y0 z0 x1 y1 z1 ..., which are 3 * kLanes floats.
 template <bool kStream>
 HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 #if HWY_TARGET == HWY_AVX3
-  // Each vector takes two permutations, in place of the general ones of pieces of 128 bits.
+  // Each vector takes two permutations here, and more with the general code below, which permutes pieces of 128 bits.
   const auto index = [](int a0, int a1, int a2, int b0, int b1, int b2, int c0, int c1, int c2, int d0, int d1, int d2,
                         int e0, int e1, int e2, int f0) HWY_ATTR {
     return _mm512_setr_epi32(a0, a1, a2, b0, b1, b2, c0, c1, c2, d0, d1, d2, e0, e1, e2, f0);
   };
-  // The lanes of x and y are placed first (y counts from 16), then the lanes of z in the gaps (z counts from 16).
+  // The first permutation places the lanes of x and y; the numbers of y's lanes begin at 16. The second permutation
+  // places the lanes of z into the gaps; their numbers begin at 16, too.
   const __m512i xy0 = index(0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5);
   const __m512i xy1 = index(21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26);
   const __m512i xy2 = index(0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0, 15, 31, 0);
@@ -86,11 +87,11 @@ HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 
 #if HWY_TARGET != HWY_SCALAR
 
-// Loads four floats for each 128 bits of a vector: address(b) points to the floats of block b.
+// Loads four floats for each 128 bits of a vector. address(b) points to the floats for the b-th 128 bits.
 template <class AddressOf>
 HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #if HWY_TARGET == HWY_AVX3
-  // A load that fills only some of the lanes needs no permutation, unlike an insertion.
+  // A masked load fills only some of the lanes, and needs no permutation. An insertion would need one.
   __m512 blocks = _mm512_castps128_ps512(_mm_loadu_ps(address(0)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x00F0, _mm_loadu_ps(address(1)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x0F00, _mm_loadu_ps(address(2)));
@@ -100,7 +101,8 @@ HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #endif
 }
 
-// Return the 128 bits in even places, and in odd places, of two vectors of four doubles or of AVX-512.
+// Return those 128 bits of two vectors that are in even places, and those that are in odd places. Vectors have four
+// doubles, or eight on AVX-512.
 HWY_INLINE Doubles EvenPairs(Doubles a, Doubles b) {
 #if HWY_TARGET == HWY_AVX3
   return Doubles{_mm512_shuffle_f64x2(a.raw, b.raw, 0b10001000)};
@@ -116,9 +118,9 @@ HWY_INLINE Doubles OddPairs(Doubles a, Doubles b) {
 #endif
 }
 
-// Loads the rows of four doubles at row(i) into four vectors, and returns the k-th of these. The rows are placed so
-// that they become columns, with row i in lane i, if neighbouring vectors are interleaved and the results passed to
-// EvenPairs() and OddPairs(). Vectors have four doubles, or eight on AVX-512.
+// Loads the rows of four doubles at row(i) into four vectors, and returns the k-th of these vectors. To turn the rows
+// into columns, with row i in lane i, callers interleave neighbouring vectors and pass the results to EvenPairs() and
+// OddPairs(). Vectors have four doubles, or eight on AVX-512.
 template <class RowOf>
 HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #if HWY_TARGET == HWY_AVX3
@@ -130,7 +132,7 @@ HWY_INLINE Doubles LoadTransposable(const RowOf& row, std::size_t k) {
 #endif
 }
 
-// Stores the 128 bits of each pair of lanes to a separate row.
+// Stores each 128 bits of a vector to a row of its own.
 template <class V>
 HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
   constexpr std::size_t kPairs = sizeof(V) / 16;
@@ -142,18 +144,18 @@ HWY_INLINE void StorePairs(V v, double* to, std::size_t stride) {
   }
 }
 
-// Stores lane i of a and of b to row i, at to + i * stride.
+// Stores lane i of a and lane i of b to row i, which begins at to + i * stride.
 HWY_INLINE void StoreTwoColumns(Doubles a, Doubles b, double* to, std::size_t stride) {
   StorePairs(hn::InterleaveLower(kDoubles, a, b), to, 2 * stride);
   StorePairs(hn::InterleaveUpper(kDoubles, a, b), to + stride, 2 * stride);
 }
 
-// Stores lane i of column(0) ... column(7) to row i.
+// Stores lane i of column(0) ... column(7) to row i, which begins at to + i * stride.
 template <class ColumnOf>
 HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_t stride) {
 #if HWY_TARGET == HWY_AVX3
-  // Neighbouring columns are joined to pairs, then to fours, and then to eights.
-  __m512d even[4], odd[4];  // of rows 0 2 4 6 and 1 3 5 7, the columns 2 i and 2 i + 1
+  // Neighbouring columns are joined to pairs, then to groups of four, and then to groups of eight.
+  __m512d even[4], odd[4];  // the columns 2 i and 2 i + 1 of rows 0 2 4 6, and of rows 1 3 5 7
   for (std::size_t i = 0; i < 4; ++i) {
     even[i] = _mm512_unpacklo_pd(column(2 * i).raw, column(2 * i + 1).raw);
     odd[i] = _mm512_unpackhi_pd(column(2 * i).raw, column(2 * i + 1).raw);
@@ -178,13 +180,14 @@ HWY_INLINE void StoreEightColumns(const ColumnOf& column, double* to, std::size_
 
 #endif  // HWY_TARGET != HWY_SCALAR
 
-// Loads element c of row i, which begins at from + i * kStride, into lane i of column[c]. kStride must be at least 8
+// Loads element c of row i into lane i of column[c]. Row i begins at from + i * kStride. Precondition: kStride is at
+// least 8.
 template <std::size_t kStride>
 HWY_INLINE void LoadColumns(const double* from, Doubles (&column)[kStride]) {
 #if HWY_TARGET == HWY_AVX3
-  // Eight columns are built from pairs, fours and eights of rows, as in StoreEightColumns, and the other columns one by
-  // one.
-  __m512d even[4], odd[4];  // of rows 2 i and 2 i + 1, the columns 0 2 4 6 and 1 3 5 7
+  // Eight columns are built from pairs of rows, then groups of four and groups of eight, as in StoreEightColumns. The
+  // other columns are built one by one.
+  __m512d even[4], odd[4];  // the columns 0 2 4 6 of rows 2 i and 2 i + 1, and the columns 1 3 5 7
   for (std::size_t i = 0; i < 4; ++i) {
     const __m512d first = _mm512_loadu_pd(from + 2 * i * kStride),
                   second = _mm512_loadu_pd(from + (2 * i + 1) * kStride);

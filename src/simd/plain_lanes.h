@@ -3,8 +3,9 @@
 /// SIMD128; with any other compiler, they are loops over arrays. Names and meanings are Highway's, and are described at
 /// https://google.github.io/highway/en/master/quick_reference.html
 ///
-/// Bits       as Highway's on every instruction set: each operation is one IEEE operation, or a choice of lanes
-/// Target     HWY_PLAIN is the only one, and nothing is dispatched
+/// Bits       The bits of results are those of Highway on every instruction set. Each operation is one IEEE operation,
+///            or a choice of lanes.
+/// Target     HWY_PLAIN is the only target, so no target is chosen at run time.
 #ifndef CHRONORMAL_SIMD_PLAIN_LANES_H_
 #define CHRONORMAL_SIMD_PLAIN_LANES_H_
 
@@ -19,8 +20,8 @@
 #error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif
 
-// The following intrinsics are the only instructions that this file uses by name. Compilers do not find these
-// instructions by themselves without flags.
+// The following intrinsics are the only instructions that this file names. Compilers do not generate these instructions
+// from plain code without flags.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1
@@ -63,7 +64,7 @@ HWY_INLINE void Prefetch([[maybe_unused]] const T* place) {
 #endif
 }
 
-// Completes the stores of Stream(), so that other threads see them.
+// Completes the stores of Stream(), so that other threads see what it has stored.
 HWY_INLINE void FlushStream() {
 #ifdef CHRONORMAL_PLAIN_SSE2
   _mm_sfence();
@@ -72,7 +73,7 @@ HWY_INLINE void FlushStream() {
 
 namespace N_PLAIN {
 
-// A kind of vectors, which have kCount numbers of type T.
+// The type of the tag that stands for vectors of kCount numbers of type T.
 template <class T, std::size_t kCount>
 struct Simd {
   using Lane = T;
@@ -106,7 +107,7 @@ template <>
 struct IntegerOf<8> {
   using Type = std::int64_t;
 };
-// The signed integer that is as wide as T.
+// The signed integer type of the same size as T.
 template <class T>
 using Integer = typename IntegerOf<sizeof(T)>::Type;
 
@@ -135,7 +136,7 @@ HWY_INLINE auto Shuffled(const R& a, const R& b) {
 
 #else
 
-// An array with the operators of the vectors of GCC.
+// An array with the same operators as the vectors of GCC, for other compilers.
 template <class T, std::size_t kCount>
 struct Raw {
   T lanes[kCount];
@@ -202,7 +203,7 @@ struct Vector {
 template <class D>
 using Vec = Vector<typename D::Lane, D::kLanes>;
 
-// Lanes whose bits are all set, or all clear.
+// A mask: for each lane, a number whose bits are all 1 if the condition holds, and all 0 if not.
 template <class T, std::size_t kCount>
 struct MaskOf {
   Raw<Integer<T>, kCount> raw;
@@ -467,7 +468,7 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t count) {
 
 // ---- other types
 
-// Converts floats to integers by dropping their fractions.
+// Convert numbers to another type. Floats become integers by dropping their fractions.
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> ConvertTo(D, const Vector<T, kCount>& v) {
   return {Converted<Raw<typename D::Lane, kCount>>(v.raw)};
@@ -481,7 +482,7 @@ HWY_INLINE Vec<D> DemoteTo(D d, const Vector<T, kCount>& v) {
   return ConvertTo(d, v);
 }
 
-// Adds to lane i of `sum` the products of the lanes 2 i and 2 i + 1 of a and b.
+// Adds the products of lanes 2 i and of lanes 2 i + 1 of a and b to lane i of `sum`.
 HWY_INLINE Vector<std::int32_t, 4> ReorderWidenMulAccumulate(Simd<std::int32_t, 4>, const Vector<std::int16_t, 8>& a,
                                                              const Vector<std::int16_t, 8>& b,
                                                              const Vector<std::int32_t, 4>& sum,
@@ -500,13 +501,13 @@ HWY_INLINE Vector<std::int32_t, 4> RearrangeToOddPlusEven(const Vector<std::int3
 
 // ---- lanes in other places
 
-// Picks the lanes kFrom..., which are numbered through a and then through b.
+// Returns the lanes with the numbers kFrom... Numbers count through a first and then through b.
 template <class D, std::size_t kCount, std::size_t... kFrom>
 HWY_INLINE Vec<D> Picked(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                          std::index_sequence<kFrom...>) {
   return {Shuffled<Raw<typename D::Lane, kCount>, static_cast<int>(kFrom)...>(a.raw, b.raw)};
 }
-// Picks the lanes kFirst, kFirst + kStep, ...
+// Returns the lanes with the numbers kFirst, kFirst + 1, ..., counted through a first and then through b.
 template <class D, std::size_t kFirst, std::size_t kCount, std::size_t... kI>
 HWY_INLINE Vec<D> Run(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                       std::index_sequence<kI...>) {

@@ -1,4 +1,4 @@
-// Vectors of doubles beside vectors of floats, and rows of four floats that become lanes.
+// Adds vectors of doubles to the vectors of floats, and turns rows of four floats into lanes.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 
@@ -18,8 +18,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of doubles in a vector. A vector of floats becomes two vectors of doubles, or one if it has a single lane
-// (Highway's plain C++).
+// The number of doubles in a vector. A vector of floats is converted to two vectors of doubles, or to one if it has a
+// single lane (Highway's plain C++).
 inline constexpr std::size_t kDoubleLanes = kLanes > 1 ? kLanes / 2 : 1;
 using DoubleTag = hn::CappedTag<double, kDoubleLanes>;
 using HalfFloatTag = hn::Rebind<float, DoubleTag>;
@@ -29,7 +29,7 @@ inline constexpr DoubleTag kDoubles;
 
 using Doubles3 = LanesOf3<Doubles>;
 
-// Converts the lower (0) or upper (1) half of the lanes.
+// Converts the lower half (kHalf = 0) or the upper half (kHalf = 1) of the lanes to double.
 template <int kHalf>
 HWY_INLINE Doubles ToDouble(Floats v) {
 #if HWY_TARGET == HWY_SCALAR
@@ -43,8 +43,8 @@ template <int kHalf>
 HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
   return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
 }
-// Highway's plain C++ rounds values beyond the range of float to the largest float, while all other targets and
-// static_cast give infinity.
+// Highway's plain C++ rounds values beyond the range of float to the largest float. All other targets, and static_cast,
+// give infinity.
 #undef CHRONORMAL_DEMOTE_CLAMPS
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 #define CHRONORMAL_DEMOTE_CLAMPS 1
@@ -52,8 +52,8 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
-// Joins both halves of the lanes, whose values must be in the range of float. If there is a single lane, it is the
-// lower one.
+// Rounds both halves of the lanes to float and joins them. Their values must be in the range of float. If there is a
+// single lane, it is the one of `lower`.
 HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::DemoteTo(kFloats, lower);
@@ -83,8 +83,8 @@ struct Lanes4 {
   HWY_INLINE Lanes3 xyz() const { return {x, y, z}; }
 };
 
-// The following function Columns(row) returns the columns of a matrix. The matrix has a row of four floats, at row(i),
-// for each lane i.
+// The following functions Columns(row) return the columns of a matrix. Its row i, of four floats at row(i), becomes
+// lane i of the columns.
 #if HWY_TARGET == HWY_SCALAR
 
 using Row = Lanes4;
@@ -102,7 +102,7 @@ HWY_INLINE Lanes4 Columns(const RowOf& row) {
 using Row = hn::Vec<hn::FixedTag<float, 4> >;
 HWY_INLINE Row LoadRow(const float* from) { return hn::LoadU(hn::FixedTag<float, 4>(), from); }
 
-// Makes a vector of four lanes for each 128 bits: load(b) returns the lanes of block b.
+// Makes a vector from pieces of four lanes, which are 128 bits: load(b) returns piece b.
 template <class LoadBlock>
 HWY_INLINE Floats Blocks(const LoadBlock& load) {
   if constexpr (kLanes == 4) {
@@ -115,7 +115,7 @@ HWY_INLINE Floats Blocks(const LoadBlock& load) {
   }
 }
 
-// Transposes. Lane i of rows[k] is from the row 4 * (i / 4) + k.
+// Transposes blocks of four rows. Lane i of rows[k] is from row 4 * (i / 4) + k.
 HWY_INLINE Lanes4 Transposed(const Floats (&rows)[4]) {
   const auto pairs = [](Floats v) HWY_ATTR { return hn::BitCast(kDoubles, v); };
   const Doubles xy01 = pairs(hn::InterleaveLower(kFloats, rows[0], rows[1]));
@@ -138,7 +138,7 @@ HWY_INLINE Lanes4 Columns(const RowOf& row) {
 
 #endif
 
-// Rounds four doubles to a row.
+// Rounds four doubles to a row of four floats.
 HWY_INLINE Row RoundedRow(const double* from) {
 #if CHRONORMAL_DEMOTE_CLAMPS
   float rounded[4];

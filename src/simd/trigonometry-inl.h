@@ -1,4 +1,4 @@
-// Sine, cosine and arc tangent over any scalar: one float, or a vector of them.
+// Computes sine, cosine and arc tangent for any scalar type: a float, or a vector of floats.
 //
 // This file is included once for each instruction set, outside of any namespace. A scalar S is constructed from a
 // float, has + - * / and comparisons that give a mask, and these functions, which the compiler finds by their
@@ -27,7 +27,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The next functions are for scalars whose masks are bool.
+// The next functions are for scalars with comparisons that return bool.
 template <class S>
 HWY_INLINE S select(bool mask, const S& a, const S& b) {
   return mask ? a : b;
@@ -45,8 +45,9 @@ HWY_INLINE float next_bits(float s) { return bit_cast<float>(bit_cast<std::uint3
 
 template <class S>
 HWY_INLINE SinCos<S> sin_cos(const S& x) {
-  // The argument x is reduced to r in [-pi/4, pi/4] with x = quarter * pi/2 + r. Splitting pi/2 into two parts, the
-  // first of 8 bits, keeps r exact to 1e-10. Adding 3 * 2^22 rounds to an integer, and leaves it in the lowest bits.
+  // The argument x is reduced to r in [-pi/4, pi/4] with x = quarter * pi/2 + r. pi/2 is split into two parts, the
+  // first of which has 8 bits, so that the error of r is at most 1e-10. Adding 3 * 2^22 rounds a float to an integer,
+  // and leaves this integer in the lowest bits.
   const S shift(12582912.0f);
   const S shifted = x * S(0.636619772f) + shift;
   const S quarter = shifted - shift;
@@ -62,8 +63,8 @@ HWY_INLINE SinCos<S> sin_cos(const S& x) {
 
 template <class S>
 HWY_INLINE S upper_angle(const S& y, const S& x) {
-  // The arc tangent of a quotient in [0, 1] is computed, with quotients above tan(pi/8) folded once more. The octant of
-  // the vector then gives the angle.
+  // First the arc tangent of a quotient in [0, 1] is computed; quotients above tan(pi/8) are reduced once more. The
+  // octant of the vector then gives the angle.
   const S zero(0.0f);
   const S ax = absolute(x), larger = larger_of(y, ax), smaller = smaller_of(y, ax);
   const auto steep = y > ax;
