@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// The length below which the float32 formulas treat vectors in a different way.
+// The length of a vector below which the float32 formulas of schemes treat it in a different way.
 constexpr double kShortest = 1.1e-8;
 
-// A bound of the rounding error of a sum of a few products of numbers up to 1.
+// A bound of the rounding error of a sum of a few products, where each product is at most 1.
 constexpr double kRounding = 32 * kUnitRoundoff;
 
 // The share of coefficient i of degree M times coefficient j of degree N in coefficient i + j of their product.
@@ -30,13 +30,13 @@ constexpr auto kShares = [] {
   return shares;
 }();
 
-// Returns an upper bound of asin(x), which is pi / 2 from x = 1 on.
+// Returns an upper bound of asin(x) in radians. It is pi / 2 for x >= 1.
 double arc_sine_bound(double x) {
   if (!(x < 1)) return kHalfTurn / 2;
   return x <= 0.5 ? x * (1 + 0.25 * x * x) : x * (kHalfTurn / 2);
 }
 
-// Returns p(1/2).
+// Returns p(1/2) of a quadratic in Bernstein form.
 template <class T>
 T in_the_middle(const Bernstein<T, 2>& p) {
   return 0.25 * (p[0] + p[2]) + 0.5 * p[1];
@@ -80,7 +80,7 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   const bool is_ahead = *std::min_element(dot_products.begin(), dot_products.end()) > kRounding * p_length * n_length;
 
   double smallest = std::numeric_limits<double>::infinity();
-  double steepest = 0, flattest = std::numeric_limits<double>::infinity();  // squared tangents
+  double steepest = 0, flattest = std::numeric_limits<double>::infinity();  // squares of tan(angle)
   for (std::size_t k = 0; k <= 2 * kDegree; ++k) {
     smallest = std::min(smallest, cross_squares[k] + dot_squares[k]);
     const double below = dot_squares[k] - dot_slack;

@@ -1,8 +1,8 @@
 /// Bounds the largest angle between two curves on one piece of a segment, by Bernstein coefficients.
 ///
-/// A scheme on a piece is a cubic p with a ball around it, and the normal is a quadratic n with a small error. Both S =
-/// p x n and D = p.n have degree 5, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
-/// their Bernstein coefficients if those of the denominator are positive, so
+/// On a piece, a scheme is a cubic p with a ball around it, and the normal is a quadratic n with a small error. Both S
+/// = p x n and D = p.n have degree 5, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
+/// their Bernstein coefficients if the coefficients of the denominator are positive, so
 ///
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
 ///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   all (S.S)_k > 0
@@ -25,10 +25,11 @@ namespace chronormal::inline internal {
 /// The vector that a scheme makes on a piece, before it is scaled to length 1.
 struct CurvePiece {
   Bernstein<Vec3d, 3> p;
-  double radius = 0;         ///< the rendered vector at any t of the piece is within this of p(t)
-  Vec3d middle;              ///< a vector near the rendered one at the middle of the piece
-  double middle_radius = 0;  ///< bound of the distance between the two
-  double angle = 0;          ///< a further error of the direction, in radians
+  /// At any t of the piece, the distance between the rendered vector and p(t) is at most this.
+  double radius = 0;
+  Vec3d middle;              ///< a vector near the rendered vector at the middle of the piece
+  double middle_radius = 0;  ///< bound of the distance between `middle` and the rendered vector at the middle
+  double angle = 0;          ///< a further error of the direction of the rendered vector, in radians
 };
 
 /// The normal on a piece, and a bound of the length of its error.
@@ -37,11 +38,12 @@ struct NormalPiece {
   Bernstein<double, 2> error;
 };
 
-/// Returns an upper bound of the angle between the rendered and the true normal, at all t of the piece; pi if no better
-/// one is known.
+/// Returns an upper bound, in radians, of the angle between the rendered and the true normal at all t of the piece.
+/// Returns pi if no smaller bound is known.
 [[nodiscard]] double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept;
 
-/// The angle in the middle of the piece, and how far errors may change it; pi if the direction is unknown.
+/// The angle in the middle of the piece, in radians, and a bound of the change that errors may cause in it. The angle
+/// is pi if a direction is unknown.
 struct MiddleAngle {
   double angle = 0, uncertainty = 0;
 };

@@ -21,9 +21,10 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kMostPieces = 256;
-// The smallest width of a piece; a narrower piece is practically a single instant.
+// The smallest width of a piece in t. A piece of this width is not cut further, since it is practically a single
+// instant.
 constexpr double kNarrowest = 0x1p-40;
-constexpr double kPromisedShare = 0x1p-26;  // promised error of a control normal: see face_control_normals()
+constexpr double kPromisedShare = 0x1p-26;  // relative error of a control normal that face_control_normals() guarantees
 constexpr std::size_t kBlockSize = 1024;
 
 // The normal n(t) over [0, 1], scaled to a size of about 1, and a bound of its error.
@@ -34,15 +35,16 @@ struct Normal {
   [[nodiscard]] NormalPiece over(double a, double b) const { return {restrict_to(n, a, b), restrict_to(error, a, b)}; }
 };
 
-constexpr double kLongestOfThree = 1.7320509;  // a vector of three components, each up to 1
-constexpr double kCutting = 0x1p-46;           // the rounding of splitting a polynomial, per largest coefficient
+constexpr double kLongestOfThree = 1.7320509;  // the largest length of a vector whose components are at most 1
+// The rounding error of splitting a polynomial, relative to its largest coefficient.
+constexpr double kCutting = 0x1p-46;
 
-// Returns the factor that scales the largest component to 1, and 1 for a zero vector, which has nothing to scale but
-// its error.
+// Returns the factor that scales the largest component to 1. Returns 1 for a zero vector, of which only the error is
+// scaled.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
-// Divides a quadratic that is certainly zero at an end by t or by 1 - t. The quotient has the same direction as the
-// quadratic, and is not zero at that end. Returns nothing if the quadratic is certainly zero throughout.
+// Divides a quadratic that is certainly zero at an end of [0, 1] by t or by 1 - t. The quotient has the same direction
+// as the quadratic, and is not zero at that end. Returns no value if the quadratic is certainly zero throughout.
 std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlErrors& errors) {
   const double largest = std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
   if (largest == 0 && errors == ControlErrors{}) return std::nullopt;
@@ -66,11 +68,12 @@ std::optional<Normal> without_zero_ends(const ControlNormals& c, const ControlEr
   return Normal{{n0, m, n1}, error};
 }
 
-// A piece of the segment. Pieces are ordered by their bounds, so that the largest bound comes first.
+// A piece of the segment, from t = a to t = b. Pieces are ordered by their bounds `upper`, so that the largest bound
+// comes first.
 struct Piece {
   double a, b;
   double upper;
-  double uncertainty;  // uncertainty in the middle of the piece
+  double uncertainty;  // uncertainty of the angle in the middle of the piece, in radians
 
   friend bool operator<(const Piece& x, const Piece& y) { return x.upper < y.upper; }
 };
@@ -110,8 +113,9 @@ ErrorBounds bounds_of(const Curve& curve, const Normal& normal, const CertifyOpt
   }
 }
 
-// The warped time x = r t / ((1-r)(1-t) + r t) in which an arc runs, where r is `share`. At x, the arc meets the normal
-// of t(x). This normal is again a quadratic in x, up to a factor: control normal k has the weight r^(2-k) (1-r)^k.
+// The warped time x = r t / ((1-r)(1-t) + r t) in which an arc runs, where r is `share`. At x, the arc has to be
+// compared with the normal at the t that belongs to x. As a function of x, this normal is again a quadratic up to a
+// factor: control normal k is multiplied by r^(2-k) (1-r)^k.
 struct Warp {
   double share;
 

@@ -14,10 +14,10 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kE = kFloatUnitRoundoff;
-constexpr double kScaling = 2 * kE;  // radians
+constexpr double kScaling = 2 * kE;  // radians: the error of scaling a vector to length 1
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns the rounding error of a weighted sum of this many vectors, if the sum of |weights| |vectors| is 1. The error
+// Returns the rounding error of a weighted sum of `count` vectors, if the sum of |weights| |vectors| is 1. The error
 // has one rounding for a product, one for each addition, and two for the weights.
 constexpr double rounding_of_sum(std::size_t count) { return (static_cast<double>(count) + 2) * kE; }
 
@@ -38,7 +38,7 @@ CubicCurve::CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept
   assert(degree <= 3);
   const double rounding = rounding_of_sum(basis.count());
   std::array<Vec3d, 4> p{};
-  std::array<double, 4> sizes{};  // the sum of the sizes of the terms of each coefficient
+  std::array<double, 4> sizes{};  // for each coefficient, the sum of the sizes of its terms
   double largest = 0;
   for (std::size_t k = 0; k < basis.count(); ++k) {
     const Vec3d v = to_double(c.vector(k));
@@ -94,8 +94,8 @@ CurvePiece SumCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // Takes the cubic with the same ends and end slopes as p. Raised to the degree of p, the cubic has coefficients that
-  // can be compared with those of p.
+  // The cubic has the same ends and the same slopes at the ends as p. It is raised to the degree of p, so that its
+  // coefficients can be compared with those of p.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};
@@ -123,7 +123,7 @@ ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
   angle_ = static_cast<double>(c[is_great ? 6 : 9]);
   const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
   largest_ = std::max(p, q);
-  // Adds up the rounding errors: of t and its product with A; of sine and cosine, within 1.2e-7 = 2.02 e; of two
+  // The rounding errors are those of t and its product with A, of sine and cosine, within 1.2e-7 = 2.02 e, and of two
   // products and two additions.
   double time_error = 2.01 * kE;
   if (formula == Formula::kTimedCircleArc) {
@@ -139,8 +139,8 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
   const double at = (a + (b - a) / 2) * angle_, beta = (b - a) / 2 * angle_;
   const double cosine = portable::cos(at), sine = portable::sin(at);
   const Vec3d p = cosine * p_ + sine * q_, q = cosine * q_ - sine * p_;
-  // From here on, x is in [-beta, beta]. In cos x = 1 - x^2 / 2 + x^4 / 24, the term x^4 is within beta^4 / 8 of beta^2
-  // x^2 - beta^4 / 8; and sin x = x - x^3 / 6.
+  // The formulas below use x in [-beta, beta]. In cos x = 1 - x^2 / 2 + x^4 / 24, the term x^4 is within beta^4 / 8 of
+  // beta^2 x^2 - beta^4 / 8; and sin x = x - x^3 / 6.
   const double square = beta * beta, fourth = square * square;
   const double constant = 1 - fourth / 192, quadratic = square / 24 - 0.5;
   const Vec3d outer = w_ + (constant + quadratic * square) * p, inner = w_ + (constant - quadratic * square / 3) * p;
@@ -155,7 +155,7 @@ CurvePiece ArcCurve::over(double a, double b) const noexcept {
 }
 
 SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcept : count_(count) {
-  constexpr double kMostOff = 4 * kE;  // relative to the square of a unit vector in float32
+  constexpr double kMostOff = 4 * kE;  // the largest error of the squared length of a unit vector in float32
   for (std::size_t k = 0; k < count; ++k) {
     const Vec3d v = to_double(c.vector(k));
     points_[k] = unit(v);
@@ -164,11 +164,12 @@ SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcep
 }
 
 CurvePiece SphericalCurve::over(double a, double b) const noexcept {
-  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond, float32 does not determine a slerp
+  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond this angle, float32 does not determine a slerp
   if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
-  // A point at the middle of the piece, its largest speed anywhere on the piece, and its rounding errors: across the
-  // direction from the origin to the point, and along it.
+  // The vector that de Casteljau's algorithm has at the middle of the piece, the largest speed of this vector anywhere
+  // on the piece, and its rounding errors. `across` is the error perpendicular to the vector, `along` the error in its
+  // direction.
   struct Moving {
     Vec3d at;
     double speed = 0, across = 0, along = 0;
@@ -181,8 +182,8 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
       const double turn = angle_between(from.at, to.at);
       const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
       if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
-      // If one end moves by 1, a point of the arc moves by at most the largest sin(share T) / sin T for the shares on
-      // this piece.
+      // If one end of the arc moves by 1, a point at a share of the arc moves by sin(share T) / sin T. `factor` bounds
+      // this for the shares on this piece.
       const double sine = portable::sin(most);
       const auto factor = [most, sine](double share) {
         if (most < 1e-6) return share * (1 + 1e-9);

@@ -1,5 +1,5 @@
-/// Bounds the curves of schemes piece by piece: on any [a, b], finds a cubic and a radius, so that the rendered vector
-/// is within a ball of that radius around the cubic.
+/// Bounds the curves of schemes piece by piece. For any piece [a, b], finds a cubic and a radius such that the rendered
+/// vector is always within a ball of that radius around the cubic.
 ///
 /// Everything is computed from the float32 coefficients that the scheme evaluates (schemes/fitted_curves.h), so the
 /// rounding of fits does not matter. The rounding of one evaluation, with e = 2^-24, is bounded for each formula of
@@ -26,31 +26,32 @@
 
 namespace chronormal::inline internal {
 
-/// Weighted sums with weights of degree 3 at most, and quadratics, which are all exact cubics.
+/// Curves that are exactly cubics: weighted sums whose weights have degree 3 at most, and quadratics.
 class CubicCurve {
  public:
-  /// Takes a weighted sum. basis.degree() must be at most 3.
+  /// Takes a weighted sum. Precondition: basis.degree() is at most 3.
   CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
-  /// Takes the quadratic of `rational`, whose weights are Bernstein polynomials.
+  /// Takes the numerator of the scheme `rational`, which is a quadratic whose weights are Bernstein polynomials.
   explicit CubicCurve(ElementCoefficients c) noexcept;
-  /// Takes a line between two vectors, which may be anywhere in balls of these radii.
+  /// Takes a line between two vectors, each of which may be anywhere in a ball of the given radius.
   CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
-  /// Takes a quadratic that is rendered to within an angle, and may itself have an error.
+  /// Takes a quadratic that is rendered with an error of up to `angle` radians. The quadratic itself may also have an
+  /// error.
   CubicCurve(const Bernstein<Vec3d, 2>& n, double angle, const Bernstein<double, 2>& error = {}) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
 
  private:
   Bernstein<Vec3d, 3> p_;
-  Bernstein<double, 2> radius_{};  // radius of the ball, over [0, 1]
+  Bernstein<double, 2> radius_{};  // radius of the ball around the cubic, as a polynomial over [0, 1]
   double angle_;
 };
 
-/// Weighted sums with weights of degree 3 or more, each within a ball around the cubic that has the same ends and end
-/// slopes.
+/// Weighted sums whose weights have degree 3 or more. Each sum is within a ball around the cubic that has the same ends
+/// and the same slopes at the ends.
 class SumCurve {
  public:
-  /// Takes a weighted sum. basis.degree() must be at least 3.
+  /// Takes a weighted sum. Precondition: basis.degree() is at least 3.
   SumCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -61,11 +62,12 @@ class SumCurve {
   double radius_ = 0;
 };
 
-/// Great arcs and other circular arcs. If an arc reaches its middle at a time other than 1/2, it is given by the share
-/// of time before its middle, and runs in warped time; see warped_normal().
+/// Great arcs and other circular arcs. An arc may reach its middle at another time than 1/2. It is then given by the
+/// share of time before its middle, and runs in warped time; see warped_normal().
 class ArcCurve {
  public:
-  /// Takes w, p, q, A in the planes of the formula: kGreatArc, kCircleArc or kTimedCircleArc.
+  /// Takes the coefficients w, p, q, A of one of the formulas kGreatArc, kCircleArc and kTimedCircleArc, in their
+  /// order.
   ArcCurve(Formula formula, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -75,7 +77,8 @@ class ArcCurve {
   double angle_ = 0, largest_ = 0, rounding_ = 0;
 };
 
-/// De Casteljau's algorithm with slerp, bounded by a ball around the vector in the middle of a piece.
+/// The curves that de Casteljau's algorithm makes with slerp. On a piece, a curve is within a ball around the vector in
+/// the middle of the piece.
 class SphericalCurve {
  public:
   SphericalCurve(std::size_t count, ElementCoefficients c) noexcept;
@@ -85,7 +88,7 @@ class SphericalCurve {
  private:
   std::size_t count_;
   std::array<Vec3d, kMaxDeCasteljauNormals> points_;
-  bool are_unit_ = true;  // if false, no bound is known
+  bool are_unit_ = true;  // false if not all points are unit vectors; then no bound is known
 };
 
 }  // namespace chronormal::inline internal

@@ -16,13 +16,14 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kAxisRefinements = 10;
-constexpr double kWidest = 0.995;         // the sine of 84 degrees: beyond it the test would hardly ever reject
-constexpr double kTestSlack = 0x1p-20;    // for the test in float32: some ten roundings of 2^-24
-constexpr double kRoundUp = 1 + 0x1p-22;  // for rounding to float, and the rounding before that
-constexpr double kSumRounding = 0x1p-46;  // rounding of sums of products in double
-constexpr double kSteps = 127;            // steps of a component in 8 bits
+// The sine of 84 degrees; a wider cone would hardly ever pass the culling test.
+constexpr double kWidest = 0.995;
+constexpr double kTestSlack = 0x1p-20;    // the error of the culling test in float32: some ten roundings of 2^-24
+constexpr double kRoundUp = 1 + 0x1p-22;  // the factor for rounding up to float, and for the rounding before that
+constexpr double kSumRounding = 0x1p-46;  // relative rounding error of sums of products in double
+constexpr double kSteps = 127;            // number of steps of a component in 8 bits, from 0 to 1
 
-// The places of a vertex at both ends of the interval, and a bound of their rounding error.
+// The positions of a vertex at both ends of the interval, and a bound of their rounding error in units of length.
 struct Ends {
   Vec3d from, to;
   double error = 0;
@@ -35,8 +36,8 @@ class Cluster {
     load_normals();
   }
 
-  // Finds nearly the smallest sphere around all vertices (Badoiu, Clarkson 2003). Points move on lines, so both ends of
-  // each line suffice.
+  // Finds nearly the smallest sphere around all vertices on their paths (Badoiu, Clarkson 2003). Vertices move on
+  // straight lines, so a sphere around both ends of each line suffices.
   void set_sphere(ClusterBounds& bounds) const {
     if (faces_.empty()) return;
     std::vector<std::uint32_t> vertices;
@@ -72,8 +73,8 @@ class Cluster {
     return enclosing_cone(cones);
   }
 
-  // Returns the point center - s axis with the smallest s >= 0 that is behind all faces, or nothing if float32 has no
-  // such point:
+  // Returns the point center - s axis with the smallest s >= 0 that is behind all faces, or no value if float32 has no
+  // such point. The point is behind a face if
   //     s n(t).axis >= n(t).(center - p(t))
   // Both sides are cubics in t, so the inequality holds if it holds for each pair of Bernstein coefficients.
   [[nodiscard]] std::optional<Vec3f> apex(const Vec3d& center, const NormalCone& cone) const {
@@ -96,7 +97,7 @@ class Cluster {
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }
     }
-    // Moves the point further back along the axis, by more than rounding can move it.
+    // The point is moved further back along the axis, by more than rounding can have moved it.
     const double cosine = std::sqrt((1 - double{cone.sine}) * (1 + double{cone.sine}));
     s += 0x1p-22 * (length(center) + s) / cosine + 0x1p-120;
     const Vec3d point = center - s * axis;
@@ -112,14 +113,14 @@ class Cluster {
   }
 
  private:
-  // Returns the Bernstein coefficients of n(t).l(t), for a quadratic and a line, from the dot products of n0, m, n1
-  // with both ends of l.
+  // Returns the Bernstein coefficients of n(t).l(t), for a quadratic n and a line l. The arguments are the dot products
+  // of n0, m, n1 with both ends of l.
   [[nodiscard]] static std::array<double, 4> cubic(double n0_from, double m_from, double n1_from, double n0_to,
                                                    double m_to, double n1_to) {
     return {n0_from, (n0_to + 2 * m_from) / 3, (2 * m_to + n1_from) / 3, n1_to};
   }
 
-  // Calls body(run, at) for each run of consecutive faces, which begins at faces_[at].
+  // Calls body(run, at) for each run of consecutive face numbers in faces_. The run begins at faces_[at].
   template <class Body>
   void for_runs(const Body& body) const {
     for (std::size_t first = 0; first < faces_.size();) {
@@ -169,8 +170,8 @@ class Cluster {
   std::vector<IntervalNormals> normals_;
 };
 
-// Rounds the axis and the cutoff to 8 bits each: n.v >= 0 holds for all n of the cone if v.axis_s8 / 127 is at least
-// the sine plus the error that rounding the axis can make in v.axis.
+// Rounds the axis and the cutoff to 8 bits each. n.v >= 0 holds for all n of the cone if v.axis_s8 / 127 is at least
+// the sine of the cone plus the error that rounding the axis can make in v.axis.
 void set_8_bits(const NormalCone& cone, ClusterBounds& bounds) {
   const Vec3d axis = unit(to_double(cone.axis));
   const auto rounded = [](double x) { return std::nearbyint(kSteps * x); };

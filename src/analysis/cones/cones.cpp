@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // control normals of a block are 18 KiB
+constexpr std::size_t kBlock = 256;  // number of elements; their control normals are 18 KiB
 constexpr std::size_t kRefinements = 10;
 constexpr double kSineRounding = 0x1p-46;  // relative rounding error of the sine of a sum of angles
 
@@ -22,8 +22,8 @@ bool is_zero(const Vec3d& v) { return v == Vec3d{}; }
 
 bool is_whole(double t0, double t1) { return t0 == 0 && t1 == 1; }
 
-// Writes the cones of up to kBlock elements over [t0, t1]. If double cannot determine the direction of a control normal
-// over this interval, calls settle(i) for the cone of element i.
+// Writes the cones of up to kBlock elements over the times [t0, t1]. If double cannot determine the direction of a
+// control normal over this interval, calls settle(i), which returns the cone of element i.
 template <class Settle>
 void cones_of_block(std::span<const ControlNormals> normals, double t0, double t1, std::span<NormalCone> result,
                     const Settle& settle) noexcept {
@@ -44,18 +44,19 @@ void cones_of_block(std::span<const ControlNormals> normals, double t0, double t
   }
 }
 
-// The direction in a cone that is farthest from a given unit axis, described by the sine and cosine of its angle to
+// The direction in some cones that is farthest from a given unit axis, described by the sine and cosine of its angle to
 // this axis.
 struct Farthest {
   double sine = 0, cosine = 2;
-  Vec3d axis;  // axis of the cone
+  Vec3d axis;  // the axis of the cone to which the direction belongs
 
-  // Returns a number that decreases as the angle grows from 0 to 270 degrees, for comparing angles.
+  // Returns a number that decreases as the angle grows from 0 to 270 degrees. Angles are compared by this number, since
+  // it needs no trigonometry.
   [[nodiscard]] double nearness() const noexcept { return sine >= 0 ? cosine : -2 - cosine; }
 };
 
-// Finds the farthest direction in some cones. across_of(v, along) is the length of the part of v that is perpendicular
-// to the axis.
+// Finds the direction in some cones that is farthest from an axis. across_of(v, along) is the length of the part of v
+// that is perpendicular to the axis.
 template <class AcrossOf>
 Farthest farthest_of(std::span<const NormalCone> cones, const Vec3d& axis, const AcrossOf& across_of) noexcept {
   Farthest farthest;
@@ -74,7 +75,8 @@ struct Split {
   double along = 0, across = 0;
 };
 
-// Splits a unit vector stored in float32. The result is accurate enough to search for an axis.
+// Splits a unit vector that is stored in float32 into its parts along and across an axis. The rounding of the vector is
+// ignored, so the result is only accurate enough to search for an axis.
 Split rough_split(const Vec3d& v, const Vec3d& axis) noexcept {
   const double along = dot(v, axis);
   return {v, along, std::sqrt(std::fmax(0, (1 - along) * (1 + along)))};
@@ -139,7 +141,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
   if (count == 0) return NormalCone::empty();
   if (count == 1) return *only;
 
-  // Moves towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003), and keeps the best axis.
+  // The axis moves towards the farthest direction by ever smaller steps (Badoiu, Clarkson 2003). The best axis is kept.
   Vec3d axis = unit(sum), best = axis;
   double best_nearness = -3;
   for (std::size_t i = 0; i < kRefinements && !is_zero(axis); ++i) {
@@ -152,7 +154,7 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
     axis = unit(axis + (1 / static_cast<double>(i + 2)) * (point - axis));
   }
 
-  // The axis is rounded to float32, so the sine is computed around the rounded axis.
+  // The axis of the result is rounded to float32. So the sine must be that of the cone around the rounded axis.
   const Vec3f rounded = to_float(best);
   const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
   const double sine = far.sine + kSineRounding;

@@ -36,7 +36,7 @@ NormalCone cone_around(IntervalNormals part) noexcept {
   const std::array<Vec3d*, 3> vectors{&c.n0, &c.m, &c.n1};
   const auto first = std::find_if_not(vectors.begin(), vectors.end(), [](const Vec3d* v) { return *v == Vec3d{}; });
   if (first == vectors.end()) return NormalCone::empty();
-  // Replaces zero vectors by copies of another vector, which do not change the cone.
+  // Zero vectors are replaced by copies of another vector, which do not change the cone.
   for (Vec3d* const v : vectors) {
     if (*v == Vec3d{}) *v = **first;
   }

@@ -8,7 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// Three control normals. Each is exactly zero, or has an error of at most `unknown` times its largest component.
+/// Three control normals, and a bound of their error. Each vector is exactly zero, or has an error of at most `unknown`
+/// times its largest component.
 struct IntervalNormals {
   ControlNormals normals;
   double unknown = kNormalShare;
@@ -16,11 +17,12 @@ struct IntervalNormals {
   [[nodiscard]] bool is_known() const noexcept { return unknown <= kLargestUnknown; }
 };
 
-/// Restricts the control normals of an element, whose relative errors must be at most kNormalShare, to a part of the
-/// segment. If control normals cancel in this part, their error is a large share of the result.
+/// Restricts the control normals of an element to a part of the segment. The relative errors of the given control
+/// normals must be at most kNormalShare. If control normals cancel in this part, their error is a large share of the
+/// result, and `unknown` is large.
 [[nodiscard]] IntervalNormals part_of(const ControlNormals& normals, const Restriction& part) noexcept;
 
-/// Computes the control normals of a part of a face, or of the sum of several faces, from integers.
+/// Computes the control normals over [t0, t1] of a face, or of the sum of several faces, from integers.
 [[nodiscard]] IntervalNormals exact_part_of(const ExactCurve& exact, double t0, double t1) noexcept;
 
 /// Returns the cone around the control normals that are not zero.

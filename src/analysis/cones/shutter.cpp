@@ -27,16 +27,17 @@ namespace {
 
 constexpr double kRadius = 2.125;
 constexpr double kGaussError = 32.0 / 15 * 0x1p-32 / (1 - 0x1p-4);
-constexpr double kNearness = 0.5;           // a piece is small enough if q is this near to q(0)
-constexpr int kDeepest = 28;                // halvings
-constexpr double kCurveRounding = 0x1p-47;  // rounding of n(t) and of sums of unit vectors
+constexpr double kNearness = 0.5;           // a piece is small enough if k, as defined above, is at most this
+constexpr int kDeepest = 28;                // how often an interval is halved at most
+constexpr double kCurveRounding = 0x1p-47;  // relative rounding error of n(t) and of sums of unit vectors
 
 constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,
                                        0.96028985649753623};
 constexpr std::array<double, 4> kWeights{0.36268378337836198, 0.31370664587788729, 0.22238103445337447,
                                          0.10122853629037626};
 
-// A piece of the curve n(t). Each control normal is a sum of vectors, and `size` bounds the sum of their lengths.
+// A piece of the curve n(t). Each control normal of the piece is a sum of vectors, and `size` bounds the sum of the
+// lengths of these vectors.
 struct Piece {
   Bernstein<Vec3d, 2> n;
   Bernstein<double, 2> size;
@@ -47,14 +48,14 @@ struct Sum {
   double error = 0;
 };
 
-// The quadratic n(s) = a + b s + c s^2.
+// The quadratic n(s) = a + b s + c s^2 of a piece, with s in [-1, 1].
 struct Centred {
   Vec3d a, b, c;
 
   explicit Centred(const Bernstein<Vec3d, 2>& n)
       : a(0.25 * (n[0] + 2.0 * n[1] + n[2])), b(0.5 * (n[2] - n[0])), c(0.25 * (n[0] - 2.0 * n[1] + n[2])) {}
 
-  // Returns k as defined at the top of this file; infinite or NaN if n(0) = 0.
+  // Returns k as defined at the top of this file; the result is infinite or NaN if n(0) = 0.
   [[nodiscard]] double nearness() const {
     const double q1 = 2 * dot(a, b), q2 = dot(b, b) + 2 * dot(a, c), q3 = 2 * dot(b, c), q4 = dot(c, c);
     const double sum = kRadius * (std::fabs(q1) + kRadius * (std::fabs(q2) + kRadius * (std::fabs(q3) + kRadius * q4)));
@@ -94,15 +95,15 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
   }
 }
 
-// Returns the means for control normals that are sums of vectors of these lengths. The relative error of each vector is
-// at most kNormalShare.
+// Returns the means for control normals that are sums of vectors. `lengths` has the sums of the lengths of these
+// vectors, whose relative errors are at most kNormalShare.
 ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& lengths) noexcept {
   const auto& [n0, m, n1] = c;
   const double largest = std::max({lengths[0], lengths[1], lengths[2]});
   if (largest == 0) return {};
   const Vec3d mean = 1.0 / 3 * (n0 + m + n1);
   if (!std::isfinite(largest)) return {mean, {}, 1};
-  // Scales by a power of two, so that squares neither overflow nor underflow.
+  // All vectors are scaled by a power of two, so that squares neither overflow nor underflow.
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
   const auto scaled = [exponent](double x) { return std::ldexp(x, -exponent); };
@@ -116,7 +117,8 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
 
 Bernstein<double, 2> lengths_of(const ControlNormals& c) { return {length(c.n0), length(c.m), length(c.n1)}; }
 
-// Returns the means over a part, from the control normals of the whole segment.
+// Returns the means over a part of a segment. `c` are the control normals of the whole segment, `part` those of the
+// part.
 ShutterNormal means_of_part(const ControlNormals& c, const IntervalNormals& part,
                             const Restriction& restriction) noexcept {
   const Bernstein<double, 2> whole = lengths_of(c);

@@ -21,9 +21,9 @@ namespace {
 
 constexpr std::size_t kPointsPerBlock = 64;
 
-// An edge of a face, with the direction in which it goes around the face.
+// An edge of a face, and the direction in which the outline of the face passes along the edge.
 struct PassedEdge {
-  std::uint32_t low, high;  // points
+  std::uint32_t low, high;  // numbers of its two points, the lower one first
   bool upwards;
   std::uint32_t face;
 };
@@ -60,15 +60,15 @@ EdgeFaults find_edge_faults(const Topology& topology, const Points& points) {
   return faults;
 }
 
-// The triangles of all faces, with each point named by its first vertex. Triangles that have a point twice are left
-// out: they have no area at any time.
+// The triangles of all faces. Each point is represented by its first vertex. A triangle that names a point twice has no
+// area at any time, and is left out.
 struct Triangles {
-  std::vector<std::uint32_t> corners;  // three each
+  std::vector<std::uint32_t> corners;  // three for each triangle
   std::vector<std::uint32_t> faces;
 };
 
 Triangles triangles_of(const Topology& topology, const Points& points, VectorView<const float> positions) {
-  std::vector<float> places;  // places of polygons that must be triangulated
+  std::vector<float> places;  // the positions of all vertices, if there are polygons that must be cut into triangles
   for (std::size_t v = 0; v < positions.count && !topology.all_triangles(); ++v) {
     const Vec3f place = positions[v];
     places.insert(places.end(), {place.x, place.y, place.z});
@@ -90,7 +90,7 @@ Triangles triangles_of(const Topology& topology, const Points& points, VectorVie
   return triangles;
 }
 
-// Returns the axis along which n(t) may be largest; kNoAxis if it is zero throughout.
+// Returns the axis along which a component of n(t) may be largest, or kNoAxis if n(t) is zero throughout.
 constexpr std::size_t kNoAxis = 3;
 std::size_t axis_of(const ControlNormals& n) {
   const auto size = [&n](double Vec3d::*axis) {
@@ -103,8 +103,8 @@ std::size_t axis_of(const ControlNormals& n) {
 
 constexpr std::size_t kUpwards = 2;
 
-// Returns a root in [0, 1] to the precision of double, by Newton's method restricted to an interval that brackets the
-// root. If the values at the ends have the same sign, returns the first root, if there is any.
+// Returns a root of p in [0, 1] to the precision of double. Uses Newton's method, restricted to an interval that
+// brackets the root. If p has the same sign at 0 and at 1, returns the first root, or no value if there is none.
 std::optional<double> first_root(const Bernstein<double, 3>& p) {
   if (!(p[0] < 0 && p[3] > 0) && !(p[0] > 0 && p[3] < 0)) {
     const Roots<3> roots = roots_in_unit_interval(p);
@@ -123,9 +123,9 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
   return t;
 }
 
-// The data of a segment that all points need.
+// The data of a segment that the passages of all points need.
 struct MeshInSegment {
-  Segment segment;  // segment of the triangles
+  Segment segment;  // the segment of the triangles
   std::span<const std::uint32_t> faces;
   std::span<const BoxNode> nodes;
   std::vector<MovingBox> boxes;
@@ -135,7 +135,7 @@ struct MeshInSegment {
 }  // namespace
 
 struct Containment::Mesh {
-  Topology triangles;  // in the order of the tree
+  Topology triangles;  // the triangles in the order of the tree's leaves
   std::vector<std::uint32_t> faces;
   std::vector<BoxNode> nodes;
 
@@ -148,12 +148,13 @@ struct Containment::Mesh {
 
 namespace {
 
-// The path of one point through a segment.
+// The passage of one point through a segment, in which it may cross triangles.
 class Passage {
  public:
   Passage(const MeshInSegment& mesh, const MovingPoint& point) : mesh_(mesh), point_(point) {}
 
-  // Returns the winding number by the signed crossings of the half-line upwards from the point.
+  // Returns the winding number of the point at a time. It is the sum of the signs with which the half-line upwards from
+  // the point crosses triangles.
   [[nodiscard]] std::int32_t winding_number(Tick t) const {
     std::int32_t sum = 0;
     const double share = static_cast<double>(t) / static_cast<double>(kTicks);
@@ -163,7 +164,7 @@ class Passage {
     return sum;
   }
 
-  // Appends the crossings, ordered by t, without the index of the point.
+  // Appends the crossings of this point, ordered by t. The index of the point is left to the caller.
   void find_crossings(std::vector<Crossing>& result) {
     std::vector<std::uint32_t> open;
     visit_boxes(
@@ -181,8 +182,8 @@ class Passage {
   }
 
  private:
-  // The only root of the volume of a triangle in a cell of time. At the root the point is between the edges of the
-  // triangle, so it crosses the triangle.
+  // A root of the volume of a triangle (crossing_signs.h) that is the only one in a cell of time. At the root the point
+  // is between the edges of the triangle, so the point crosses the triangle.
   struct Root {
     std::uint32_t triangle;
     Cell cell;
@@ -198,8 +199,8 @@ class Passage {
     return {{corner(0), corner(1), corner(2)}, point_};
   }
 
-  // Returns true if this cell of time is too long to tell whether the point crosses the triangle, so that its parts
-  // must be examined. Otherwise records the crossing, if there is one.
+  // Returns true if this cell of time is too long to tell whether the point crosses the triangle, so that the caller
+  // must examine parts of the cell. Otherwise records the crossing, if there is one.
   bool is_open(const CrossingSigns& signs, std::uint32_t i, const Cell& cell) {
     const std::size_t axis = axis_of(mesh_.normals[i]);
     if (axis == kNoAxis) return false;
@@ -208,8 +209,8 @@ class Passage {
     return verdict.kind == Verdict::kOpen;
   }
 
-  // Splits a cell in which some triangles are open: around a root of the first of them or, if that did not help, in
-  // half.
+  // Splits a cell in which some triangles are open, that is, undecided. The cell is split around a root of the first
+  // open triangle or, if that did not help, in half.
   void cut(const Cell& cell, const std::vector<std::uint32_t>& open, int level) {
     const Tick width = cell.to - cell.from;
     if (width <= 2) {
@@ -236,15 +237,15 @@ class Passage {
     }
   }
 
-  // Returns the sign of the volume at t, which follows from the side of the root on which t is.
+  // Returns the sign of the volume at t, which depends on whether t is before or after the root.
   [[nodiscard]] static int sign_at(const Root& root, const CrossingSigns& signs, Tick t) {
     if (t <= root.cell.from) return -root.change;
     if (t >= root.cell.to) return root.change;
     return signs.volume_at(t);
   }
 
-  // Makes crossings of the open triangles within a moment, for the change of the winding number that the certain roots
-  // do not explain.
+  // Adds crossings of the open triangles within a moment. Their number is the change of the winding number that the
+  // certain roots do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {
@@ -263,8 +264,8 @@ class Passage {
       summed_.push_back(crossing_at(open[i % open.size()], t, direction));
   }
 
-  // Returns the time of a root. It is computed in double, and replaced by the result of a bisection unless exact signs
-  // on both sides of it agree with a root there.
+  // Returns the time of a root. The time is computed in double first. If exact signs on both sides of that time do not
+  // agree with a root there, a bisection with exact signs finds it instead.
   [[nodiscard]] double time_of(const Root& root) const {
     constexpr Tick kMargin = 8;
     const CrossingSigns signs = signs_of(root.triangle);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kNext{1, 2, 0};
 
-// Return the two axes that follow an axis.
+// Return the first and the second axis that follow a given axis in the cyclic order x, y, z.
 constexpr std::size_t first_of(std::size_t axis) noexcept { return kNext[axis]; }
 constexpr std::size_t second_of(std::size_t axis) noexcept { return kNext[kNext[axis]]; }
 
@@ -31,7 +31,7 @@ Triple cross_of(const Triple& b, const Triple& c) noexcept {
 double dot_of(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Triple sum_of(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// Returns the Bernstein coefficients of the volume over a cell, each times its binomial coefficient.
+// Returns the Bernstein coefficients of the volume over a cell, each multiplied by its binomial coefficient.
 Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::array<Triple, 3>& to) noexcept {
   const Triple before = cross_of(from[1], from[2]), after = cross_of(to[1], to[2]);
   const Triple between = sum_of(cross_of(from[1], to[2]), cross_of(to[1], from[2]));
@@ -39,8 +39,8 @@ Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::a
           dot_of(from[0], after) + dot_of(to[0], between), dot_of(to[0], after)};
 }
 
-// The numbers of digits that integers need. A coordinate has 24 + 253 bits, one more for a difference and 48 for the
-// time. A volume is a sum of six products of three coordinates.
+// The numbers of digits that wide integers need here. A coordinate has 24 + 253 bits, one more for a difference and 48
+// for the time. A volume is a sum of six products of three coordinates.
 constexpr std::size_t kCoordinateDigits = 15, kProductDigits = 31, kVolumeDigits = 46;
 using Coordinate = WideInteger<kCoordinateDigits>;
 using Product = WideInteger<kProductDigits>;
@@ -63,7 +63,7 @@ ExactVector difference(const ExactVector& a, const ExactVector& b) noexcept {
   return result;
 }
 
-// Adds a x b, component by component. The sums must be settled afterwards.
+// Adds a x b to `sum`, component by component. The caller must settle the sums afterwards (core/wide_integer.h).
 void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
@@ -72,8 +72,8 @@ void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) n
   }
 }
 
-// The corners relative to the point at both ends of a cell, as integers with a common unit. Each is computed when it is
-// first needed.
+// The corners of a triangle relative to the point at both ends of a cell, as integers with a common unit. Each
+// coordinate is computed when it is first needed.
 class ExactCell {
  public:
   ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept
@@ -98,8 +98,8 @@ class ExactCell {
     weights_ = {{{weight(kTicks - cell.from), weight(cell.from)}, {weight(kTicks - cell.to), weight(cell.to)}}};
   }
 
-  // Returns the sign of coefficient i of the volume: a sum over all ways to take i corners at the end of the cell and
-  // the others at its beginning.
+  // Returns the sign of coefficient i of the volume. This coefficient is a sum over all ways to take i corners at the
+  // end of the cell and the others at its beginning.
   [[nodiscard]] int volume(std::size_t i) noexcept {
     Volume value;
     for (const auto& at : choices(3, i)) {
@@ -112,8 +112,8 @@ class ExactCell {
       }
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // Expands -n = (c - a) x (b - a), a product of two factors, to degree 3: each choice leaves out the third factor,
-    // which is 1.
+    // If the volume is zero, the tie is decided by -n = (c - a) x (b - a). This product has two factors that depend on
+    // t, and is expanded to degree 3: each choice leaves out the third factor, which is 1.
     ProductVector normal;
     for (const auto& at : choices(3, i)) {
       add_cross(difference(seen(at[0], 2), seen(at[0], 0)), difference(seen(at[1], 1), seen(at[1], 0)), normal);
@@ -124,7 +124,7 @@ class ExactCell {
     return 0;
   }
 
-  // Computes the sign of coefficient i of the side of an edge.
+  // Returns the sign of coefficient i of the side of an edge along an axis.
   [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) noexcept {
     const std::size_t next = kNext[edge], x = first_of(axis), y = second_of(axis);
     Product value;
@@ -134,8 +134,8 @@ class ExactCell {
       value.add_product(seen(a, edge, y), seen(b, next, x), -1);
     }
     if (const int sign = settled_sign(value); sign != 0) return sign;
-    // Expands -e_x (b - a)_y + e_y (b - a)_x, which has one factor that depends on t, to degree 2: each choice leaves
-    // out the second factor, which is 1.
+    // If the side is zero, the tie is decided by -e_x (b - a)_y + e_y (b - a)_x. This term has one factor that depends
+    // on t, and is expanded to degree 2: each choice leaves out the second factor, which is 1.
     Coordinate along_x, along_y;
     for (const auto& at : choices(2, i)) {
       along_x.add(seen(at[0], edge, y), 1);
@@ -163,7 +163,7 @@ class ExactCell {
     return {{{{0, 1, 1}, {1, 0, 1}, {1, 1, 0}}}, 3};
   }
 
-  // Return a corner at one end of the cell, and one coordinate of it.
+  // Return a corner at one end of the cell as seen from the point, and one coordinate of such a corner.
   const ExactVector& seen(std::size_t end, std::size_t corner) noexcept {
     for (std::size_t k = 0; k < 3; ++k) (void)seen(end, corner, k);
     return seen_[end][corner];
@@ -179,12 +179,12 @@ class ExactCell {
     return result;
   }
 
-  // A coordinate at an end of the segment, and the residual that its float lacks.
+  // A coordinate at an end of the segment: a float, and the remainder that rounding to this float left.
   struct Unrounded {
     float value;
     double residual;
 
-    // Calls body(part) for floats whose sum is the coordinate.
+    // Calls body(part) for several floats whose sum is the coordinate.
     template <class Body>
     void for_parts(const Body& body) const {
       body(value);
@@ -201,7 +201,7 @@ class ExactCell {
     return {axis == 0 ? at.x : axis == 1 ? at.y : at.z, axis == 0 ? left.x : axis == 1 ? left.y : left.z};
   }
 
-  // Adds (p - q) * weight.
+  // Adds (p - q) * weight to `result`.
   void add_difference(const Unrounded& p, const Unrounded& q, const UnitFraction& weight,
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
@@ -232,13 +232,13 @@ class ExactCell {
 
   const std::array<MovingPoint, 3>& corners_;
   const MovingPoint& point_;
-  unsigned base_ = 253;  // all coordinates are multiples of 2^(base - 149)
+  unsigned base_ = 253;  // exponent of the common unit: all coordinates are multiples of 2^(base - 149)
   std::array<std::array<UnitFraction, 2>, 2> weights_;
   std::array<std::array<ExactVector, 3>, 2> seen_;
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// The arguments of an ExactCell, which is only made if double cannot decide.
+// An ExactCell that is made from its arguments when double cannot decide for the first time.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;
@@ -248,7 +248,7 @@ struct Integers {
   ExactCell& get() noexcept { return made ? *made : made.emplace(corners, point, cell); }
 };
 
-// Returns the sign that all values have; 0 if signs differ or one is 0.
+// Returns the sign that all values have in common; 0 if signs differ or one of them is 0.
 template <std::size_t kCount>
 int common_sign(const std::array<int, kCount>& signs) noexcept {
   for (const int sign : signs) {
@@ -257,7 +257,7 @@ int common_sign(const std::array<int, kCount>& signs) noexcept {
   return signs[0];
 }
 
-// Returns the sign of each value that exceeds the bound of its error, and 0 for the others.
+// Returns the sign of each value that is larger than `bound`, the bound of its error, and 0 for the other values.
 template <std::size_t kCount>
 std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, double bound) noexcept {
   std::array<int, kCount> signs;
@@ -281,10 +281,11 @@ CrossingSigns::CrossingSigns(const std::array<MovingPoint, 3>& corners, const Mo
     for (std::size_t i = 0; i < 3; ++i)
       size[i] = std::max(size[i], std::max(std::fabs(from_[k][i]), std::fabs(to_[k][i])));
   }
-  // A difference has one rounding and a position at t three more, so each has an error of at most 4 u of the largest
-  // coordinate along its axis. A coefficient of a side is a sum of 4 products, and one of a volume a sum of 18; each
-  // has the errors of its factors and its own roundings, and every sum adds at most one rounding of the whole. This is
-  // below 4 (8 + 1 + 2) u = 44 u of the product of the sizes, and 18 (12 + 2 + 5) u = 342 u.
+  // Let u = 2^-53. A difference has one rounding, and a position at t has three more, so each has an error of at most 4
+  // u of the largest coordinate along its axis. A coefficient of a side is a sum of 4 products of two factors, and a
+  // coefficient of a volume is a sum of 18 products of three. Each product has the errors of its factors and its own
+  // roundings, and every addition adds at most one rounding of the whole sum. In units of the product of the sizes, the
+  // error is below 4 (8 + 1 + 2) u = 44 u for a side and 18 (12 + 2 + 5) u = 342 u for a volume.
   constexpr double kRounding = 0x1p-53;
   for (std::size_t axis = 0; axis < 3; ++axis)
     side_bound_[axis] = 64 * kRounding * size[first_of(axis)] * size[second_of(axis)];

@@ -1,8 +1,8 @@
 /// Computes the signs that decide whether a moving point crosses a moving triangle. The signs are exact, and are not
 /// zero in special positions.
 ///
-/// Seen from the point, the corners a, b, c of the triangle move on straight lines. Two kinds of polynomials in t
-/// decide:
+/// The corners a, b, c of the triangle, relative to the point, move on straight lines. Two kinds of polynomials in t
+/// decide whether the point crosses the triangle:
 ///
 ///     volume     V(t) = a . (b x c)                 cubic; zero if the point is in the plane of the triangle
 ///     side       S_ab(t) = a_x b_y - a_y b_x        quadratic, one for each edge; all three have the same sign if the
@@ -35,12 +35,12 @@
 
 namespace chronormal::inline internal {
 
-/// A time within a segment, in units of 2^-48: 0 to kTicks.
+/// A time within a segment, in units of 2^-48 of the segment, from 0 to kTicks.
 using Tick = std::int64_t;
 inline constexpr int kTickBits = 48;
 inline constexpr Tick kTicks = Tick{1} << kTickBits;
 
-/// A piece of a segment; if from == to, it is a moment.
+/// A piece of time within a segment; if from == to, the piece is a moment.
 struct Cell {
   Tick from = 0, to = kTicks;
 };
@@ -51,29 +51,30 @@ struct MovingPoint {
   Vec3d from_residual = {}, to_residual = {};  ///< the remainders of the rounding to float (motion/segment_end.h)
 };
 
-/// The behaviour of a triangle in a cell.
+/// The answer for a triangle and a cell of time.
 struct Verdict {
   enum Kind {
-    kNothing,   ///< the point does not cross it
-    kCrossing,  ///< the point crosses it, once
-    kOpen       ///< the cell is too long to tell
+    kNothing,   ///< the point does not cross the triangle
+    kCrossing,  ///< the point crosses the triangle once
+    kOpen       ///< the cell of time is too long to tell
   };
   Kind kind = kNothing;
-  int change = 0;  ///< the sign of the volume after a crossing, by which the winding number changes
+  int change = 0;  ///< the sign of the volume after a crossing; the winding number changes by this number
 };
 
 class CrossingSigns {
  public:
   CrossingSigns(const std::array<MovingPoint, 3>& corners, const MovingPoint& point) noexcept;
 
-  /// Tells whether all corners stay on the same side of the point along one axis, so that nothing is crossed.
+  /// Returns true if all corners stay on the same side of the point along one axis, so that the point cannot cross the
+  /// triangle.
   [[nodiscard]] bool is_beside() const noexcept;
 
-  /// Returns the behaviour of the triangle in a cell, with sides along axis 0, 1 or 2.
+  /// Returns the answer for a cell of time. `axis` (0, 1 or 2) is the axis along which sides are taken.
   [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
-  /// Returns what the triangle adds to the winding number at a moment: 1 if the half-line from the point along the axis
-  /// leaves through it, -1 if it enters, and otherwise 0.
+  /// Returns the number that the triangle adds to the winding number at a moment. It is 1 if the half-line from the
+  /// point along the axis leaves the mesh through the triangle, -1 if the half-line enters the mesh, and otherwise 0.
   [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
 
   /// Returns the sign of the volume at a moment.
@@ -89,8 +90,8 @@ class CrossingSigns {
 
   std::array<MovingPoint, 3> corners_;
   MovingPoint point_;
-  Corners from_, to_;  // seen from the point, rounded
-  Seen side_bound_{};  // bounds of the rounding errors, by axis
+  Corners from_, to_;  // the corners relative to the point at both ends of the segment, rounded to double
+  Seen side_bound_{};  // bounds of the rounding errors of sides, by axis
   double volume_bound_ = 0;
 };
 

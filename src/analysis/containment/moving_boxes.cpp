@@ -14,7 +14,7 @@ struct Range {
   std::uint32_t node, first, count;
 };
 
-// Returns the axis along which the centres are farthest apart.
+// Returns the axis along which the centres of triangles are farthest apart.
 std::size_t longest_axis(const Middle* begin, const Middle* end) {
   std::size_t longest = 0;
   float most = -1;
@@ -29,7 +29,8 @@ std::size_t longest_axis(const Middle* begin, const Middle* end) {
   return longest;
 }
 
-// Extends a box to include coordinates; if they were rounded, up to their neighbours.
+// Extends a box to include some coordinates. If the coordinates were rounded, the box is extended to their neighbours
+// in float32.
 void enclose(std::array<float, 3>& low, std::array<float, 3>& high, const std::array<float, 3>& least,
              const std::array<float, 3>& most, bool are_rounded = false) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -45,7 +46,7 @@ BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::u
   std::vector<Middle> middles(corners.size() / 3);
   for (std::size_t i = 0; i < middles.size(); ++i) {
     const auto v = corners.subspan(3 * i, 3);
-    // Adds a third of each position, since a sum of three could overflow.
+    // A third of each position is added, since the sum of three positions could overflow.
     const Vec3f middle = (1.0F / 3) * positions[v[0]] + (1.0F / 3) * positions[v[1]] + (1.0F / 3) * positions[v[2]];
     middles[i] = {{middle.x, middle.y, middle.z}, static_cast<std::uint32_t>(i)};
   }
@@ -78,7 +79,7 @@ std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segmen
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr std::array<float, 3> kLow{kInfinity, kInfinity, kInfinity}, kHigh{-kInfinity, -kInfinity, -kInfinity};
   std::vector<MovingBox> boxes(nodes.size(), {kLow, kLow, kHigh, kHigh});
-  // Goes through the nodes from last to first, since children come after their parents in the list.
+  // Nodes are visited from last to first, since children come after their parents in the list.
   for (std::size_t n = nodes.size(); n-- > 0;) {
     const BoxNode& node = nodes[n];
     MovingBox& box = boxes[n];

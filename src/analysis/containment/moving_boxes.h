@@ -1,9 +1,9 @@
 /// A hierarchy of boxes around the triangles of a mesh that deforms.
 ///
-/// A box has its corners at both ends of a segment and moves between them on straight lines, as everything inside does.
-/// For a point that also moves, the times at which it is inside are given by six linear inequalities. So a fast mesh
-/// does not need large boxes. The tree of triangles, split at medians, is computed once; every segment has its own
-/// boxes around the tree's nodes.
+/// A box is given by its limits at both ends of a segment. Between the ends the limits move on straight lines, like
+/// everything inside the box. For a point that also moves, six linear inequalities give the times at which the point is
+/// inside. So a fast mesh does not need large boxes. The tree of triangles, split at medians, is computed once; every
+/// segment has its own boxes around the nodes of the tree.
 ///
 /// Threads    const functions may run at the same time.
 /// Source     Gruenschloss et al., MSBVH: an efficient acceleration data structure for ray traced motion blur (2011).
@@ -27,24 +27,24 @@ namespace chronormal::inline internal {
 
 /// A node of the tree. The two children of a node follow each other in the list.
 struct BoxNode {
-  std::uint32_t first = 0;  ///< the first child, or the first triangle
-  std::uint32_t count = 0;  ///< number of triangles; 0: the node has two children
+  std::uint32_t first = 0;  ///< the number of the first child, or of the first triangle
+  std::uint32_t count = 0;  ///< number of triangles in a leaf; 0 if the node has two children
 };
 
 struct BoxTree {
-  std::vector<BoxNode> nodes;        ///< the root first, parents before their children
-  std::vector<std::uint32_t> order;  ///< the triangles, ordered so that those of a node are consecutive
+  std::vector<BoxNode> nodes;        ///< the root is first, and parents come before their children
+  std::vector<std::uint32_t> order;  ///< numbers of the triangles, ordered so that those of a node are consecutive
 };
 
-/// Groups triangles that are near each other in these positions. corners has three vertices for each triangle.
-/// O(n log n).
+/// Builds a tree of triangles, in which triangles that are near each other in these positions are in the same nodes.
+/// corners has three vertices for each triangle. O(n log n).
 [[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
 
 /// A box that moves, given by its limits at both ends of a segment. Points on a limit are inside.
 struct MovingBox {
   std::array<float, 3> low_from, low_to, high_from, high_to;
 
-  /// Tells whether a point is inside at some time.
+  /// Returns true if the point is inside the box at some time in the segment.
   [[nodiscard]] bool meets(const MovingPoint& point) const noexcept {
     double begin = 0, end = 1;
     return cut(low_from[0], low_to[0], point.from.x, point.to.x, 1, begin, end) &&
@@ -55,7 +55,7 @@ struct MovingBox {
            cut(high_from[2], high_to[2], point.from.z, point.to.z, -1, begin, end);
   }
 
-  /// Tells whether the half-line upwards (z) from the point meets the box at t.
+  /// Returns true if the half-line upwards (along +z) from the point meets the box at t.
   [[nodiscard]] bool is_above(const MovingPoint& point, double t) const noexcept {
     return reaches(low_from[0], low_to[0], point.from.x, point.to.x, 1, t) &&
            reaches(high_from[0], high_to[0], point.from.x, point.to.x, -1, t) &&
@@ -65,8 +65,8 @@ struct MovingBox {
   }
 
  private:
-  // Restricts [begin, end] to the times at which the point is above the limit, or below it if the sign is -1. Returns
-  // false if there are none.
+  // Restricts [begin, end] to the times at which the point is above a limit that moves, or below the limit if the sign
+  // is -1. Returns false if there are no such times.
   static bool cut(float from, float to, float point_from, float point_to, double sign, double& begin,
                   double& end) noexcept {
     const double at_from = sign * (double{point_from} - from), at_to = sign * (double{point_to} - to);
@@ -80,14 +80,15 @@ struct MovingBox {
     return sign * ((1 - t) * at_from + t * at_to) >= -kSlack * (std::fabs(at_from) + std::fabs(at_to));
   }
 
-  static constexpr double kSlack = 1e-14;  // more than four roundings
+  static constexpr double kSlack = 1e-14;  // more than the error of four roundings
 };
 
-/// Returns the boxes around all nodes in a segment. The topology of the segment must have the triangles in the order of
+/// Returns the boxes of all nodes for a segment. The topology of the segment must have the triangles in the order of
 /// the tree. O(n).
 [[nodiscard]] std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segment& segment);
 
-/// Calls visit(triangle) for the triangles in all leaves that pass the test together with all nodes above them.
+/// Calls visit(triangle) for the triangles of each leaf whose box passes the test, if the boxes of all nodes above it
+/// pass the test, too.
 template <class Test, class Visit>
 void visit_boxes(std::span<const BoxNode> nodes, std::span<const MovingBox> boxes, const Test& test,
                  const Visit& visit) {

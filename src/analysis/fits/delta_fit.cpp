@@ -12,15 +12,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Weight of the penalty that keeps deltas close to the start if the rows do not determine them, relative to the mean of
-// the diagonal.
+// The weight of the penalty that keeps deltas close to those at the start where the rows do not determine them,
+// relative to the mean of the matrix's diagonal.
 constexpr double kRidge = 1e-9;
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// Factors the linear system of the named targets, which is a part of the normal equations of all targets.
+// Factors the linear system of the named targets. Its matrix is a part of the normal equations of all targets.
 Cholesky factor(const std::vector<double>& matrix, std::size_t size, std::span<const std::uint32_t> named) {
   const std::size_t count = named.size();
   std::vector<double> part(count * count);
@@ -82,7 +82,7 @@ void DeltaFit::add(std::span<const double> weights, std::span<const Vec3d> missi
 
 void DeltaFit::solve() {
   const std::size_t targets = right_.size();
-  std::optional<Cholesky> factors;  // factors of the last element, since neighbours mostly have the same targets
+  std::optional<Cholesky> factors;  // the factors for the last element, since neighbours mostly have the same targets
   std::vector<std::uint32_t> factored;
   for (const std::vector<Entry>& entries : entries_of_elements(deltas_)) {
     if (entries.empty()) continue;

@@ -1,7 +1,8 @@
 /// Fits the normal deltas that a viewer should add up, by least squares.
 ///
-/// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D, gets the
-/// differences to the wanted normals for some weight vectors, and then changes every D to minimise the differences:
+/// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D. For some
+/// weight vectors it is told by how much the rendered normals miss the wanted ones. It then changes every D so that
+/// these differences become as small as possible:
 ///
 ///     DeltaFit fit(start);
 ///     for (each weight vector w) {
@@ -23,37 +24,39 @@
 
 namespace chronormal::inline internal {
 
-/// The normals that a viewer adds up.
+/// The base normals and the deltas of normals that a viewer adds up.
 struct DeltaNormals {
-  std::vector<float> base;          ///< N, (elements, 3)
-  std::vector<BlendTarget> deltas;  ///< D_i, by elements instead of vertices
+  std::vector<float> base;          ///< N of each element, (elements, 3)
+  std::vector<BlendTarget> deltas;  ///< D_i; `vertices` are numbers of elements here
 };
 
-/// Writes N + sum_i w_i D_i of all elements: the direction that a viewer renders, not normalised. `weights` must have a
-/// value for each delta, and `result` a vector for each element
+/// Writes N + sum_i w_i D_i of all elements. This is the direction that a viewer renders, not scaled to length 1.
+/// Preconditions: `weights` has a value for each target, and `result` a vector for each element.
 void shown_normals(const DeltaNormals& deltas, std::span<const double> weights, std::span<Vec3d> result) noexcept;
 
 class DeltaFit {
  public:
   explicit DeltaFit(DeltaNormals start);
 
-  /// Returns the present deltas: the ones at the start, or the result of the last solve().
+  /// Returns the present deltas, which are those of the start until the first solve(), and then the result of the last
+  /// solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 
   /// Adds a row to the fit: with these weights, a viewer should render shown_normals(deltas(), weights) + missing.
-  /// O(entries of deltas + targets^2). `weights` must have a value for each delta, and `missing` a vector for each
-  /// element
+  /// O(entries of deltas + targets^2). Preconditions: `weights` has a value for each target, and `missing` a vector for
+  /// each element.
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
-  /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() is smallest, for each
-  /// element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
-  /// together), the result has the deltas that are nearest to those at the start. Cost: for each element, a linear
-  /// system with one equation for each of its deltas.
+  /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() becomes as small as
+  /// possible, for each element separately. The rows may not determine the deltas, if there are fewer rows than targets
+  /// or if some weights always change together. The result then has the deltas that are nearest to those at the start.
+  /// Cost: for each element, a linear system with one equation for each of its deltas.
   void solve();
 
  private:
   DeltaNormals deltas_;
-  // The normal equations: one matrix, of which each element uses a part, and a right-hand side for each entry.
+  // The normal equations of all elements. Each element uses a part of the one matrix; each entry of a delta has a
+  // right-hand side.
   std::vector<double> matrix_;
   std::vector<std::vector<Vec3d>> right_;
 };

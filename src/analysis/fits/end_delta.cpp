@@ -1,7 +1,8 @@
 // The direction of the line u0 + w (s u1 - u0) moves along the great circle from u0 to u1, and s only changes its
-// speed. So for each w, the angle to n(w) decreases with s while the line is behind n(w), seen along the circle, and
-// increases when it is ahead. Hence, if all angles are below 90 degrees, their maximum over w has a single minimum in
-// s. At this s, the worst angle behind equals the worst angle ahead, so s is the root of a monotone function.
+// speed. For each w, the angle between the line and n(w) decreases with s while the line is behind n(w), seen along the
+// circle, and increases when the line is ahead. Hence, if all angles are below 90 degrees, their maximum over w has a
+// single minimum in s. At this s, the worst angle behind equals the worst angle ahead, so s is the root of a monotone
+// function.
 //
 // The maximum over w is taken over samples; then the true maxima at that s are added to the samples, until the result
 // no longer improves (an exchange as in the algorithm of Remez).
@@ -19,10 +20,10 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kHalfPi = 1.57079632679489661923;
-constexpr double kRange = 11.090354888959125;  // log of 2^16, the largest s
+constexpr double kRange = 11.090354888959125;  // the logarithm of 2^16, which is the largest s
 
-// Angles are compared by a number that grows with them and needs no trigonometry: the square of the sine or, from 90
-// degrees on, 2 minus the square.
+// Angles are compared by a number, their key, that grows with the angle and needs no trigonometry. It is the square of
+// the sine or, from 90 degrees on, 2 minus this square.
 double angle_of_key(double key) noexcept {
   return key <= 1 ? portable::asin(std::sqrt(key)) : 2 * kHalfPi - portable::asin(std::sqrt(std::max(2 - key, 0.0)));
 }
@@ -37,21 +38,21 @@ double key_between(const Vec3d& line, const Vec3d& u) noexcept {
   return key_of(dot(c, c) / dot(line, line), dot(line, u));
 }
 
-// A weight w, and the normal there; kept in ascending order of w.
+// A weight w, and the exact normal at this weight.
 struct Sample {
   double w = 0;
-  Vec3d u;  // the exact unit normal
+  Vec3d u;  // the exact unit normal at w
 };
 
 class Samples {
  public:
   static constexpr std::size_t kMost = 128;
 
-  // Makes equidistant samples, and then additional ones where the normal turns fast.
+  // Makes equidistant samples, and then additional samples where the normal turns fast.
   explicit Samples(const ControlNormals& normals) noexcept : normals_(normals) {
     constexpr std::size_t kIntervals = 16, kMostTurning = 80;
     constexpr int kLevels = 20;
-    constexpr double kTurn = 0.2;  // radians between neighbours
+    constexpr double kTurn = 0.2;  // the largest angle in radians between the normals of neighbouring samples
     for (std::size_t i = 0; i <= kIntervals; ++i)
       samples_[count_++] = at(static_cast<double>(i) / static_cast<double>(kIntervals));
     for (int level = 0; level < kLevels; ++level) {
@@ -68,7 +69,7 @@ class Samples {
   [[nodiscard]] const Sample& operator[](std::size_t i) const noexcept { return samples_[i]; }
   [[nodiscard]] Sample at(double w) const noexcept { return {w, unit_normal_at(normals_, w).vector}; }
 
-  // Does nothing if the list is full, or has this w.
+  // Inserts a sample at w, unless the list is full or has a sample at w already.
   void insert(double w) noexcept {
     if (count_ == kMost) return;
     const auto end = samples_.begin() + static_cast<std::ptrdiff_t>(count_);
@@ -79,8 +80,8 @@ class Samples {
     ++count_;
   }
 
-  // Adds weights at which the line from `from` to `to` has turned by roughly equal shares, since it turns fast near an
-  // end if one of the two vectors is much shorter than the other.
+  // Adds samples at the weights that divide the turn of the line from `from` to `to` into roughly equal angles. The
+  // line turns fast near an end if one of the two vectors is much shorter than the other.
   void follow(const Vec3d& from, const Vec3d& to) noexcept {
     const double ratio = length(to) / length(from);
     constexpr int kShares = 8;
@@ -98,22 +99,22 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Returns the key of the angle between the line and a sample; keys are the numbers by which angles are compared. If the
-// line is zero at the sample, its direction jumps there, and both directions count.
+// Returns the key of the angle between the line and a sample. If the line is zero at the sample, its direction jumps
+// there, and both directions count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
   if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
-// Returns the largest key of the samples.
+// Returns the largest key of all samples.
 double largest_key(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) largest = std::max(largest, line_key(from, to, samples[i]));
   return largest;
 }
 
-// Finds the largest angle between the line and the exact normal over w, by golden section around the highest local
+// Finds the largest angle between the line and the exact normal over all w, by golden section around the highest local
 // maxima of the samples.
 Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   constexpr double kGolden = 0.6180339887498949, kWorthwhile = 0.8;
@@ -152,7 +153,7 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// The angles at all samples as functions of s, and the search for the s that makes the largest of them smallest.
+// The angles at all samples as functions of s, and the search for the s whose largest angle is smallest.
 class ScaleSearch {
  public:
   ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}
@@ -172,7 +173,7 @@ class ScaleSearch {
   }
   void clear() noexcept { count_ = 0; }
 
-  // Returns the best log s over the samples, and writes the key of the largest angle.
+  // Returns the logarithm of the best s for the samples, and writes the key of the largest angle.
   [[nodiscard]] double best_log_scale(double guess, double& key) const noexcept {
     double low = -kRange, high = kRange;
     const double best = below_right_angle(low, high) ? balance(low, high, guess) : best_of_grid();
@@ -181,13 +182,13 @@ class ScaleSearch {
   }
 
  private:
-  // The polynomials in s for one w: the component of (line x u) along the pole, the cosine, and the squared length of
-  // the line. `height` is the height of u above the plane of the great circle.
+  // The polynomials in s that give the angle at one w: the component of (line x u) along the pole, the cosine, and the
+  // squared length of the line. `height` is the height of u above the plane of the great circle.
   struct Term {
     double ahead0, ahead1, cosine0, cosine1, height, square0, square1, square2;
   };
   struct Worst {
-    double behind = 0, ahead = 0;  // keys: how far the line is behind or ahead of the normal
+    double behind = 0, ahead = 0;  // keys of the largest angle by which the line is behind or ahead of the normal
   };
 
   [[nodiscard]] Worst worst(double log_scale) const noexcept {
@@ -209,8 +210,8 @@ class ScaleSearch {
     return std::max(w.behind, w.ahead);
   }
 
-  // Narrows [low, high] to the values of log s for which all angles are below 90 degrees. Each w allows an interval of
-  // them.
+  // Narrows [low, high] to the values of log s for which all angles are below 90 degrees. For each w, these values are
+  // an interval. Returns false if there are none.
   [[nodiscard]] bool below_right_angle(double& low, double& high) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
@@ -221,7 +222,7 @@ class ScaleSearch {
     return low < high;
   }
 
-  // Finds where the worst angles behind and ahead are equal, by false position with the Illinois rule.
+  // Returns the log s at which the worst angles behind and ahead are equal, by false position with the Illinois rule.
   [[nodiscard]] double balance(double low, double high, double guess) const noexcept {
     constexpr int kSteps = 60;
     constexpr double kEqual = 5e-4, kNarrow = 1e-9;
@@ -249,8 +250,8 @@ class ScaleSearch {
     return x;
   }
 
-  // Searches a grid of s, since some angle is 90 degrees or more for every s, so that the largest angle may have
-  // several local minima.
+  // Returns the best log s of a grid, refined by halving its step. It is used if some angle is 90 degrees or more for
+  // every s, since the largest angle may then have several local minima.
   [[nodiscard]] double best_of_grid() const noexcept {
     constexpr int kGrid = 44, kHalvings = 20;
     double step = 2 * kRange / kGrid, best = 0, best_key = largest(0);
@@ -276,8 +277,8 @@ class ScaleSearch {
   std::size_t count_ = 0;
 };
 
-// Returns log s of the line with exactly the direction of n(w), if n(w) has the degree 0 or 1, or is w or 1 - w times a
-// line.
+// Returns the log s for which the line has exactly the direction of n(w). There is such an s if n(w) has degree 0 or 1,
+// or if n(w) is w or 1 - w times a line.
 double log_of_degree_1(const ControlNormals& normals) noexcept {
   const Vec3d from = max_abs(normals.n0) == 0 ? 2 * normals.m : normals.n0;
   const Vec3d to = max_abs(normals.n1) == 0 ? 2 * normals.m : normals.n1;
@@ -304,18 +305,19 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   Samples samples(normals);
   const Samples first = samples;
   const auto plain = [&] { return EndDelta{u1 - u0, 1, angle_of_key(highest_peak(first, u0, u1).key)}; };
-  // The sine of the smallest angle at which two directions are told apart. Below it they count as equal or antipodal,
-  // since rounding would decide which one is ahead.
+  // The sine of the smallest angle between two directions that do not count as equal or antipodal. Below it, rounding
+  // would decide which direction is ahead.
   constexpr double kSmallestSine = 1e-10;
   if (length(cross(u0, u1)) < kSmallestSine) return plain();
 
-  // Round 0 tries the s that is exact for an element of degree 1. A search would only approximate this s.
+  // Round 0 tries the s that is exact for an element of degree 1, which a search would only approximate.
   double log_scale = log_of_degree_1(normals), lowest_possible = 0;
   Peak best{0, 3};
   double best_scale = 1;
   ScaleSearch search(u0, u1);
   constexpr int kExchanges = 6;
-  constexpr double kGain = 1 + 1e-3, kExact = 1e-24;  // gain in keys, which is half as much in angles
+  // Smallest gain and largest exact error, as keys; a gain in angles is half as much.
+  constexpr double kGain = 1 + 1e-3, kExact = 1e-24;
   for (int round = 0; round <= kExchanges; ++round) {
     const double s = portable::exp(log_scale);
     samples.follow(u0, s * u1);

@@ -1,7 +1,7 @@
-// Subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011, algorithm 4.4): a block of
-// random columns is repeatedly multiplied by the matrix and orthonormalised. Restricted to the space of this block, the
-// matrix is small; its eigenvectors, found by Jacobi rotations, combine the columns of the block to eigenvectors of the
-// large matrix.
+// Subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011, algorithm 4.4). A block of
+// random columns is repeatedly multiplied by the matrix and made orthonormal. In the space that the columns of this
+// block span, the matrix is a small one. Jacobi rotations find the eigenvectors of this small matrix, which combine the
+// columns of the block to eigenvectors of the large matrix.
 #include "analysis/fits/leading_vectors.h"
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kMore = 8;  // additional columns, which make the iteration converge
+constexpr std::size_t kMore = 8;  // number of additional columns, with which the iteration converges faster
 constexpr int kIterations = 16, kMostSweeps = 30;
-constexpr double kNothing = 1e-12;  // share of the largest eigenvalue; smaller eigenvalues are rounding errors
+constexpr double kNothing = 1e-12;  // relative to the largest eigenvalue; smaller eigenvalues are rounding errors
 constexpr double kDiagonal = 1e-13;
 
-// The columns of a matrix, as an array of columns with n numbers each.
+// The columns of a matrix, each an array of n numbers.
 using Columns = std::vector<std::vector<double>>;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -30,7 +30,7 @@ void add(std::span<double> to, double factor, std::span<const double> what) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * what[i];
 }
 
-// Returns pseudo-random numbers around zero, which do not depend on the standard library.
+// Returns columns of pseudo-random numbers around zero. The numbers do not depend on the standard library.
 Columns some_columns(std::size_t n, std::size_t count) {
   Columns columns(count, std::vector<double>(n));
   std::uint64_t state = 1;
@@ -43,8 +43,8 @@ Columns some_columns(std::size_t n, std::size_t count) {
   return columns;
 }
 
-// Makes columns orthonormal; a column that depends on earlier ones becomes zero. Two passes are enough (Kahan and
-// Parlett).
+// Makes columns orthonormal. A column that depends linearly on earlier columns becomes zero. Two passes are enough
+// (Kahan and Parlett).
 void make_orthonormal(Columns& columns) {
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const double before = std::sqrt(dot(columns[c], columns[c]));
@@ -60,15 +60,15 @@ Columns multiplied(std::span<const double> matrix, const Columns& columns) {
   Columns result;
   for (const std::vector<double>& column : columns) {
     std::vector<double>& product = result.emplace_back(column.size(), 0.0);
-    // The matrix is symmetric, so its rows equal its columns.
+    // The matrix is symmetric, so row r is also column r.
     for (std::size_t r = 0; r < column.size(); ++r)
       if (column[r] != 0) add(product, column[r], matrix.subspan(r * column.size(), column.size()));
   }
   return result;
 }
 
-// Leaves the eigenvalues of a small symmetric matrix on its diagonal, and returns its eigenvectors (one per row), by
-// Jacobi's rotations.
+// Replaces a small symmetric matrix by a diagonal matrix of its eigenvalues, and returns its eigenvectors, one per row.
+// Uses Jacobi's rotations.
 Columns diagonalize(Columns& matrix) {
   const std::size_t n = matrix.size();
   Columns vectors(n, std::vector<double>(n, 0.0));

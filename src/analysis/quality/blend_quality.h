@@ -27,31 +27,33 @@
 
 namespace chronormal::inline internal {
 
-/// Returns exact base normals, and for each target the delta from them to the exact normals of this target alone at
+/// Returns exact base normals. The delta of each target leads from them to the exact normals of this target alone at
 /// weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
 
 /// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for
-/// each element separately. If the rows do not determine the deltas (fewer rows than targets, weights that always go
-/// together), the result is closest to the end-point deltas. Cost: an evaluation for each row, and for each element a
-/// linear system with one equation for each target that moves it. weights must be (rows, targets)
+/// each element separately. u(w) is the exact unit normal. The rows may not determine the deltas, if there are fewer
+/// rows than targets or if some weights always change together. The result is then closest to the end-point deltas.
+/// Cost: an evaluation for each row, and for each element a linear system with one equation for each target that moves
+/// it. Precondition: weights is (rows, targets).
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
-/// Returns the angles between the rendered and the exact normals, over all rows, and all elements for which one of the
-/// two differs from the base. max_at has the row as its segment. `weights` must be (rows, targets), and `deltas` must
-/// have the elements and targets of `normals`
+/// Measures the angles between the rendered and the exact normals, over all rows. Elements count in a row if their
+/// rendered or exact normal differs from that of the base. In max_at, the row is the segment. Preconditions: `weights`
+/// is (rows, targets), and `deltas` has the elements and targets of `normals`.
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);
 
 struct BlendWeightOptions {
   std::size_t targets = 0;
   std::size_t rows = 100;
-  std::size_t active = 0;  ///< targets with a nonzero weight in each row; 0, or more than there are: all
+  /// Number of targets with a nonzero weight in each row; 0, or a number above `targets`, stands for all targets.
+  std::size_t active = 0;
   double low = 0, high = 1;
   std::uint64_t seed = 1;
 };
 
-/// Returns rows of random weights of `active` random targets, uniform between low and high. Pure: the same on every
-/// system.
+/// Returns rows of random weights. In each row, `active` random targets have weights that are uniform between low and
+/// high. Pure: the result is the same on every system.
 [[nodiscard]] std::vector<double> random_blend_weights(const BlendWeightOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Sums of angular errors.
+// Adds up angular errors over batches of samples, and computes their mean values.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The exact normals with which all schemes are compared. They are cross products of vertices at t in double, or in
-// integers if double cannot tell them from rounding error.
+// Computes the exact normals with which all schemes are compared. They are cross products of vertices at t, in double.
+// If double cannot tell a normal from its rounding error, integers compute it.
 #include "chronormal/analysis/quality.h"
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 namespace chronormal {
 namespace {
 
-// The share of the size of its terms below which a sum is computed in integers. It is about 500,000 rounding errors, so
-// a larger sum has a direction with an error of at most 1e-5 rad.
+// The size of a sum, relative to the size of its terms, below which the sum is computed in integers. It is about
+// 500,000 rounding errors, so a larger sum has a direction with an error of at most 1e-5 rad.
 constexpr double kDoubtfulShare = 1e-10;
-// The largest angle by which a rounding of t may turn a normal. A normal that turns more has no definite direction at
-// t.
+// The largest angle, in radians, by which rounding t may turn a normal. A normal that turns more has no definite
+// direction at t.
 constexpr double kMostTurned = 1e-5;
 
-// A vector between two others, and the size of its terms, which bounds its rounding error.
+// A vector interpolated between two others, and the size of its terms, which bounds its rounding error.
 struct Interpolated {
   Vec3d vector;
   double size;
@@ -35,7 +35,8 @@ struct Interpolated {
 bool is_certain(const ReferenceArea& area) noexcept { return max_abs(area.n) > kDoubtfulShare * area.products; }
 
 ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32_t> face, double t) {
-  // The first corner is the origin: differences of float32 positions are exact in double, or nearly so.
+  // Corners are taken relative to the first corner, since differences of float32 positions are exact in double, or
+  // nearly exact.
   const SegmentEnd start = SegmentEnd::from(segment), end = SegmentEnd::to(segment);
   const auto vertex_at = [&](std::uint32_t vertex) {
     const Vec3d from = start.edge(face[0], vertex), to = end.way_from(start, face[0], vertex);
@@ -53,12 +54,12 @@ ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32
   return area;
 }
 
-// A float has up to 277 bits, and a time up to 253.
+// The numbers of digits suffice for floats of up to 277 bits and for a time of up to 253 bits.
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 
 // The sum of n(t) over some faces, computed in integers and rounded only once. All coordinates are integers in units of
-// 2^(base - 149). Positions at t have units that are smaller by the factor 2^-t.scale.
+// 2^(base - 149). The unit of positions at t is smaller by the factor 2^-t.scale.
 class ExactArea {
  public:
   ExactArea(const SharedFaces& shared, std::span<const std::uint32_t> faces) : segment_(shared.segment()) {
@@ -83,7 +84,7 @@ class ExactArea {
     }
   }
 
-  // The products of neighbouring corners add up to the area for any origin.
+  // The sum of the cross products of neighbouring corners is twice the vector area of a face, whatever the origin.
   [[nodiscard]] Vec3d at(double time) const {
     const UnitFraction t = UnitFraction::of(time < 0x1p-200 ? 0 : time);
     std::array<WideInteger<kAreaDigits>, 3> sum;
@@ -142,9 +143,9 @@ class ExactArea {
   }
 
   const Segment& segment_;
-  std::vector<std::uint32_t> faces_;  // faces of few corners, which are added up from their places at t
-  std::vector<ExactCurve> large_;     // the other faces
-  unsigned base_ = 253;               // the highest shift of a float
+  std::vector<std::uint32_t> faces_;  // faces with few corners, which are added up from their positions at t
+  std::vector<ExactCurve> large_;     // the curves of the other faces
+  unsigned base_ = 253;               // the highest shift that a float can have
 };
 
 Vec3d exact_normal_at(const SharedFaces& shared, std::span<const std::uint32_t> faces, double t) {

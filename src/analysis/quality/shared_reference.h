@@ -1,4 +1,5 @@
-/// The exact normals of quality.h for elements that share faces of many corners. Private.
+/// The exact normals of quality.h for elements that share faces with many corners. It serves callers inside the
+/// library.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 
@@ -10,7 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns reference_normal() of these faces, from the results of reference_area() at t.
+/// Returns reference_normal() of these faces. `areas` are the results of reference_area() for them at t, so that faces
+/// which several elements share are computed once.
 [[nodiscard]] Vec3d reference_normal(const SharedFaces& shared, std::span<const std::uint32_t> faces,
                                      std::span<const ReferenceArea> areas, double t) noexcept;
 

@@ -11,7 +11,7 @@
 namespace chronormal {
 namespace {
 
-// Calls with_group(first, last) for every run of equal elements of a sorted range.
+// Calls with_group(first, last) for every run of equal elements in a sorted range.
 template <class Iterator, class Equal, class WithGroup>
 void for_each_group(Iterator first, Iterator last, Equal equal, WithGroup with_group) {
   while (first != last) {
@@ -22,13 +22,14 @@ void for_each_group(Iterator first, Iterator last, Equal equal, WithGroup with_g
   }
 }
 
-// Sorts items into buckets: bucket b has items[offsets[b]] ... items[offsets[b + 1] - 1], in the order of visits.
+// Items sorted into buckets. Bucket b has items[offsets[b]] ... items[offsets[b + 1] - 1], in the order in which they
+// were put there.
 template <class Item>
 struct Buckets {
   std::vector<std::size_t> offsets;
   std::vector<Item> items;
 
-  // Fills the buckets. visit(put) is called twice, and must call put(bucket, item) for the same items each time.
+  // Fills `count` buckets. visit(put) is called twice, and must call put(bucket, item) for the same items each time.
   template <class Visit>
   Buckets(std::size_t count, Visit visit) : offsets(count + 1, 0) {
     visit([this](std::size_t bucket, const Item&) { ++offsets[bucket + 1]; });
@@ -39,16 +40,18 @@ struct Buckets {
   }
 };
 
-// A use of an edge by a face. The edge goes from its lower point, whose bucket contains this, to its higher point.
+// A use of an edge by a face. The edge goes from its lower point, whose bucket contains this use, to its higher point
+// `far`.
 struct EdgeUse {
   std::uint32_t far = 0;
   std::uint32_t face = 0;
-  std::uint32_t near_vertex = 0, far_vertex = 0;  // the vertices of the face at these points
-  bool is_forward = false;                        // true if the face has the edge from near to far
+  std::uint32_t near_vertex = 0, far_vertex = 0;  // the face's vertices at the lower and the higher point
+  // True if the face passes the edge from the lower point to the higher one.
+  bool is_forward = false;
 };
 
-// Counts the kinds of edges. is_copy tells for each face whether a face with a lower number has the same vertices and
-// winding. An edge that belongs only to two such copies counts as open, and not as turned.
+// Counts the edges of each kind. is_copy tells for each face whether a face with a lower number has the same vertices
+// and winding. An edge that belongs only to two such copies counts as open, and not as turned.
 void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -70,7 +73,7 @@ void survey_edges(const Topology& topology, const Points& points, const std::vec
     });
     for_each_group(begin, end, same_edge, [&](auto first, auto last) {
       ++surface.edges;
-      std::size_t faces = 0;  // a face with a point twice may go along an edge more than once
+      std::size_t faces = 0;  // a face that names a point twice may use an edge more than once
       for (auto use = first; use != last; ++use) faces += use == first || use->face != (use - 1)->face ? 1U : 0U;
       if (faces == 1) surface.open_edges.add(first->face);
       if (faces > 2) surface.non_manifold_edges.add(first->face);
@@ -82,7 +85,7 @@ void survey_edges(const Topology& topology, const Points& points, const std::vec
   }
 }
 
-// Tells whether a face has a point twice. `sorted` is scratch memory.
+// Returns true if a face names a point twice. `sorted` is scratch memory.
 bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t>& sorted) {
   if (outline.size() == 3) return outline[0] == outline[1] || outline[1] == outline[2] || outline[2] == outline[0];
   sorted.assign(outline.begin(), outline.end());
@@ -90,9 +93,10 @@ bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-// Rotates the points of a face, which are all different, so that the lowest comes first, and reverses them if necessary
-// so that the lower one of its neighbours is next. Faces with the same outline are then equal. Returns true if the
-// points were not reversed; faces with the same result have the same winding.
+// Rotates the points of a face, which are all different, so that the lowest point comes first. Then reverses the others
+// if necessary, so that the lower one of the first point's neighbours comes second. Faces with the same outline are
+// then equal. Returns true if the points were not reversed; faces with equal outlines and equal results have the same
+// winding.
 bool make_canonical(std::span<std::uint32_t> outline) {
   std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
   if (outline[1] < outline.back()) return true;
@@ -101,7 +105,8 @@ bool make_canonical(std::span<std::uint32_t> outline) {
 }
 
 void survey_faces(const Topology& topology, const Points& points, std::vector<bool>& is_copy, Surface& surface) {
-  // The outlines of all faces, as make_canonical() returns them; `starts` has the beginning of each.
+  // `corners` has the outlines of all faces as make_canonical() leaves them, and `starts` the place where each outline
+  // begins.
   std::vector<std::uint32_t> corners;
   corners.reserve(topology.corner_count());
   std::vector<std::size_t> starts = {0};
@@ -143,7 +148,7 @@ void survey_faces(const Topology& topology, const Points& points, std::vector<bo
       return a < b;
     });
     for_each_group(begin, end, same_outline, [&](auto first, auto last) {
-      std::array<std::size_t, 2> seen{};  // by winding
+      std::array<std::size_t, 2> seen{};  // number of faces so far, by winding
       for (auto f = first; f != last; ++f) {
         std::size_t& alike = seen[starts_low[*f] ? 1 : 0];
         if (alike++ == 0) continue;

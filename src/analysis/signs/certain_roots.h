@@ -1,11 +1,12 @@
-/// Finds the roots of a polynomial whose coefficients are only known up to an error bound, if the number of roots is
-/// certain despite the errors.
+/// Finds the roots of a polynomial whose coefficients are only known up to an error bound. It succeeds if the number of
+/// roots is certain despite the errors.
 ///
-/// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them is
-/// exactly one root. So a part of [0, 1] is settled if all coefficients have the same certain sign, or if there are
-/// first coefficients of one certain sign, then some of unknown sign, and then some of the other certain sign. Every
-/// other part is halved, a few times; if it is still not settled, integers decide (analysis/signs/exact_roots.h). The
-/// only root of a part is bracketed by two values beyond the bound.
+/// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them means
+/// exactly one root. So a part of [0, 1] is settled in two cases. Either all coefficients have the same certain sign.
+/// Or the coefficients begin with one certain sign, go on with some of unknown sign, and end with the other certain
+/// sign. Any other part is halved, up to kMostHalvings times. If a part is then still not settled, integers decide
+/// (analysis/signs/exact_roots.h). The only root of a part is bracketed by two places at which the polynomial is
+/// certainly not zero.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 
@@ -23,8 +24,8 @@ namespace chronormal::inline internal {
 template <std::size_t M>
 class CertainRoots {
  public:
-  /// Finds the roots of all polynomials with coefficients within `error` of p. Returns false if such polynomials differ
-  /// in the number of roots, or might differ. (If it returns true, no root is at 0 or 1.)
+  /// Finds the roots of all polynomials whose coefficients are within `error` of p. Returns false if two such
+  /// polynomials have, or might have, different numbers of roots. (If it returns true, no root is at 0 or 1.)
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
@@ -40,12 +41,13 @@ class CertainRoots {
 
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
-  // Settles the part of [0, 1] of this width that begins at t0, on which the polynomial is p.
+  // Settles the part of [0, 1] that begins at t0 and has this width. On this part the polynomial is p. Returns false if
+  // the part could not be settled.
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {
-      // The order is one sign, then unknown signs, then the other sign, so there is only one change of sign in any
-      // case.
+      // The signs are one certain sign, then unknown signs, then the other certain sign. Whatever the unknown signs
+      // are, there is only one change of sign.
       bool is_settled = true;
       std::size_t k = 0;
       while (k < M && sign_of(p[k]) == first) ++k;
@@ -69,11 +71,11 @@ class CertainRoots {
   }
 
   struct Guess {
-    double root = 0, slope = 0;  // slope: |p'| at the root
+    double root = 0, slope = 0;  // `slope` is |p'| at the root
   };
 
-  // Returns the only root of a quadratic with values of different signs at its ends. With s = t / (1 - t) > 0 it is the
-  // root of p2 s^2 + 2 p1 s + p0, by the formula that does not cancel.
+  // Returns the only root in [0, 1] of a quadratic whose values at 0 and 1 have different signs. s = t / (1 - t) is a
+  // root of p2 s^2 + 2 p1 s + p0, and is computed by the formula in which nothing cancels.
   static double root_of_quadratic(double p0, double p1, double p2) noexcept {
     const double w = p1 + std::copysign(std::sqrt(p1 * p1 - p0 * p2), p1);
     return (w < 0) == (p2 < 0) ? p0 / (p0 - w) : w / (w - p2);
@@ -84,10 +86,10 @@ class CertainRoots {
     return {t, std::fabs(2 * ((1 - t) * (p[1] - p[0]) + t * (p[2] - p[1])))};
   }
 
-  // Uses Newton's method, from the root of a quadratic that agrees at the ends and in the middle, and bisection to keep
-  // it between values of different signs. Rounding limits its accuracy.
+  // Finds the only root by Newton's method, from the root of a quadratic that agrees with p at the ends and in the
+  // middle. Bisection keeps the root between values of different signs. Rounding limits its accuracy.
   static Guess only_root(const std::array<double, 4>& p) noexcept {
-    constexpr double kLastStep = 0x1p-28;  // the error after such a step is about its square
+    constexpr double kLastStep = 0x1p-28;  // after a step of this size, the error is about the square of the step
     const double a1 = 3 * (p[1] - p[0]), a2 = 3 * ((p[2] - p[1]) - (p[1] - p[0])),
                  a3 = (p[3] - p[0]) - 3 * (p[2] - p[1]);
     double low = 0, high = 1, slope = 0;
@@ -110,8 +112,8 @@ class CertainRoots {
     const double per_width = 1 / width;  // a power of two
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
-      // The bounds may be rounded, but t - t0 divided by the width is exact again, so the signs are those at the
-      // bounds.
+      // The bounds may be rounded. But (t - t0) / width is computed exactly, so the signs below are those at the bounds
+      // as they were rounded.
       const double lower = std::max(t0 + width * std::max(root - step, 0.0), t0);
       const double upper = std::min(t0 + width * std::min(root + step, 1.0), t0 + width);
       const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) * per_width)); };

@@ -26,11 +26,12 @@
 namespace chronormal {
 namespace {
 
-using Vectors = std::array<ExactCurve::CoefficientVector, 3>;  // c0, c1, c2
+using Vectors = std::array<ExactCurve::CoefficientVector, 3>;  // the coefficients c0, c1, c2 of n(t)
 constexpr std::size_t kDigits = ExactCurve::kDigits;
 using Product = WideInteger<2 * kDigits + 1>;
 
-// A dot product of an exact vector c and a rounded one w is within 2^-25 (|c| |w|) of the rounded dot product.
+// The error of a rounded dot product of an exact vector c and a rounded vector w is at most 2^-25 |c| |w|; the rest of
+// this share is a margin.
 constexpr double kShare = 0x1p-24;
 
 bool is_in_half_space(const ControlNormals& c) noexcept {
@@ -43,14 +44,15 @@ bool is_in_half_space(const ControlNormals& c) noexcept {
 bool spans_space(const ControlNormals& c) noexcept {
   const double size = length_1(c.n0) * length_1(c.m) * length_1(c.n1);
   const double determinant = std::fabs(dot(c.n0, cross(c.m, c.n1)));
-  // A product that underflows proves nothing.
+  // Products that underflow prove nothing, so sizes must be in this range.
   return size > 0x1p-900 && size < 0x1p900 && determinant > 8 * kShare * size;
 }
 
-// Changes the sign of a vector, and leaves no negative zeros, which are ugly to read.
+// Returns v or -v. Adding the zero vector turns negative zeros into zeros, which are easier to read.
 Vec3d signed_by(int sign, const Vec3d& v) noexcept { return Vec3d{} + static_cast<double>(sign) * v; }
 
-// Returns the direction of a vector of integers, independent of their common unit.
+// Returns the unit vector along a vector of integers, or its opposite if sign is -1. The common unit of the integers
+// does not matter.
 template <std::size_t kMost>
 Vec3d direction(const std::array<WideInteger<kMost>, 3>& v, int sign = 1) noexcept {
   std::size_t size = 0;
@@ -64,7 +66,7 @@ IntegerPolynomial<2, kDigits> component(const Vectors& c, std::size_t k) noexcep
   return {{c[0][k], c[1][k], c[2][k]}};
 }
 
-// Returns p.a[i] q.a[j] - p.a[j] q.a[i].
+// Returns the determinant p.a[i] q.a[j] - p.a[j] q.a[i] of two coefficients of each polynomial.
 Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2, kDigits>& q, std::size_t i,
               std::size_t j) noexcept {
   Product result;
@@ -74,7 +76,8 @@ Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2,
   return result;
 }
 
-// Finds the collapses if every n(t) is a multiple of one vector, from the quadratic f, which is one component of n.
+// Finds the collapses if every n(t) is a multiple of one vector. f is one component of n, a quadratic that is not zero
+// throughout.
 Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) noexcept {
   std::size_t k = 0;
   while (f.a[k].sign() == 0) ++k;
@@ -87,13 +90,13 @@ Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) no
   return found;
 }
 
-// Finds the only possible collapse, at the root of a linear polynomial.
+// Finds the collapse if there can only be one, at the root of a linear polynomial.
 Collapses at_root_of(const IntegerPolynomial<1, 2 * kDigits + 1>& linear, const Vectors& c) noexcept {
   const auto& [l0, l1] = linear.a;
   if (l1.sign() == 0) return {};
   const ExactRoots roots = exact_roots(linear);
   if (roots.count == 0) return {};
-  // Computes l1^2 n(t) and |l1| n'(t) at t = -l0 / l1.
+  // `value` is l1^2 n(t) and `slope` is |l1| n'(t), at t = -l0 / l1.
   std::array<WideInteger<5 * kDigits + 4>, 3> value;
   std::array<WideInteger<3 * kDigits + 3>, 3> slope;
   const auto square = [](const Product& p, const Product& q) {

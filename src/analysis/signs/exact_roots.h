@@ -4,10 +4,10 @@
 ///     f(t) = a[0] + a[1] t + ... + a[N] t^N,   N = 1, 2 or 3
 ///
 /// Sturm's theorem counts the roots: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at
-/// each root of f, whatever its multiplicity, and nowhere else. All signs are signs of integers (core/wide_integer.h),
-/// taken just after t, so a t that is itself a root needs no special case. The count is monotone in t, so a search over
-/// doubles finds the neighbours between which it changes. The search starts from a guess in floating point, which only
-/// affects the time: a few microseconds with a good guess.
+/// each root of f, whatever its multiplicity, and nowhere else. All signs are signs of integers (core/wide_integer.h).
+/// They are those just after t, so a t that is itself a root needs no special case. The number of changes is monotone
+/// in t, so a search over doubles finds the neighbours between which the number drops. The search starts from a guess
+/// in floating point, which only affects the time: a few microseconds with a good guess.
 ///
 /// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 count
 /// as 0.
@@ -29,37 +29,38 @@
 
 namespace chronormal::inline internal {
 
-/// A root, or several with no double between them: in [lower, upper], which are equal or neighbours.
+/// A root in [lower, upper]. The two bounds are equal, or are doubles with no double between them. Several roots
+/// between two such bounds count as one.
 struct ExactRoot {
   double lower = 0, upper = 0;
-  int before = 0, after = 0;  ///< signs of f on both sides; 0 before t = 0 and after t = 1
+  int before = 0, after = 0;  ///< signs of f before and after the root; 0 before t = 0 and after t = 1
 };
 
 struct ExactRoots {
-  std::array<ExactRoot, 3> at;  ///< ascending
+  std::array<ExactRoot, 3> at;  ///< in ascending order
   std::size_t count = 0;
-  int sign = 0;  ///< the sign of f if it has no root; 0: f is zero throughout
+  int sign = 0;  ///< the sign of f if f has no root; 0 if f is zero throughout
 
   [[nodiscard]] std::span<const ExactRoot> all() const& noexcept { return {at.data(), count}; }
   void all() && = delete;  // a loop over a temporary would outlive it
 };
 
-/// A polynomial of degree up to N, with coefficients in the order of rising powers. They must be settled
+/// A polynomial of degree up to N. Its coefficients are in the order of rising powers, and must be settled
 /// (WideInteger::settle()).
 template <std::size_t N, std::size_t kDigits>
 struct IntegerPolynomial {
   std::array<WideInteger<kDigits>, N + 1> a;
 
-  /// Returns the number of coefficients up to the last that is not zero.
+  /// Returns the number of coefficients up to the last nonzero one.
   [[nodiscard]] std::size_t terms() const noexcept {
     std::size_t count = N + 1;
     while (count > 0 && a[count - 1].sign() == 0) --count;
     return count;
   }
 
-  /// Returns the sign of f^(derivative) at t.
+  /// Returns the sign of a derivative of f at t. The derivative of order 0 is f itself.
   [[nodiscard]] int sign_at(const UnitFraction& t, std::size_t derivative = 0) const noexcept {
-    constexpr std::size_t kDigitsOfFactor = 11;  // t = integer 2^-scale, with scale < 264
+    constexpr std::size_t kDigitsOfFactor = 11;  // t is an integer times 2^-scale, with scale < 264
     using Value = WideInteger<kDigits + N * kDigitsOfFactor + 4>;
     const std::size_t count = terms();
     if (count <= derivative) return 0;
@@ -93,7 +94,8 @@ struct IntegerPolynomial {
   }
 };
 
-/// Sturm's chain of a polynomial f: f, its derivative f' and the remainders, each times a positive factor.
+/// Sturm's chain of a polynomial f. It has f, its derivative f' and the remainders, each multiplied by a positive
+/// factor.
 template <std::size_t N, std::size_t kDigits>
 class SturmChain {
  public:
@@ -109,7 +111,7 @@ class SturmChain {
     }
   }
 
-  /// Return the number of changes of sign just after t, and just before 0.
+  /// Return the number of changes of sign in the chain just after t, and just before 0.
   [[nodiscard]] int variations_after(const UnitFraction& t) const noexcept {
     return variations(f_.sign_after(t), slope_.sign_after(t), remainder_.sign_after(t));
   }
@@ -127,7 +129,7 @@ class SturmChain {
     return count;
   }
 
-  // Uses f = q f' - r with r = (a1^2 - 4 a0 a2) / (4 a2).
+  // Computes the remainder r for a quadratic: f = q f' - r with r = (a1^2 - 4 a0 a2) / (4 a2).
   void take_quadratic() noexcept {
     const int sign = f_.a[2].sign();
     Wide fourfold;
@@ -138,8 +140,8 @@ class SturmChain {
     remainder_.a[0].settle();
   }
 
-  // Uses f = q f' - r with 9 a3 r = (2 a2^2 - 6 a1 a3) t + (a1 a2 - 9 a0 a3), and f' = q r - s with r_1^2 s = -(3 a3
-  // r_0^2 - 2 a2 r_0 r_1 + a1 r_1^2).
+  // Computes the remainders for a cubic: f = q f' - r with 9 a3 r = (2 a2^2 - 6 a1 a3) t + (a1 a2 - 9 a0 a3), and f' =
+  // q r - s with r_1^2 s = -(3 a3 r_0^2 - 2 a2 r_0 r_1 + a1 r_1^2).
   void take_cubic() noexcept {
     const auto& a = f_.a;
     const int sign = a[3].sign();
@@ -172,7 +174,7 @@ class SturmChain {
   int last_ = 0;
 };
 
-// The numbering covers the doubles 0 and [2^-200, 1] in ascending order.
+// Doubles are numbered in ascending order: 0 has the number 0, and those in [2^-200, 1] follow.
 inline constexpr std::uint64_t kBelowFirstDouble = (std::uint64_t{1023 - 200} << 52) - 1;
 inline constexpr std::uint64_t kLastDouble = (std::uint64_t{1023} << 52) - kBelowFirstDouble;
 [[nodiscard]] inline double numbered_double(std::uint64_t number) noexcept {
@@ -183,7 +185,7 @@ inline constexpr std::uint64_t kLastDouble = (std::uint64_t{1023} << 52) - kBelo
   return t >= 1 ? kLastDouble : bit_cast<std::uint64_t>(t) - kBelowFirstDouble;
 }
 
-/// Guesses the roots in floating point.
+/// Returns the roots of f in floating point, as guesses.
 template <std::size_t N, std::size_t kDigits>
 [[nodiscard]] Roots<N> guess_roots(const IntegerPolynomial<N, kDigits>& f) noexcept {
   std::size_t size = 0;
@@ -207,7 +209,7 @@ template <std::size_t N, std::size_t kDigits>
 
   const Roots<N> guesses = guess_roots(f);
   for (int i = 1; i <= total;) {
-    // The first double up to which there are i roots is in (low, high].
+    // The search is for the first double up to which there are i roots. This double is always in (low, high].
     const double guess = guesses.count == 0 ? 0.5 : guesses.t[std::min(static_cast<std::size_t>(i), guesses.count) - 1];
     std::int64_t low = -1, high = static_cast<std::int64_t>(kLastDouble), step = 1;
     for (auto probe = static_cast<std::int64_t>(number_of_double(guess)); low < high - 1; step *= 2) {

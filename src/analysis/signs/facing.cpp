@@ -32,16 +32,16 @@ namespace {
 
 Side side_of(int sign) { return static_cast<Side>(sign); }
 
-// Returns true if double can represent products with the vector to the viewer: no nonzero component of the view is
-// smaller than the smallest float32.
+// Returns true if double represents products with the vector to the viewer. This is so if no nonzero component of the
+// view is smaller than the smallest float32.
 bool fits_double(const View& view) noexcept {
   const auto fits = [](double component) { return component == 0 || std::fabs(component) >= 0x1p-149; };
   return fits(view.from.x) && fits(view.from.y) && fits(view.from.z) && fits(view.to.x) && fits(view.to.y) &&
          fits(view.to.z);
 }
 
-// Returns the position of the eye on its path, with an error of at most 3 u (u = 2^-53) of the largest component of
-// both ends.
+// Returns the position of the eye on its path. The error is at most 3 u (u = 2^-53) times the largest component of both
+// ends of the path.
 Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
   if (on_way.t == 0) return view.from;
   return on_way.rest == 0 ? view.to : on_way.rest * view.from + on_way.t * view.to;
@@ -49,13 +49,13 @@ Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
 
 bool is_whole_way(const View& view) noexcept { return view.start.t == 0 && view.end.rest == 0; }
 
-// Marks a face as undecided, so that integers decide it.
+// Marks a face as undecided, so that a later stage decides it.
 void leave(std::size_t i, FacingCoefficients& f) noexcept {
   f.signs[i] = 0;
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
 }
 
-// Computes the coefficients of f for a block of faces from their control normals.
+// Computes the coefficients of f for a block of faces from their control normals, which is the first stage.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
   const bool fits = fits_double(view);
@@ -74,8 +74,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
   facing_of_eye(normals, faces.count, ways, result);
-  // The position of an eye on a part of its path has an error of 3 u of its size. That is at most 6 u of a vector to
-  // the eye that is at least half as long; faces with shorter vectors are left to integers.
+  // The position of an eye on a part of its path has an error of 3 u of the size of the path's ends. This is at most 6
+  // u of a vector to the eye whose size is at least half of that. Faces with shorter vectors are left to integers.
   const double shortest = is_whole_way(view) ? 0 : 0.5 * std::max(max_abs(view.from), max_abs(view.to));
   if (fits && shortest == 0) return;
   for (std::size_t i = 0; i < faces.count; ++i) {
@@ -85,8 +85,8 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
   }
 }
 
-// Returns the sides that may be seen while the shutter is open, from the control normals alone; nothing if these are
-// not precise enough to tell.
+// Returns the sides of a face that may be seen while the shutter is open, from the coefficients of the first stage
+// alone. Returns no value if these are not precise enough.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
@@ -102,9 +102,9 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
     size = std::max(size, std::fabs(p[k]));
     bound = std::max(bound, f.bounds[k][i]);
   }
-  constexpr double kRoundings = 64;  // roundings of restrict_to() and of the coefficients
+  constexpr double kRoundings = 64;  // number of roundings by restrict_to() and of the coefficients
   bound += kRoundings * kUnitRoundoff * size;
-  // If both a front and a back are certainly seen, at the ends or in between, the answer is certain.
+  // If both a front and a back are certainly seen, at one of these five times, the answer is kBoth.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
     const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
@@ -119,10 +119,10 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   return std::nullopt;
 }
 
-// Returns a bound of the error of any component of the control normals of a triangle. Each is a sum of products of a
-// component of one edge and a component of the other: two products in n0 and n1, and half of a sum of four in m. The
-// error is at most 48 u of the largest such product by core/rounding.h, and less for normals that were computed in
-// integers.
+// Returns a bound of the error of any component of the control normals of a triangle. In n0 and n1, a component is a
+// sum of two products of a component of one edge and a component of the other; in m it is half of a sum of four such
+// products. The error is at most 48 u of the largest such product by core/rounding.h, and smaller for normals that were
+// computed in integers.
 double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
   const auto largest_edge = [&segment, corners](std::size_t c) {
     const auto edge = [corners, c](const SegmentEnd& end) { return max_abs(end.edge(corners[0], corners[c])); };
@@ -148,20 +148,20 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
     roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
     bound = std::max(bound, f.bounds[k][i]);
   }
-  // Allows up to 16 roundings: of the eye and the vector to it, of the products and sums of a dot product, and of a
-  // mean of three. The terms of a dot product are at most bound / kDotShare.
+  // There are up to 16 roundings: of the eye and the vector to it, of the products and sums of a dot product, and of a
+  // mean of three numbers. The terms of a dot product are at most bound / kDotShare.
   constexpr double kRoundings = 16;
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }
 
-// The numbers of digits that integers need. Differences of doubles up to 2^128 have 1,203 bits, and a vector to the
-// viewer is a sum of some differences, or of their multiples by the integers of two times.
+// The numbers of digits that wide integers need here. Differences of doubles up to 2^128 have 1,203 bits. A vector to
+// the viewer is a sum of a few differences, or of their multiples by the integers of two times.
 constexpr std::size_t kNormalDigits = ExactCurve::kDigits, kPlaceDigits = 52;
 constexpr std::size_t kWayDigits = kPlaceDigits + 1, kPartDigits = kPlaceDigits + 2 * TimeFraction::kDigits + 2;
 template <std::size_t kDigits>
 using WideVector = std::array<WideInteger<kDigits>, 3>;
 
-// Returns the smallest shift of all components of some vectors.
+// Returns the smallest shift (DoubleParts) of all nonzero components of some vectors.
 unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   unsigned lowest = std::numeric_limits<unsigned>::max();
   for (const Vec3d& v : vectors) {
@@ -182,7 +182,7 @@ struct Place {
   }
 };
 
-// Returns p - q in integers with a common unit.
+// Returns p - q as integers whose common unit is given by `shift`.
 WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shift) noexcept {
   WideVector<kPlaceDigits> result;
   const auto add = [&](const Vec3d& v, std::int64_t sign) {
@@ -198,7 +198,7 @@ WideVector<kPlaceDigits> difference(const Place& p, const Place& q, unsigned shi
   return result;
 }
 
-// The vector w(t) = start + t change to the viewer, times a positive number.
+// The vector to the viewer, w(t) = start + t change, multiplied by a positive number.
 template <std::size_t kDigits>
 struct Way {
   WideVector<kDigits> start, change;
@@ -211,8 +211,8 @@ struct Way {
   }
 };
 
-// Returns the vector from a corner to an eye that is at view.from and view.to at the ends of the segment, or the vector
-// to a viewer in a direction.
+// Returns the vector w from a corner to the viewer. An eye is at view.from and view.to at the ends of the segment; for
+// a direction, w does not depend on the corner.
 Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Place& to_corner) noexcept {
   Way<kWayDigits> way;
   const Place from = view.is_eye ? from_corner : Place{}, to = view.is_eye ? to_corner : Place{};
@@ -228,8 +228,9 @@ Way<kWayDigits> whole_way(const View& view, const Place& from_corner, const Plac
   return way;
 }
 
-// Returns the vector to an eye on a part of its path, multiplied by the denominators of both times: with the times p /
-// q and r / s, this is q s (view.from - from) + p s (view.to - view.from); and its change until t = 1.
+// Returns the vector from a corner to an eye that passes only a part of its path in the segment, multiplied by the
+// denominators of both times. For the times p / q and r / s, the vector at t = 0 is q s (view.from - from) + p s
+// (view.to - view.from).
 Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& to) noexcept {
   constexpr std::size_t kProductDigits = 2 * TimeFraction::kDigits;
   const TimeFraction start = TimeFraction::of(view.start), end = TimeFraction::of(view.end);
@@ -254,7 +255,7 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// Returns f for a normal, times a positive number.
+// Returns f for a normal and a vector to the viewer, multiplied by a positive number.
 template <std::size_t kDegree, std::size_t kDigits>
 auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
@@ -269,8 +270,8 @@ auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   return f;
 }
 
-// Calls body(f) with the exact f of a normal that is seen from a vertex. M is the number of coefficients of f: 3 for a
-// direction, 4 for an eye.
+// Calls body(f) with the exact f of a normal that is seen from a vertex. M is the number of coefficients of f, which is
+// 3 for a direction and 4 for an eye.
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, const ExactCurve& normal, std::uint32_t vertex, const View& view,
                  const Body& body) noexcept {
@@ -286,13 +287,13 @@ void in_integers(const Segment& segment, std::size_t face, const View& view, con
   in_integers<M>(segment, ExactCurve::of_polygon(segment, vertices), vertices[0], view, body);
 }
 
-// Narrows a bracket of the only root. The signs at its ends are known and differ. The middle of the bracket is a good
-// guess of the root, so one step to either side of it is usually enough.
+// Narrows a bracket of a root. The signs of f at both ends of the bracket are known and differ. The middle of the
+// bracket is a good guess of the root, so one step to either side of the middle is usually enough.
 template <class Polynomial>
 void close_in(const Polynomial& f, int before, double& lower, double& upper) noexcept {
   double step = 0x1p-49, probe = lower + (upper - lower) / 2 - step;
   while (upper - lower > kWidestBracket) {
-    // A probe must be between the ends, and no t below 2^-200 is distinguished from 0.
+    // A probe must be inside the bracket. A t below 2^-200 is not distinguished from 0.
     if (!(lower < probe && probe < upper && probe >= 0x1p-200)) probe = lower + (upper - lower) / 2;
     const int sign = f.sign_at(UnitFraction::of(probe));
     if (sign == 0) {
@@ -310,7 +311,8 @@ void close_in(const Polynomial& f, int before, double& lower, double& upper) noe
 
 bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
 
-// Finds all roots of f, whose coefficients are known to be within error of p. decide(body) calls body with the exact f.
+// Finds all roots of f, whose coefficients are within `error` of p. If they are not certain, calls decide(body), which
+// calls body with the exact f.
 template <std::size_t M, class Decide>
 Facing facing_by_roots(const std::array<double, M>& p, double error, const Decide& decide) noexcept {
   ExactRoots roots;
@@ -337,8 +339,8 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
   return facing_by_roots<M>(p, from.error[lane], [&](const auto& body) { in_integers<M>(segment, face, view, body); });
 }
 
-// The sum of the control normals of some faces in double, a bound of the error of any of its components, and the size
-// of its terms.
+// The sum of the control normals of some faces in double. `error` bounds the error of any component of the sum, and
+// `size` is the size of its terms.
 struct SummedNormals {
   ControlNormals normals;
   double error = 0, size = 0;
@@ -374,11 +376,11 @@ Facing facing_of_sum(const Segment& segment, std::uint32_t vertex, std::span<con
   } else {
     p = {dot(n0, at_start), dot(m, at_start), dot(n1, at_start)};
   }
-  // Integers decide if the eye is on a part of its path, where its position would be rounded, or if a component is so
-  // small that products may be.
+  // Integers decide in two cases: if the eye is on a part of its path, where its position would be rounded, or if a
+  // component of the view is so small that products with it may be rounded to 0.
   const bool is_sure = fits_double(view) && is_whole_way(view);
-  // Allows at most 16 roundings of terms no larger than this: for the vector to the viewer, products, sums of three and
-  // of two terms, and a third of a sum.
+  // At most 16 roundings occur, of terms that are no larger than sum.size: in the vector to the viewer, products, sums
+  // of three and of two terms, and a third of a sum.
   constexpr double kRoundings = 16;
   const double longest = std::max(length_1(at_start), length_1(at_end));
   const double error = longest * (sum.error + kRoundings * kUnitRoundoff * sum.size);
@@ -417,7 +419,7 @@ void find_in_block(const Segment& segment, IndexRange faces, const ControlNormal
   }
 }
 
-// Returns the sides that may be seen in [t0, t1].
+// Returns the sides of a face that may be seen at t in [t0, t1].
 ShutterSide side_over(const Facing& facing, double t0, double t1) noexcept {
   bool shows_front = false, shows_back = false;
   const auto show = [&](Side side) {

@@ -1,4 +1,4 @@
-/// The norm that bounds of rounding errors use. Private to analysis/signs.
+/// The norm that the bounds of rounding errors in analysis/signs use.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_LENGTH_1_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_LENGTH_1_H_
 
@@ -8,7 +8,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns |x| + |y| + |z|: a dot product is at most this times the largest component of the other vector.
+/// Returns |x| + |y| + |z|. A dot product is at most this norm times the largest absolute component of the other
+/// vector.
 [[nodiscard]] inline double length_1(const Vec3d& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); }
 
 }  // namespace chronormal::inline internal

@@ -10,15 +10,16 @@ namespace {
 
 double length_squared(const Vec3d& v) { return dot(v, v); }
 
-// Tells whether a half space proves that |n(t)| stays above the share: n(t) . w is at least the smallest c_k . w.
+// Returns true if |n(t)| certainly stays above kCollapseShare. The proof is that n(t) . w is at least the smallest of
+// c_k . w, for control normals c_k.
 bool stays_long(const ControlNormals& c) {
   const Vec3d w = c.n0 + c.n1;
   const double smallest = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});
   return smallest > 0 && smallest * smallest > kCollapseShare * kCollapseShare * length_squared(w);
 }
 
-// Returns n at a distance from the collapse at which it has a direction again, between `from` and `end`, an end of the
-// segment.
+// Returns n at a t between `from` and `end`, an end of the segment. This t is the nearest one tried at which n is
+// clearly longer than in the collapse and has a direction again.
 Vec3d clear_of(const ControlNormals& c, double from, double end) {
   constexpr double kClear = 4 * kCollapseShare;
   double step = kCollapseMargin;
@@ -43,8 +44,8 @@ NearCollapses find_near_collapses(const ControlNormals& normals) noexcept {
   const ControlNormals c{scaled(normals.n0), scaled(normals.m), scaled(normals.n1)};
   if (stays_long(c)) return found;
 
-  // Between neighbouring roots of the derivative, |n(t)| is monotone, so neighbouring minima with no larger value in
-  // between are one collapse.
+  // Between neighbouring roots of the derivative, |n(t)| is monotone. If |n(t)| does not exceed the limit between two
+  // neighbouring minima, the two belong to one collapse.
   const Bernstein<Vec3d, 2> n = {c.n0, c.m, c.n1};
   const Bernstein<double, 4> square = multiply(n, n, dot<double>);
   Bernstein<double, 3> derivative;

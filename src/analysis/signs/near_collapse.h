@@ -1,9 +1,9 @@
 /// Finds the instants inside a segment at which a normal nearly vanishes, so that its direction is practically
 /// discontinuous when it is interpolated or rendered.
 ///
-/// "Nearly" means that |n(t)| falls below kCollapseShare of the largest control normal: far above the rounding of
-/// float32, so that faces that were made to collapse and then rounded are found, and far below any intended length. The
-/// functions of analysis/signs.h decide exactly whether a normal vanishes.
+/// "Nearly" means that |n(t)| falls below kCollapseShare times the largest control normal. This is far above the
+/// rounding of float32, so that faces are found that were made to collapse and then rounded. It is far below any length
+/// that an author intends. The functions of analysis/signs.h decide exactly whether a normal vanishes.
 ///
 /// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
 /// Threads    pure: no allocation, no throw.
@@ -19,27 +19,28 @@
 
 namespace chronormal::inline internal {
 
-/// The share of the largest control normal below which a normal nearly vanishes: far above the rounding of float32
-/// positions, and far below any intended length.
+/// The length, relative to the largest control normal, below which a normal nearly vanishes. It is far above the
+/// rounding of float32 positions, and far below any length that an author intends.
 inline constexpr double kCollapseShare = 1e-6;
 
-/// The distance from an end of the segment, in t, within which a collapse belongs to the keyframe there, whose face has
-/// no area.
+/// The distance in t from an end of the segment within which a collapse is not reported. It belongs to the keyframe at
+/// that end, whose face has no area.
 inline constexpr double kCollapseMargin = 1e-6;
 
 struct NearCollapse {
-  double t = 0;             ///< |n(t)| is smallest here
+  double t = 0;             ///< the time at which |n(t)| is smallest
   bool turns_over = false;  ///< true if the direction afterwards is opposite to the direction before
 };
 
 struct NearCollapses {
-  std::array<NearCollapse, 2> at;  ///< ascending in t
+  std::array<NearCollapse, 2> at;  ///< in ascending order of t
   std::size_t count = 0;
-  bool everywhere = false;  ///< n is zero in the whole segment; count is 0
+  bool everywhere = false;  ///< true if n is zero in the whole segment; count is then 0
 };
 
-/// Tells whether a half space proves at a glance that a normal neither nearly vanishes nor vanishes (find_collapses()).
-/// The test succeeds for almost every face; if it fails, nothing is known.
+/// Returns true if a quick test proves that a normal neither vanishes nor nearly vanishes. The test shows that all
+/// control normals are in one half space. It succeeds for almost every face; if it fails, nothing is known (see
+/// find_collapses()).
 [[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
   const Vec3d w = c.n0 + c.n1;
   const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});
@@ -47,8 +48,8 @@ struct NearCollapses {
   return least > 2 * kCollapseShare * most * length_1(w);
 }
 
-/// Finds where n(t) vanishes, or nearly, for t in (0, 1). Zeros between which |n(t)| stays below the share count as
-/// one. Cost: three dot products for most faces, the roots of a cubic for faces that turn far.
+/// Finds the times t in (0, 1) at which n(t) vanishes or nearly vanishes. Minima between which |n(t)| stays below the
+/// limit count as one. Cost: three dot products for most faces, and the roots of a cubic for faces that turn far.
 [[nodiscard]] NearCollapses find_near_collapses(const ControlNormals& normals) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-// Silhouette edges over time: the changes of both faces at an edge, in the order of time. Changes whose brackets touch
-// count as one, so that the order of all changes is certain.
+// Finds silhouette edges over time. It takes the changes of side of both faces at an edge in the order of time. Changes
+// whose brackets touch count as one, so that the order of all changes is certain.
 
 #include <algorithm>
 #include <cassert>
@@ -10,7 +10,7 @@ namespace chronormal {
 namespace {
 
 struct EdgeOfFace {
-  std::uint32_t a = 0, b = 0, face = 0;  // a < b
+  std::uint32_t a = 0, b = 0, face = 0;  // the points of the edge, with a < b, and a face that has the edge
 
   friend auto operator<=>(const EdgeOfFace&, const EdgeOfFace&) = default;
 };
@@ -33,10 +33,10 @@ std::vector<EdgeOfFace> edges_of(const Topology& topology) {
 // A change of the side that one of the two faces at an edge shows.
 struct Event {
   FacingChange change;
-  std::size_t face = 0;  // 0 or 1
+  std::size_t face = 0;  // 0 for the first face at the edge, 1 for the second
 };
 
-// Adds the silhouettes of one edge.
+// Adds the silhouettes of one edge to the result.
 void add_silhouettes(const Silhouette& edge, const std::array<const Facing*, 2>& faces,
                      std::vector<Silhouette>& result) {
   const auto before = [](const Event& p, const Event& q) { return p.change.lower < q.change.lower; };

@@ -22,7 +22,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The vectors of kLanes elements: three each, scaled by powers of two, and the error bounds of the vectors.
+// The vectors of kLanes elements and the bounds of their errors. Each element has three vectors, which are scaled by
+// powers of two.
 struct Scaled {
   alignas(64) double vectors[9][kLanes];
   alignas(64) double errors[3][kLanes];
@@ -30,14 +31,14 @@ struct Scaled {
 
 HWY_INLINE Doubles MaxAbs(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 
-// Returns the power of two that brings a normal number into [1, 2).
+// Returns the power of two by which a normal number must be multiplied to be in [1, 2).
 HWY_INLINE Doubles ScaleOf(Doubles size) {
   const hn::RebindToUnsigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, size), hn::Set(bits, 0x7FF0000000000000));
   return hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, 0x7FE0000000000000), exponent));
 }
 
-// Reads kDoubleLanes elements into the lanes from `at` on.
+// Reads kDoubleLanes elements, and writes them to the lanes from `at` on.
 template <bool kIsPart>
 HWY_INLINE void Load(const double* rows, const Restriction& part, std::size_t at, Scaled& scaled) {
   Doubles column[9];
@@ -74,18 +75,18 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Returns a vector, of any length, in the direction of the axis of the smallest cone around three unit vectors.
+// Returns a vector, of any length, along the axis of the smallest cone around three unit vectors.
 HWY_INLINE Lanes3 MiddleOf(const Lanes3 (&u)[3]) {
   const auto square = [](const Lanes3& v) HWY_ATTR { return Dot(v, v); };
-  // Computes the squared sides of the triangle of the three vectors, and for each angle a number that is negative if
-  // the angle is obtuse.
+  // The vectors are the corners of a triangle. c0, c1, c2 are its squared sides, and e0, e1, e2 are negative where the
+  // angle opposite to the side is obtuse.
   const Floats c0 = square(u[1] - u[2]), c1 = square(u[0] - u[2]), c2 = square(u[0] - u[1]);
   const Floats e0 = hn::Sub(hn::Add(c1, c2), c0), e1 = hn::Sub(hn::Add(c0, c2), c1), e2 = hn::Sub(hn::Add(c0, c1), c2);
   const Floats longest = hn::Max(hn::Max(c0, c1), c2);
   const auto is0 = hn::Eq(c0, longest), is1 = hn::Eq(c1, longest);
   const Floats e = hn::IfThenElse(is0, e0, hn::IfThenElse(is1, e1, e2));
   const Lanes3 pair = Select(is0, u[1] + u[2], Select(is1, u[0] + u[2], u[0] + u[1]));
-  // Computes the centre of the circle through all three, in barycentric coordinates.
+  // The centre of the circle through all three corners is computed in barycentric coordinates.
   const Floats inverse = hn::Div(hn::Set(kFloats, 1), longest);
   const auto weight = [inverse](Floats side, Floats angle)
                           HWY_ATTR { return hn::Mul(hn::Mul(side, inverse), hn::Mul(angle, inverse)); };
@@ -93,7 +94,7 @@ HWY_INLINE Lanes3 MiddleOf(const Lanes3 (&u)[3]) {
   return Select(hn::Le(e, hn::Mul(hn::Set(kFloats, 1e-4F), longest)), pair, centre);
 }
 
-// Writes kLanes cones, and returns the lanes that cannot be trusted, as bits.
+// Writes kLanes cones. Returns a number whose bits mark the lanes with cones that cannot be trusted.
 template <bool kIsPart>
 HWY_INLINE std::uint32_t Cones(const double* rows, float share, const Restriction& part, float* result) {
   Scaled scaled;

@@ -1,5 +1,5 @@
-// A tile of four rows by two vectors of sums stays in registers while the loop runs over the rows of both matrices:
-// eight additions for each six loads.
+// A tile of sums, four rows by two vectors, stays in registers while the loop runs over the rows of both matrices. The
+// loop then needs only six loads for each eight additions.
 #include "analysis/fits/kernels/products.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Adds to the sums of kRows columns of a, from i on, with one or two vectors of columns of b, from j on.
+// Adds to the sums of kRows columns of `a`, from i on, with one or two vectors of columns of `b`, from j on.
 template <std::size_t kRows, std::size_t kVectors>
 HWY_INLINE void AddTile(const StridedMatrix& a, const StridedMatrix& b, std::size_t i, std::size_t j, float* sums,
                         std::size_t stride) {

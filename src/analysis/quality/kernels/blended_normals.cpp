@@ -1,4 +1,4 @@
-// A tile of up to four vectors of poses stays in registers while the loop runs over all terms.
+// A tile of sums for up to four vectors of poses stays in registers while the loop runs over all terms.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -45,8 +45,8 @@ void AddWeighted(const Vec3f& base, std::span<const WeightedVector> terms, float
   for (; first < stride; first += kLanes) AddTile<1>(base, terms, first, sums, stride);
 }
 
-// Compares the normals of one vector of lanes, a pose in each lane: writes angles and errors, and raises `largest` to
-// the largest squared length of these errors. NaN does not count.
+// Compares the normals of one vector of lanes, which has a pose in each lane. Writes angles and errors, and raises
+// `largest` to the largest squared length of these errors. NaN does not count.
 HWY_INLINE void CompareLanes(const Lanes3& rendered, const Lanes3& right, float* degrees,
                              const std::array<float*, 3>& errors, Floats& largest) {
   const Floats zero = hn::Zero(kFloats), one = hn::Set(kFloats, 1.0F);

@@ -1,8 +1,8 @@
-/// Adds up the normals that a viewer renders in many poses at once, and compares them with the true ones, in lanes of
-/// float.
+/// Adds up the normals that a viewer renders in many poses at once, and compares them with the true normals, in lanes
+/// of float.
 ///
-/// All functions return the bits of their scalar forms: terms are added in their order, and angles are those of
-/// portable::atan2().
+/// All functions return the same bits as the functions that compute one pose at a time: terms are added in their order,
+/// and angles are those of portable::atan2().
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_BLENDED_NORMALS_H_
 
@@ -14,19 +14,19 @@
 
 namespace chronormal::inline internal {
 
-/// The unit of padding: planes of sums and weights have a multiple of this number of poses, which is the number of
-/// floats in the widest vector.
+/// The number of poses to a multiple of which planes of sums and weights are padded. It is the number of floats in the
+/// widest vector.
 inline constexpr std::size_t kPosePadding = 16;
 
-/// A finite vector with a weight in each pose. Its weights are zero outside [first, end).
+/// A finite vector, and its weight in each pose. The weights are zero outside [first, end).
 struct WeightedVector {
-  const float* weights = nullptr;  ///< (poses, padded)
+  const float* weights = nullptr;  ///< one for each pose, padded
   std::size_t first = 0, end = 0;
   Vec3f vector;
 };
 
-/// Writes base + the sum of weight times vector over all terms to three planes of `stride` floats. The stride is a
-/// multiple of kPosePadding, and each list of weights has as many floats.
+/// Writes base + the sum of weight times vector over all terms, as three planes of `stride` floats. The stride is a
+/// multiple of kPosePadding, and each list of weights has `stride` floats.
 void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, float* sums, std::size_t stride) noexcept;
 
 /// Compares rendered normals of any length with the true unit normals in as many poses as `degrees` has. Both are
@@ -41,9 +41,9 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
                                     const std::array<const float*, 3>& right, std::span<float> degrees,
                                     const std::array<float*, 3>& errors) noexcept;
 
-/// Returns the largest openness of pairs of vectors, which are given as planes. Openness grows with the angle between
-/// two vectors: it is the squared sine up to a right angle, and 2 minus the squared sine beyond, and 0 if one vector is
-/// zero. All planes have a multiple of kPosePadding finite floats.
+/// Returns the largest openness of pairs of vectors, which are given as planes. Openness is a number that grows with
+/// the angle between two vectors. It is the squared sine up to a right angle, 2 minus the squared sine beyond, and 0 if
+/// one of the vectors is zero. All planes have a multiple of kPosePadding finite floats.
 [[nodiscard]] float largest_openness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b,
                                      std::size_t count) noexcept;
 

@@ -1,5 +1,5 @@
-// The values of a triangle that do not depend on t are computed once. Let its first corner be a and the others b and c.
-// With the first corner at the start of the segment as origin, its corners are
+// The values of a triangle that do not depend on t are computed once. Its corners are a, b and c, and the position of a
+// at the start of the segment is the origin. The corners are then
 //
 //     a(t) = t a1        b(t) = (1 - t) b0 + t b1        c(t) = (1 - t) c0 + t c1
 //
@@ -24,11 +24,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles are stored in groups of eight, the number of doubles in the widest vector: value k of triangle i of a group
-// is at k * kGroup + i.
+// Triangles are stored in groups of eight, which is the number of doubles in the widest vector. Value k of triangle i
+// of a group is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
-// The share of the products below which a normal is left to reference_normals(): the constant kDoubtfulShare in
-// reference_normals.cpp.
+// The size of a normal, relative to the products whose sum it is, below which reference_normals() computes it. It is
+// the constant kDoubtfulShare in reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
 
 }  // namespace
@@ -42,7 +42,7 @@ HWY_INLINE Real3 load3(const double* first) {
   return {Real::load(first), Real::load(first + kGroup), Real::load(first + 2 * kGroup)};
 }
 
-// Returns the normals of one triangle per lane, each divided by its largest component.
+// Returns the normals of one triangle per lane, each divided by its own largest component.
 HWY_INLINE Real3 NormalOf(const double* group, Real s, Real t) {
   const Real3 a1 = load3(group), b0 = load3(group + 3 * kGroup), b1 = load3(group + 6 * kGroup),
               c0 = load3(group + 9 * kGroup), c1 = load3(group + 12 * kGroup);
@@ -76,7 +76,7 @@ void Normals(const double* groups, std::size_t count, double t, Vec3d* result) {
   }
 }
 
-// Computes the angles of kGroup pairs.
+// Computes the angles between kGroup exact normals and the normals to compare with them.
 HWY_INLINE void Angles(const Vec3d* exact, const float* x, const float* y, const float* z, double* angles) {
   const Real zero(0.0), one(1.0);
   const auto promoted = [](const float* from)

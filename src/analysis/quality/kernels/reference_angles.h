@@ -1,7 +1,8 @@
-/// Reference normals of triangles at many times, and the angles between exact normals and others, in lanes of double.
+/// Computes in lanes of double the reference normals of triangles at many times, and the angles between exact normals
+/// and other normals.
 ///
-/// Results have the same bits as the scalar functions: reference_normals() of analysis/quality.h, except for its
-/// length, and portable::atan2(|n x u|, n . u).
+/// Results have the same bits as those of the scalar functions. These are reference_normals() of analysis/quality.h,
+/// which returns the same directions with other lengths, and portable::atan2(|n x u|, n . u).
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_KERNELS_REFERENCE_ANGLES_H_
 
@@ -19,12 +20,12 @@ namespace chronormal::inline internal {
 /// pass over contiguous memory.
 class ReferenceTriangles {
  public:
-  /// Takes faces of a segment, which must all be triangles. The arrays behind the segment must outlive the object,
-  /// which reads them again if double is not accurate enough.
+  /// Takes faces of a segment, which must all be triangles. The arrays of the segment must outlive the object, since
+  /// they are read again where double is not accurate enough.
   ReferenceTriangles(const Segment& segment, IndexRange faces);
 
-  /// Writes n(t) of each face divided by its largest component, and (0, 0, 0) if reference_normals() does. result must
-  /// have one element per face; t in [0, 1]
+  /// Writes n(t) of each face divided by its largest component, or (0, 0, 0) where reference_normals() writes (0, 0,
+  /// 0). Preconditions: result has one element per face; t is in [0, 1].
   void normals(double t, std::span<Vec3d> result) const noexcept;
 
  private:
@@ -33,12 +34,13 @@ class ReferenceTriangles {
   std::vector<double> edges_;  // in groups of lanes, 20 values per triangle
 };
 
-/// The values that stand for an angle that does not exist.
+/// The numbers that take the place of an angle where there is none.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
-/// Writes the angle between each exact normal, which need not be a unit vector, and the rendered normal: kNoExactNormal
-/// if the exact normal is zero, or else kNoNormal if the rendered one is zero or not finite. The function is fastest if
-/// 1 is the largest component of each exact normal. All three arrays must have the same size.
+/// Writes the angle in radians between each exact normal, which need not be a unit vector, and the rendered normal.
+/// Writes kNoExactNormal instead if the exact normal is zero, and otherwise kNoNormal if the rendered normal is zero or
+/// not finite. The function is fastest if the largest component of each exact normal is 1. Precondition: all three
+/// arrays have the same size.
 void angles_to_exact(std::span<const Vec3d> exact, VectorView<const float> shown, std::span<double> angles) noexcept;
 
 }  // namespace chronormal::inline internal

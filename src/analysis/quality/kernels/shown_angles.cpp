@@ -1,5 +1,5 @@
-// Computes the normals of moving triangles and the angles of an audit in lanes. Operations have the same order as in
-// the scalar functions, so the bits are the same.
+// Computes the normals of moving triangles and the angles of an audit in lanes. Operations are in the same order as in
+// functions that compute one number at a time, so the bits are the same.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,8 +19,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles are stored in groups of eight, the number of doubles in the widest vector: value k of triangle i of a group
-// is at k * kTriangles + i. The values are x, y, z of each corner, first of all at the start and then at the end.
+// Triangles are stored in groups of eight, which is the number of doubles in the widest vector. Value k of triangle i
+// of a group is at k * kTriangles + i. The values are x, y, z of each corner at the start, and then x, y, z of each
+// corner at the end.
 constexpr std::size_t kTriangles = 8, kPositionValues = 18;
 
 }  // namespace
@@ -64,8 +65,8 @@ void TriangleNormals(const float* groups, std::size_t count, double t, Triangles
   }
 }
 
-// Adds up the normals of the faces around each element. A face is a row of x, y, z and its size. The sums are then
-// transposed to columns, one element per lane.
+// Adds up the normals of the faces around each element. A normal is a row of four numbers: x, y, z and its size. Sums
+// are also rows at first, and are then transposed to columns, with one element per lane.
 void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* faces,
                 std::span<const std::uint32_t> ends, PlanesOf4& sums) {
   alignas(64) double rows[kDoubleLanes][4];
@@ -94,7 +95,8 @@ void SumsAround(const TrianglesInMotion::Normal* normals, const std::uint32_t* f
   }
 }
 
-// A vector as v / scale, whose largest component is 1, and the length of v / scale; all are zero for the zero vector.
+// A vector v divided by its largest component, `scale`, and the length of this quotient. All numbers are zero for the
+// zero vector.
 struct Scaled {
   Real3 vector;
   Real scale, length;
@@ -160,7 +162,7 @@ HWY_INLINE void StoreVectors(const Real3& v, Vec3d* to) {
   hn::StoreInterleaved3(v.x.v, v.y.v, v.z.v, kDoubles, &to->x);
 }
 
-// Replaces all vectors by make(vector). The last vectors are copied to a buffer of whole lanes.
+// Replaces each vector v by make(v). The last vectors, which do not fill a vector of lanes, are computed in a buffer.
 template <class Make>
 HWY_INLINE void ReplaceVectors(std::span<Vec3d> vectors, const Make& make) {
   std::size_t i = 0;
@@ -200,7 +202,7 @@ HWY_INLINE Real3 Select(RealMask mask, const Real3& a, const Real3& b) {
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Scales vectors to length 1. Most inputs have nearly this length already, and are returned as they are.
+// Scales vectors to length 1. Most vectors have nearly this length already, and are returned unchanged.
 HWY_INLINE Real3 ToUnit(const Real3& v) {
   const RealMask is_near = absolute(dot(v, v) - Real(1.0)) < Real(1e-6);
   return any(!is_near) ? Select(is_near, v, Scaled(v).unit()) : v;

@@ -1,4 +1,5 @@
-// Decides in lanes of double as is_far_from_collapse() and plain comparisons do, with the same operations.
+// Decides for faces in lanes of double. The operations are the same as in is_far_from_collapse() and in plain
+// comparisons.
 #include "analysis/signs/kernels/face_glance.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -1,5 +1,5 @@
-/// Proves for sixteen faces between two keyframes, with little work, that nothing unusual happens. The proof succeeds
-/// for almost all faces.
+/// Proves for sixteen faces at a time, with little work, that nothing unusual happens to them between two keyframes.
+/// The proof succeeds for almost all faces.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACE_GLANCE_H_
 
@@ -10,14 +10,16 @@
 namespace chronormal::inline internal {
 
 struct GlanceLimits {
-  /// The least length of a normal at either end, per unit of the longest edge; below 0 if an end is not judged.
+  /// The shortest length of a normal at each end, divided by the length of the longest edge. A length below 0 means
+  /// that this end is not judged.
   double length_from = 0, length_to = 0;
-  /// The square of the cosine of an angle between 0 and 90 degrees: faces must turn less.
+  /// The square of the cosine of an angle between 0 and 90 degrees. The normals of a face at both ends must differ by
+  /// less than this angle.
   double square_of_cosine = 0;
 };
 
-/// Returns the faces, as bits, that are not certainly usual. A face is usual if the largest component of its normal is
-/// above the limit at both ends, it turns less than the angle, and is_far_from_collapse() is true of it.
+/// Returns a number whose bits mark the faces that are not certainly usual. A face is usual if its normal is above the
+/// limit at both ends, if it turns by less than the limit, and if is_far_from_collapse() is true for it.
 [[nodiscard]] std::uint32_t unusual_faces(const EdgedTile& tile, const GlanceLimits& limits) noexcept;
 
 }  // namespace chronormal::inline internal

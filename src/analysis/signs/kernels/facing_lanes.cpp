@@ -78,7 +78,8 @@ struct WaysTo {
   }
 };
 
-// Calls body for the control normals of all faces, a vector of lanes at a time. Lanes beyond the last face repeat it.
+// Calls body for the control normals of all faces, one vector of lanes at a time. Lanes beyond the last face repeat the
+// last face.
 template <class Body>
 HWY_INLINE void ForNormals(const double* rows, std::size_t count, FacingCoefficients& result, const Body& body) {
   constexpr std::size_t kRow = 9;
@@ -103,11 +104,11 @@ void FacingOfEye(const double* rows, std::size_t count, const FacingWays& ways, 
 }
 
 struct Guess {
-  Doubles root, slope;  // slope: without its sign
+  Doubles root, slope;  // `slope` is an absolute value
 };
 
-// Returns the only root in [0, 1] of a quadratic that is positive at 0 and negative at 1. With s = t / (1 - t) it is
-// the root of p2 s^2 + 2 p1 s + p0, by the formula that does not cancel.
+// Returns the only root in [0, 1] of a quadratic that is positive at 0 and negative at 1. s = t / (1 - t) is a root of
+// p2 s^2 + 2 p1 s + p0, and is computed by the formula in which nothing cancels.
 HWY_INLINE Doubles RootOfQuadratic(Doubles p0, Doubles p1, Doubles p2) {
   const Doubles w = hn::Add(p1, hn::CopySign(hn::Sqrt(hn::Sub(hn::Mul(p1, p1), hn::Mul(p0, p2))), p1));
   const auto is_negative = hn::Lt(w, hn::Zero(kDoubles));
@@ -129,21 +130,21 @@ HWY_INLINE Guess OnlyRoot(const Doubles (&p)[4]) {
   const Doubles middle =
       hn::Mul(hn::Set(kDoubles, 0.25), hn::Sub(hn::Mul(three, hn::Add(p[1], p[2])), hn::Add(p[0], p[3])));
   Doubles t = RootOfQuadratic(p[0], middle, p[3]), slope = zero;
-  // Each lane stops independently, so its result does not depend on its neighbours. Lanes that have not converged are
-  // left to CertainRoots.
+  // Each lane stops at its own step, so its result does not depend on the other lanes. Lanes that have not converged
+  // are left to CertainRoots.
   auto is_done = hn::Lt(one, zero);
   for (int i = 0; i < kMostSteps && !hn::AllTrue(kDoubles, is_done); ++i) {
     const Doubles value = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(a3, t), a2), t), a1), t), p[0]);
     slope = hn::IfThenElse(is_done, slope, hn::Add(hn::Mul(hn::Add(hn::Mul(thrice_a3, t), twice_a2), t), a1));
     const Doubles next = hn::Max(zero, hn::Min(one, hn::Sub(t, hn::Div(value, slope))));
-    const auto is_last = hn::Le(hn::Abs(hn::Sub(next, t)), hn::Set(kDoubles, 0x1p-28));  // the next is its square
+    const auto is_last = hn::Le(hn::Abs(hn::Sub(next, t)), hn::Set(kDoubles, 0x1p-28));  // the next step is its square
     t = hn::IfThenElse(is_done, t, next);
     is_done = hn::Or(is_done, is_last);
   }
   return {t, hn::IfThenElseZero(is_done, hn::Abs(slope))};
 }
 
-// Evaluates a polynomial by de Casteljau's algorithm.
+// Returns the value of a polynomial at t, by de Casteljau's algorithm.
 template <std::size_t M>
 HWY_INLINE Doubles ValueAt(const Doubles (&p)[M], Doubles t) {
   const Doubles s = hn::Sub(hn::Set(kDoubles, 1), t);
@@ -155,7 +156,7 @@ HWY_INLINE Doubles ValueAt(const Doubles (&p)[M], Doubles t) {
   return row[0];
 }
 
-// Tells whether the signs of the inner coefficients allow only one root; see CertainRoots.
+// Returns true in the lanes in which the signs of the inner coefficients allow only one root, as in CertainRoots.
 HWY_INLINE hn::Mask<DoubleTag> HasOneRoot(const Doubles (&/*p*/)[3], Doubles error) { return hn::Eq(error, error); }
 HWY_INLINE hn::Mask<DoubleTag> HasOneRoot(const Doubles (&p)[4], Doubles error) {
   const Doubles below = hn::Neg(error);
@@ -166,9 +167,9 @@ HWY_INLINE hn::Mask<DoubleTag> HasOneRoot(const Doubles (&p)[4], Doubles error) 
 
 template <std::size_t M>
 HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
-  constexpr double kRoundings = 46;  // as in CertainRoots
+  constexpr double kRoundings = 46;  // number of roundings, as in CertainRoots
   const Doubles zero = hn::Zero(kDoubles), one = hn::Set(kDoubles, 1);
-  // A polynomial that is negative at 0 is multiplied by -1, so that all of them go from positive to negative.
+  // A polynomial that is negative at 0 is multiplied by -1, so that all polynomials go from positive to negative.
   const Doubles sign = hn::CopySign(one, hn::Load(kDoubles, roots.p[0] + at));
   Doubles p[M], size = zero;
   for (std::size_t k = 0; k < M; ++k) {
@@ -183,7 +184,7 @@ HWY_INLINE void SingleRootsOf(std::size_t at, SingleRoots& roots) {
   const Doubles lower = hn::Max(zero, hn::Sub(root, step)), upper = hn::Min(one, hn::Add(root, step));
   const auto is_bracketed = hn::And(hn::Gt(ValueAt(p, lower), error), hn::Lt(ValueAt(p, upper), below));
   const auto changes = hn::And(hn::Gt(p[0], error), hn::Lt(p[M - 1], below));
-  // A bracket around a guess that is far from the root may be right, but is too wide to be of use.
+  // A bracket around a guess that is far from the root may contain the root, but is too wide to be of use.
   const auto is_narrow = hn::Lt(step, hn::Set(kDoubles, 0x1p-16));
   const auto is_found = hn::And(hn::And(changes, is_bracketed), hn::And(is_narrow, HasOneRoot(p, error)));
   hn::Store(lower, kDoubles, roots.lower + at);

@@ -12,43 +12,47 @@
 
 namespace chronormal::inline internal {
 
-/// The largest number of faces in a block.
+/// The largest number of faces in a block, which one call computes.
 inline constexpr std::size_t kFacingBlock = 32;
 
-/// The relative error of a dot product with a control normal, against the sum of the absolute components of the control
-/// normal times the largest component of the other vector: sqrt(3) 2^-26 and a few roundings.
+/// A bound of the error of a dot product with a control normal. It is relative to the sum of the absolute components of
+/// the control normal times the largest component of the other vector. It has sqrt(3) 2^-26 for the control normal, and
+/// a few roundings.
 inline constexpr double kDotShare = 0x1p-25;
 
-/// The vector from each face to the eye: x, y, z at t = 0, then at t = 1.
+/// The vector from each face to the eye: x, y, z at t = 0, and then x, y, z at t = 1.
 struct alignas(64) FacingWays {
   double at[6][kFacingBlock];
 };
 
-/// Bernstein coefficients of f, each times its binomial coefficient: three for a direction, four for an eye.
+/// The Bernstein coefficients of f, each multiplied by its binomial coefficient. There are three for a viewer in a
+/// direction, and four for an eye.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
-  /// Error bounds of the coefficients, for control normals within 2^-26 of the exact ones.
+  /// The error bounds of the coefficients, if control normals are within 2^-26 of the exact ones.
   double bounds[4][kFacingBlock];
-  double reach[kFacingBlock];  ///< the sum of the absolute components of the vector to the viewer, at the end with more
-  int signs[kFacingBlock];     ///< 1 or -1 if all coefficients are beyond their bounds on that side; else 0
+  /// The sum of the absolute components of the vector to the viewer; the larger one of both ends.
+  double reach[kFacingBlock];
+  /// The sign of all coefficients if they exceed their bounds and have one sign; otherwise 0.
+  int signs[kFacingBlock];
 };
 
-/// Computes the coefficients for a viewer in a direction. count <= kFacingBlock
+/// Computes the coefficients of f for a viewer in a direction, and for an eye. Precondition: count <= kFacingBlock.
 void facing_of_direction(const ControlNormals* normals, std::size_t count, const Vec3d& way,
                          FacingCoefficients& result) noexcept;
 void facing_of_eye(const ControlNormals* normals, std::size_t count, const FacingWays& ways,
                    FacingCoefficients& result) noexcept;
 
-/// Polynomials in Bernstein form, and brackets of their roots.
+/// Polynomials in Bernstein form, and the bracket of the only root of each.
 struct alignas(64) SingleRoots {
-  double p[4][kFacingBlock];   ///< the coefficients of each polynomial: three, or four
-  double error[kFacingBlock];  ///< the error of each coefficient, without the rounding of later operations
+  double p[4][kFacingBlock];   ///< the coefficients of each polynomial, three or four
+  double error[kFacingBlock];  ///< the error of each coefficient, not counting the rounding of later operations
   double lower[kFacingBlock], upper[kFacingBlock];
-  int before[kFacingBlock];  ///< the sign before the only root; 0 if the lane could not find all roots
+  int before[kFacingBlock];  ///< the sign before the root; 0 if the lane did not find it
 };
 
-/// Finds the only root of each polynomial that certainly has just one root, as CertainRoots does. The other polynomials
-/// are left to CertainRoots.
+/// Finds the root of each polynomial that certainly has exactly one root. The other polynomials are left to
+/// CertainRoots.
 void find_single_roots(std::size_t degree, std::size_t count, SingleRoots& roots) noexcept;
 
 }  // namespace chronormal::inline internal
