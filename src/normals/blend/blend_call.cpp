@@ -17,30 +17,31 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
-constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;  // 16 KiB of sums on the stack
+// Sums of this many elements take 16 KiB on the stack.
+constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;
 constexpr std::size_t kSlicesOfWord = kBitsOfWord / kRingLanes;
 constexpr std::size_t kMostRows = kMostRingPoints + 2;
-constexpr std::size_t kNearVertices = 4096;  // 128 KiB of points in double
+constexpr std::size_t kNearVertices = 4096;  // points of this many vertices take 128 KiB in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
-constexpr double kLargestAngle = 8e-7;  // error of double, before the rounding of the result
+constexpr double kLargestAngle = 8e-7;  // radians; error of double, before the rounding of the result
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
-// The limits for float32 terms. They guarantee 1e-6 rad if their bound is at most 14 times 2^-24 |n(w)|, that is, 14
-// roundings; the rounding of the result is added.
+// The limits for terms in float32. They guarantee 1e-6 rad if the bound of the terms' error is at most 14 times 2^-24
+// |n(w)|, that is, 14 roundings. The rounding of the result is then added.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-// The costs of the model in nanoseconds, fitted to a grid of 15,000 vertices with up to 100 targets, on one core of the
-// machine epyc-zen3-2cores in docs/benchmarks.md. Only their ratios matter.
-constexpr double kCopiedElement = 0.35;   // copying the base normals
-constexpr double kTargetElement = 3;      // adding the terms of a target
-constexpr double kPairElement = 1.4;      // adding the term of a pair
-constexpr double kFinishedElement = 5.5;  // making a result of length 1 from the base and the terms
+// The costs of the model, in nanoseconds. They were fitted to a grid of 15,000 vertices with up to 100 targets, on one
+// core of the machine epyc-zen3-2cores in docs/benchmarks.md. Only their ratios matter.
+constexpr double kCopiedElement = 0.35;   // copying the base normal of an element
+constexpr double kTargetElement = 3;      // adding the terms of a target to an element
+constexpr double kPairElement = 1.4;      // adding the term of a pair of targets to an element
+constexpr double kFinishedElement = 5.5;  // making the unit normal of an element from its base and its terms
 constexpr double kMovedVertex = 1.7;      // moving a vertex by a target, and back again
-constexpr double kPathPoint = 1.8;        // a point of the path around an element
-constexpr double kWrittenElement = 5;     // writing the result from the sum over its path
-constexpr double kWholeInFloat32 = 0.4;   // share of the time that the whole mesh takes in double
+constexpr double kPathPoint = 1.8;        // adding a point of the path around an element
+constexpr double kWrittenElement = 5;     // writing the unit normal of an element from the sum over its path
+constexpr double kWholeInFloat32 = 0.4;   // a factor: the time of the whole mesh in float32 divided by that in double
 
-// Returns the part of an ascending list that is inside a range of indices.
+// Returns the part of an ascending list of indices that is inside a range, as places in the list.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   if (list.empty() || list.back() < range.first || list.front() >= range.end()) return {};
   const auto place = [list](std::size_t index) {
@@ -51,8 +52,8 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   return {first, end - first};
 }
 
-// Returns the number of elements that are computed from points. On every machine these are whole groups of four, so
-// elements that were not requested but are in the same group as a requested one count, too.
+// Returns the number of elements that are computed from points. Elements are computed in groups of four on every
+// machine. So an element that was not requested counts, too, if another element of its group was requested.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -66,17 +67,20 @@ std::span<const std::uint32_t> in(IndexRange part, std::span<const std::uint32_t
   return list.subspan(part.first, part.count);
 }
 
-// Returns the weights of the four lanes of a coefficient. The last lane is a bound, so its weight is not negative.
+// Returns the weights for the four lanes of a coefficient. The last lane is a bound of an error, so its weight is the
+// absolute value.
 RowWeights row_weights(double weight) { return {weight, weight, weight, std::fabs(weight)}; }
 
-// Calls body for ranges of vertices whose points stay in a cache near the core while all targets move them.
+// Calls body for ranges of vertices that are so short that their points stay in a cache near the core while all targets
+// move them.
 template <class Body>
 void for_near(IndexRange vertices, const Body& body) {
   for (std::size_t first = vertices.first; first < vertices.end(); first += kNearVertices)
     body(IndexRange{first, std::min(kNearVertices, vertices.end() - first)});
 }
 
-// Calls body(i, target, part) for the part of each active target in a range of vertices.
+// Calls body(i, target, part) for each active target i. `part` is the part of the target's list of vertices that is in
+// the range `vertices`.
 template <class Body>
 void for_moved(const BlendSet& set, const BlendPose& pose, IndexRange vertices, const Body& body) {
   for (const std::uint32_t i : pose.active) {
@@ -110,7 +114,8 @@ void blend_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   pose.has_points = true;
 }
 
-// Puts the points back to the base. If many targets moved them, going through all in order is faster.
+// Sets the points that active targets have moved back to the base. If targets moved many of them, it is faster to set
+// all points in order.
 void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange vertices) {
     std::size_t moved = 0;
@@ -128,12 +133,12 @@ void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) 
 }
 
 // One call of evaluate(), which computes the normals of a range of elements at the weights of a pose. A call writes
-// nothing but results, so threads can share a pose.
+// only results, so several threads can share a pose.
 class Call {
  public:
   Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
 
-  // Writes the normals of the range to result. The first element must be the first of a word.
+  // Writes the normals of a range of elements to `result`. The first element must be the first of a word of bits.
   BlendEvaluation run(IndexRange elements, VectorView<float> result) {
     if (pose_.choice.path == BlendPath::kWhole && source_.in_float32) {
       const IndexRange slices{elements.first / kRingLanes, (elements.count + kRingLanes - 1) / kRingLanes};
@@ -151,7 +156,7 @@ class Call {
     return done_;
   }
 
-  // Returns the normal of a large face, which each of its corners needs.
+  // Returns the normal of a large face. It is computed once, because every corner of the face needs it.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {
@@ -163,8 +168,8 @@ class Call {
       const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
-    // The error of the sum over the fan: edges, and both products of a component, are within 10 u of the absolute
-    // products, each triangle adds a rounding, and points bring their own error.
+    // The loop below also bounds the error of the sum over the fan. Edges, and both products in a component, are within
+    // 10 u of the absolute products. Each triangle adds a rounding, and points have an error of their own.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
     for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
@@ -191,7 +196,7 @@ class Call {
     std::copy_n(pose_.again.words().begin() + static_cast<std::ptrdiff_t>(words.first), words.count, again);
     if (pose_.choice.path != BlendPath::kWhole) add_terms(elements, words, touched, again, result);
     for (std::size_t i = 0; i < words.count; ++i) {
-      if (i + 1 == words.count && elements.count % kBitsOfWord != 0)  // a range may end within a word
+      if (i + 1 == words.count && elements.count % kBitsOfWord != 0)  // the range may end within a word
         again[i] &= (std::uint64_t{1} << (elements.count % kBitsOfWord)) - 1;
       if (again[i] == 0) continue;
       done_.recomputed_elements += static_cast<std::size_t>(std::popcount(again[i]));
@@ -203,8 +208,8 @@ class Call {
     }
   }
 
-  // Writes the elements that are not in `again` from their terms. Adds to `again` the elements for which terms in
-  // float32 do not guarantee the accuracy.
+  // Writes the normals of the elements that are not in `again` from their terms. Adds those elements to `again` for
+  // which terms in float32 do not guarantee the accuracy.
   void add_terms(IndexRange elements, IndexRange words, std::span<const std::uint64_t> touched, std::uint64_t* again,
                  const VectorView<float>& result) {
     copy_base(elements, result);
@@ -226,7 +231,8 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // The list of a target has all elements of the faces that it moves.
+      // The list of a target has all elements that touch a face which the target moves. So no stored pair has an
+      // element outside of it.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);
@@ -255,8 +261,9 @@ class Call {
     for (std::size_t i = 0; i < elements.count; ++i) result.set(i, {units[3 * i], units[3 * i + 1], units[3 * i + 2]});
   }
 
-  // Computes the normals that unit_normals_of_rings() would, for a few elements whose points are not blended yet.
-  // Blends the points of their paths, four elements at a time, in the layout of the kernel.
+  // Computes the normals of a few elements whose points are not blended yet, as unit_normals_of_rings() would. Blends
+  // only the points of the paths around these elements, for four elements at a time, in the layout that the kernel
+  // needs.
   std::uint64_t make_rings(std::uint64_t elements, std::size_t first_word, std::size_t word,
                            const VectorView<float>& result) const {
     constexpr std::size_t kLanes = 4;
@@ -282,7 +289,7 @@ class Call {
           row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
         }
       }
-      // Describes the only slice as if it were at its place among all slices of the tile.
+      // The kernel expects the offsets of all slices of the tile. All slices except this one are described as empty.
       std::size_t first_row[kTileElements / kRingLanes + 1] = {};
       std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
                 std::end(first_row), row_count);
@@ -296,7 +303,7 @@ class Call {
     const double* const p = pose_.points.data() + kBlendLanes * std::size_t{v};
     Vec3d result{p[0], p[1], p[2]};
     if (pose_.has_points) return result;
-    for (const std::uint32_t i : pose_.active) {  // the same order as in move_points()
+    for (const std::uint32_t i : pose_.active) {  // in the same order as in move_points(), for the same bits
       const BlendTarget& target = source_.set.targets[i];
       const auto at = std::lower_bound(target.vertices.begin(), target.vertices.end(), v);
       if (at == target.vertices.end() || *at != v) continue;
@@ -318,7 +325,7 @@ class Call {
     for (const std::uint32_t f : source_.groups->faces(e)) body(f);
   }
 
-  // Computes an element for which lanes do not guarantee the accuracy, with a separate error bound for each face.
+  // Computes an element for which lanes do not guarantee the accuracy. Each of its faces has an error bound of its own.
   void make_element(std::size_t e, std::size_t place, const VectorView<float>& result) {
     Vec3d n;
     double noise = 0, count = 0;
@@ -328,7 +335,7 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition has an error of at most u times the sum of the absolute normals. These are at most twice the
+    // Each addition has an error of at most u times the sum of the absolute normals. This sum is at most twice the
     // products that make_face() has counted 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
@@ -337,7 +344,7 @@ class Call {
       if (noise * noise > kLargestAngle * kLargestAngle * square) ++done_.uncertain_elements;
       return;
     }
-    // The normal is very small, very large, only rounding error, or not finite.
+    // This code is reached if the normal is very small, very large, only rounding error, or not finite.
     const double largest = max_abs(n);
     if (sum_abs(n) <= std::numeric_limits<double>::max() && largest > noise) {
       result.set(place, to_float(unit(n)));
@@ -391,7 +398,8 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   const Rings& rings = source.storage.rings();
   const std::size_t elements = source.storage.terms().size();
   const double whole = kPathPoint * of(kRingLanes * rings.row_count()) + kWrittenElement * of(elements);
-  const double anew = elements > 0 ? whole / of(elements) : 0;  // cost of an element from points
+  // Average cost of an element that is computed from points.
+  const double anew = elements > 0 ? whole / of(elements) : 0;
   const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +
                     kFinishedElement * of(choice.touched_elements - choice.unstored_elements);

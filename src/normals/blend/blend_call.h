@@ -1,4 +1,5 @@
-/// Evaluation of BlendNormals: one part is computed once for some weights, the other for each range of elements.
+/// The evaluation of BlendNormals. set_weights() computes the data that all elements share at some weights, and
+/// evaluate() the normals of a range of elements.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 
@@ -14,25 +15,25 @@
 
 namespace chronormal::inline internal {
 
-/// The data that an evaluation reads.
+/// References to the data that an evaluation of blend shapes reads.
 struct BlendInput {
   const BlendSet& set;
-  const NormalGroups* groups;  ///< nullptr: the elements are faces
+  const NormalGroups* groups;  ///< nullptr if the elements are faces
   const BlendStorage& storage;
   const BlendBase& base;
   std::optional<BlendPath> forced;
-  bool in_float32;  ///< whether the path kWhole works in float32
+  bool in_float32;  ///< true if the path kWhole works in float32
 };
 
-/// Chooses the path for some weights. Leaves in the pose only the active targets, the touched elements, and the
-/// elements without terms.
+/// Chooses the path for some weights. In the pose it only sets the active targets, the elements that they touch, and
+/// the elements without stored terms.
 BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
-/// Makes everything that all elements need at these weights.
+/// Sets the weights of a pose: chooses the path, and computes the data that all elements share at these weights.
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
 /// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call it.
-/// elements.first must be a multiple of 64, and `result` must have as many elements as the range
+/// Preconditions: elements.first is a multiple of 64, and `result` has as many elements as the range.
 BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
                          VectorView<float> result) noexcept;
 

@@ -13,7 +13,8 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlockOfElements = 16384;  // elements of a thread; whole words
+// Number of elements that a thread computes at a time; a multiple of the bits of a word.
+constexpr std::size_t kBlockOfElements = 16384;
 
 }  // namespace
 
@@ -58,7 +59,7 @@ struct BlendNormals::Parts {
   }
 
   BlendSet set;
-  std::optional<NormalGroups> groups;  // none: the elements are faces
+  std::optional<NormalGroups> groups;  // no value if the elements are faces
   BlendNormalsOptions options;
   BlendStorage storage;
   BlendBase base;
@@ -110,7 +111,7 @@ std::vector<BlendEvaluation> BlendNormals::unit_normals(std::span<const double> 
   assert(weights.size() == results.size() * targets);
   std::vector<BlendEvaluation> done(results.size());
   const BlendInput source = parts_->source();
-  // Each thread computes every `hands`-th row, with its own pose.
+  // Thread `hand` computes the rows hand, hand + hands, hand + 2 hands and so on, with a pose of its own.
   const std::size_t hands = threads == Threads::kOne ? 1 : std::min(thread_count(), results.size());
   std::vector<BlendPose> poses;
   for (std::size_t hand = 1; hand < hands; ++hand) poses.emplace_back(set(), parts_->shape());

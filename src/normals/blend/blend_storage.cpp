@@ -14,15 +14,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The inverse of the share of all terms, in bytes, on which threads work at a time while computing them. A single term
-// may be larger.
+// Threads work on terms of at most 1 / kShareOfWork of all terms' bytes at a time. A single term may be larger.
 constexpr std::size_t kShareOfWork = 8;
 
-constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);  // bytes of an element
+// Bytes of an element of a target.
+constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
-// The factor by which bounds are enlarged, so that they hold despite their rounding to float32, and the smallest bound,
-// for values near the end of the range of float32.
+// The factor by which error bounds are enlarged, so that they hold despite their own rounding to float32. The smallest
+// bound is for values near the end of the range of float32.
 constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
 
 std::size_t bytes_of(const StoredTerm& term) {
@@ -33,7 +33,7 @@ std::size_t bytes_of_lists(const StoredTarget& target) {
   return target.elements.bytes() + target.pairs.capacity() * sizeof(StoredPair);
 }
 
-// Returns a power of two that brings the largest value below 1.
+// Returns a power of two by which the largest value can be divided to be below 1.
 double scale_of(double largest) {
   int exponent = 0;
   std::frexp(largest, &exponent);
@@ -54,8 +54,8 @@ void put(const Vec3d& value, double noise, double scale, float* lanes) {
   lanes[3] = static_cast<float>(bound);
 }
 
-// Writes the coefficients of a term to a stored term, which has `stride` lanes for each element: the four lanes of a
-// coefficient from lane `first` of its element on. All elements of the term must be among the stored ones.
+// Copies the coefficients of a term to a stored term, which has `stride` lanes for each element. The four lanes of a
+// coefficient begin at lane `first` of its element. All elements of `term` must be elements of `stored`.
 void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, StoredTerm& stored) {
   std::size_t e = 0;
   for (std::size_t i = 0; i < term.elements.size(); ++i) {
@@ -66,20 +66,20 @@ void put_all(const BlendTerm& term, std::size_t first, std::size_t stride, Store
 
 }  // namespace
 
-// A term that might be stored.
+// A term that may be stored if there is memory for it.
 struct BlendStorage::Candidate {
   std::size_t bytes;
   std::size_t target;
-  std::size_t pair;  // index into the target's pairs; kNone for its own term
+  std::size_t pair;  // index into the target's pairs; kNone for the target's own term
 
   static constexpr std::size_t kNone = ~std::size_t{0};
 };
 
-// A term that is to be made.
+// A term that has been chosen and is to be computed.
 struct BlendStorage::ListedTerm {
   std::size_t target;
   StoredPair* pair;  // nullptr for the target's own term
-  std::size_t work;  // bytes
+  std::size_t work;  // number of bytes that the computation takes
 };
 
 BlendStorage::BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes)
@@ -122,7 +122,7 @@ StoredTarget BlendStorage::listed(std::size_t i) const {
   return target;
 }
 
-// Chooses small terms first: targets, and then pairs of stored targets.
+// Chooses the terms to be stored, the smallest ones first: those of targets, and then those of pairs of stored targets.
 void BlendStorage::choose(std::vector<Candidate> candidates) {
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     const bool a_is_pair = a.pair != Candidate::kNone, b_is_pair = b.pair != Candidate::kNone;
@@ -145,8 +145,8 @@ void BlendStorage::choose(std::vector<Candidate> candidates) {
   update_cost();
 }
 
-// Computes many terms at once, since terms of few elements do not occupy several threads. All terms that are computed
-// at once take at most work_together_ bytes.
+// Computes the chosen terms, many at once, since a term with few elements does not keep several threads busy. Together,
+// the terms that are computed at once take at most work_together_ bytes.
 void BlendStorage::fill() {
   std::vector<ListedTerm> terms;
   terms.reserve(cost_.stored_targets + cost_.stored_pairs);
@@ -169,8 +169,8 @@ void BlendStorage::fill() {
   }
 }
 
-// Returns the bytes that the computation of a target's terms takes. The linear term stays in memory while the square
-// term is computed, so the bytes count twice.
+// Return the number of bytes that the computation of a target's terms, or of the term of a pair, takes. For a target
+// the bytes of a term count twice, since its linear term stays in memory while the square term is computed.
 std::size_t BlendStorage::work_of(const StoredTarget& target) const {
   return 2 * terms_.term_bytes(target.moved_faces, target.moved_corners);
 }

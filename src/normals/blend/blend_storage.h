@@ -1,4 +1,5 @@
-/// The terms of a quadratic form in the weights, as BlendNormals stores them: in float32, sparse, and as many as fit.
+/// The terms of the quadratic form in the weights that gives the normals (blend_terms.h), as BlendNormals stores them.
+/// They are in float32, sparse, and only as many as fit into memory.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 
@@ -16,22 +17,23 @@
 
 namespace chronormal::inline internal {
 
-/// The most points of a path around an element.
+/// The largest number of points of a path around an element that lanes can process.
 inline constexpr std::size_t kMostRingPoints = 64;
 
-/// The coefficients of n(w) (blend_terms.h) at some elements: A and C_ii for a target, C_ij for a pair of targets. A
-/// coefficient is `scale` times the four lanes that are stored, x y z and a bound: the length of the error of x y z is
-/// at most kFloatUnitRoundoff times the bound. All bounds are in this unit.
+/// The coefficients of n(w) (blend_terms.h) at some elements: A and C_ii for a target, or C_ij for a pair of targets. A
+/// coefficient is stored as four lanes, which must be multiplied by `scale`: x, y, z and a bound. The length of the
+/// error of (x, y, z) is at most kFloatUnitRoundoff times the bound; all bounds are in this unit.
 struct StoredTerm {
   bool is_stored = false;
   double scale = 1;
-  std::vector<std::uint32_t> elements;  ///< ascending
+  std::vector<std::uint32_t> elements;  ///< numbers of the elements, ascending
   std::vector<float> lanes;             ///< four numbers for each coefficient of each element
 };
 
 struct StoredPair {
-  std::uint32_t other = 0;     ///< the later target
-  std::uint32_t elements = 0;  ///< number of elements of the faces that both move; the term has at most these
+  std::uint32_t other = 0;  ///< the number of the other target, which comes later
+  /// Number of elements that touch a face which both targets move; the term has at most this many.
+  std::uint32_t elements = 0;
   StoredTerm term;
 };
 
@@ -39,28 +41,28 @@ struct StoredTarget {
   SparseBits elements;  ///< elements that the target touches
   std::size_t element_count = 0;
   std::size_t moved_faces = 0, moved_corners = 0;
-  double reach = 0;  ///< the largest absolute component of its deltas
+  double reach = 0;  ///< the largest absolute component of the target's deltas
   StoredTerm term;
-  std::vector<StoredPair> pairs;  ///< pairs with later targets, ascending
+  std::vector<StoredPair> pairs;  ///< pairs with later targets, in ascending order
 };
 
 class BlendStorage {
  public:
-  /// Counts the terms, and decides which to store, but makes none. Without groups, the elements are faces. The set and
-  /// the groups must outlive the object.
+  /// Counts the terms, and decides which of them to store, but computes none yet. If groups is nullptr, the elements
+  /// are faces. The set and the groups must outlive the object.
   BlendStorage(const BlendSet& set, const NormalGroups* groups, std::size_t max_bytes);
 
-  /// Makes the terms that are to be stored.
+  /// Computes the terms that are to be stored.
   void fill();
-  /// Computes the terms of a target that was just appended to the set. Must be called after each one.
+  /// Computes the terms of a target that was just appended to the set. Must be called after each appended target.
   void target_added();
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
-  /// Returns the paths around all elements. An element of more than kMostRingPoints points has a path that adds
-  /// nothing.
+  /// Returns the paths around all elements. If an element has more than kMostRingPoints points, its path adds nothing.
   [[nodiscard]] const Rings& rings() const noexcept { return rings_; }
-  /// Returns the faces of more than kMostRingPoints corners, ascending. None of their elements has a path.
+  /// Returns the faces of more than kMostRingPoints corners in ascending order. Elements that touch such a face have no
+  /// path.
   [[nodiscard]] std::span<const std::uint32_t> large_faces() const noexcept { return large_faces_; }
   [[nodiscard]] const BlendCost& cost() const noexcept { return cost_; }
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -85,7 +87,7 @@ class BlendStorage {
   std::vector<std::uint32_t> large_faces_;
   std::vector<StoredTarget> targets_;
   BlendCost cost_;
-  std::size_t work_together_ = 0;  // bytes
+  std::size_t work_together_ = 0;  // the largest number of bytes of terms that are computed at once
 };
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Vectors at the corners of faces, and the sums of their products of which the terms of blend shapes consist. Private
-/// to normals.
+/// Vectors at the corners of faces, and sums of their products. The terms of blend shapes are such sums
+/// (blend_terms.h).
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_SUMS_H_
 
@@ -16,10 +16,10 @@
 
 namespace chronormal::inline internal {
 
-/// The largest number of corners of a face that needs no memory on the heap.
+/// The largest number of corners of a face whose vectors are stored in the object itself, not on the heap.
 inline constexpr std::size_t kSmallFace = 4;
 
-/// The vectors at the corners of a face.
+/// A vector for each corner of a face.
 class CornerVectors {
  public:
   explicit CornerVectors(std::size_t count) : count_(count) {
@@ -46,12 +46,13 @@ class CornerVectors {
   return positions;
 }
 
-/// A sum of products of edges.
+/// A sum of cross products of edges, and a bound of its error.
 class ProductSum {
  public:
-  /// Adds B(p, q) of a face from its corners: over its fan, the edges of p from the first corner times the edges of q.
-  /// Edges and both products of a component are within 10 u of the absolute products. Each triangle adds a rounding,
-  /// and four more are counted for setting noise to zero.
+  /// Adds B(p, q) of a face (blend_terms.h), for vectors p and q at its corners: over its fan, the edges of p from the
+  /// first corner times the edges of q. Edges, and both products in a component, are within 10 u of the absolute
+  /// products. Each triangle adds a rounding, and four more are counted for components that are set to zero as rounding
+  /// errors.
   void add(const CornerVectors& p, const CornerVectors& q) {
     struct Edge {
       Vec3d p, q;
@@ -72,8 +73,8 @@ class ProductSum {
   double products_ = 0, roundings_ = 0;
 };
 
-/// A sum over the faces around an element. Each face adds one rounding to the error, and four more are counted for
-/// setting noise to zero.
+/// A sum over the faces around an element, and a bound of its error. Each face adds one rounding to the error, and four
+/// more are counted for components that are set to zero as rounding errors.
 class ElementSum {
  public:
   void add(const Vec3d& face, double noise) {

@@ -17,9 +17,10 @@ using Indices = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kTermsTogether = 1024;
-// Number of faces up to which storing the contribution of each takes little memory.
+// The largest number of faces for which it takes little memory to store the contribution of each face.
 constexpr std::size_t kFewFaces = 100000;
-constexpr std::size_t kFarApart = 16;  // faces lie so far apart on average that a table of all between is too large
+// If faces are farther apart in the mesh than this on average, a table of all faces between them is too large.
+constexpr std::size_t kFarApart = 16;
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
   Indices result;
@@ -32,14 +33,14 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// A finder of the faces around vertices.
+// Finds the faces around vertices.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
-  // Returns the faces around any of these vertices, ascending.
+  // Returns the faces around any of some vertices, in ascending order.
   [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
-    // Many vertices are found by going through the whole mesh, which takes less memory than sorting.
+    // The faces around many vertices are found by going through the whole mesh, which takes less memory than sorting.
     constexpr std::size_t kFew = 16;
     if (vertices.size() > topology_.vertex_count() / kFew) return among_all(vertices);
     if (offsets_.empty()) list();
@@ -88,7 +89,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// A counter of the elements that two targets have in common, which uses a list of the targets that move each face.
+// Counts the elements that two targets have in common. For this it has a list of the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)
@@ -106,7 +107,7 @@ class BlendTerms::PairCounter {
       for (const std::uint32_t f : terms.faces_of_target_[i]) targets_[next[f]++] = static_cast<std::uint32_t>(i);
   }
 
-  // Counts the elements shared with each target from `first` on, except i.
+  // Counts the elements that target i has in common with each other target from `first` on.
   [[nodiscard]] std::vector<PairCount> count(std::size_t i, std::size_t first) {
     std::fill(last_element_.begin(), last_element_.end(), kNone);
     std::fill(counts_.begin(), counts_.end(), 0);
@@ -132,10 +133,10 @@ class BlendTerms::PairCounter {
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
   const BlendTerms& terms_;
-  std::vector<std::size_t> offsets_;  // range of each face in targets_
+  std::vector<std::size_t> offsets_;  // for each face, its first place in targets_, and the end
   Indices targets_;
   std::vector<bool> is_moved_;
-  Indices last_element_, counts_;  // one for each target
+  Indices last_element_, counts_;  // one number for each target
 };
 
 BlendTerms::BlendTerms(const BlendSet& set, const NormalGroups* groups) : set_(set), groups_(groups) {
@@ -172,8 +173,8 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
   Indices elements;
-  // Elements are found by marking a bit for each, or by sorting, which takes 32 bits for each corner. The method that
-  // needs less memory is used.
+  // Elements are found by marking a bit for each element of the mesh, or by sorting, which takes 32 bits for each
+  // corner of the faces. The method that needs less memory is used.
   if (faces.size() > size() / 64) {
     std::vector<bool> is_one(size());
     std::size_t count = 0;
@@ -253,7 +254,7 @@ BlendTerms::Term::Places::Places(const BlendTarget& listed) : target(&listed) {
 
 const float* BlendTerms::Term::Places::find(std::uint32_t vertex) const noexcept {
   if (!of_vertices.empty()) {
-    const std::size_t place = vertex - std::size_t{first};  // large if the vertex is before the first
+    const std::size_t place = vertex - std::size_t{first};  // a large number if the vertex is before the first
     const std::uint32_t n = place < of_vertices.size() ? of_vertices[place] : kNoPlace;
     return n == kNoPlace ? nullptr : target->deltas.data() + 3 * std::size_t{n};
   }

@@ -18,9 +18,9 @@ inline constexpr std::size_t kBitsOfWord = 64;
   return (count + kBitsOfWord - 1) / kBitsOfWord;
 }
 
-/// The words of a set that are not zero.
+/// The words of a set that are not zero, and their places.
 struct SparseBits {
-  std::vector<std::uint32_t> places;  ///< ascending
+  std::vector<std::uint32_t> places;  ///< numbers of the words, ascending
   std::vector<std::uint64_t> masks;
 
   [[nodiscard]] std::size_t bytes() const noexcept {
@@ -41,7 +41,7 @@ class IndexBits {
     return (words_[i / kBitsOfWord] >> (i % kBitsOfWord) & 1) != 0;
   }
 
-  /// Adds the indices 0 ... count - 1.
+  /// Adds the indices from 0 to count - 1.
   void fill(std::size_t count) noexcept {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const std::size_t first = i * kBitsOfWord, left = count > first ? count - first : 0;
@@ -55,7 +55,7 @@ class IndexBits {
   void add(const SparseBits& bits) noexcept {
     for (std::size_t i = 0; i < bits.places.size(); ++i) words_[bits.places[i]] |= bits.masks[i];
   }
-  /// Adds the indices that are in both sets.
+  /// Adds the indices that are in both of two sets.
   void add_common(const SparseBits& a, const SparseBits& b) noexcept {
     for (std::size_t i = 0, j = 0; i < a.places.size() && j < b.places.size();) {
       if (a.places[i] == b.places[j]) words_[a.places[i]] |= a.masks[i] & b.masks[j];
@@ -92,13 +92,13 @@ class IndexBits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Calls body(index) for each bit of a word, ascending.
+/// Calls body(index) for each set bit of a word, in ascending order. `place` is the number of the word.
 template <class Body>
 void for_bits(std::uint64_t word, std::size_t place, const Body& body) {
   for (; word != 0; word &= word - 1) body(place * kBitsOfWord + static_cast<std::size_t>(std::countr_zero(word)));
 }
 
-/// Calls body(index) for each bit of a range of words, ascending.
+/// Calls body(index) for each set bit of a range of words, in ascending order.
 template <class Body>
 void for_bits(std::span<const std::uint64_t> words, IndexRange places, const Body& body) {
   for (std::size_t i = places.first; i < places.end(); ++i) for_bits(words[i], i, body);

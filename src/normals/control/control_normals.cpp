@@ -16,16 +16,17 @@
 namespace chronormal {
 namespace {
 
-// The error of eq. 5 in double: see "n(t) counts as zero" in the header.
+// The error of eq. 5 in double, relative to the largest control normal. unit_normal_at() in the header says that n(t)
+// counts as zero below 8 rounding errors.
 constexpr double kEvaluationError = 16 * kUnitRoundoff;
 
-// The edge from the first corner of a face at both ends of the segment.
+// An edge from the first corner of a face, at both ends of the segment.
 struct Edge {
   Vec3d from, to;
 };
 
-// Returns the direction at an end of the segment, without rounding: the direction of the first control normal, counted
-// from this end, that is not zero.
+// Returns the direction at an end of the segment, without rounding. It is the direction of the first nonzero control
+// normal, counted from this end.
 UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
   if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
   if (middle != Vec3d{}) return {unit(middle), Direction::kLimit};
@@ -58,7 +59,8 @@ PolygonNormals polygon_control_normals(const Segment& segment, std::span<const s
 
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept {
   assert(result.size() == faces.count && faces.end() <= segment.topology->face_count());
-  // A kernel computes a whole block of faces, which takes longer than the scalar code for fewer faces than this.
+  // The smallest number of faces for which a kernel is faster than the scalar code, since a kernel always computes a
+  // whole block of faces.
   constexpr std::size_t kFewest = 4;
   if (fits_lanes(segment) && faces.count >= kFewest) {
     triangle_control_normals(segment, faces, result);
@@ -93,7 +95,7 @@ UnitNormal unit_normal_at(const ControlNormals& normals, double time) noexcept {
   const double size = s * s * max_abs(n0) + 2 * t * s * max_abs(m) + t * t * max_abs(n1);
   if (max_abs(n) > kEvaluationError * size) return {unit(n), Direction::kRegular};
 
-  // If n(t) = 0, the curve at x near t is (x - t) n'(t) + (x - t)^2 c2, where c2 = n0 - 2m + n1.
+  // If n(t) = 0, the curve at a time x near t is (x - t) n'(t) + (x - t)^2 c2, where c2 = n0 - 2m + n1.
   const double largest = maximum_number(max_abs(n0), maximum_number(max_abs(m), max_abs(n1)));
   const Vec3d half_derivative = s * (m - n0) + t * (n1 - m);
   if (max_abs(half_derivative) > kEvaluationError * largest) {

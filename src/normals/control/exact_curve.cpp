@@ -19,7 +19,7 @@ struct PointParts {
   }
 };
 
-// The position of a vertex, as a sum of vectors of integers.
+// The exact position of a vertex, as a sum of vectors of integers.
 struct PlaceParts {
   std::array<PointParts, SegmentEnd::kMostParts> parts;
   std::size_t count = 0;
@@ -31,7 +31,7 @@ struct PlaceParts {
   }
 };
 
-// Returns the smallest shift of a coordinate that is not zero.
+// Returns the smaller one of `lowest` and the smallest shift (FloatParts) of a nonzero coordinate.
 unsigned lowest_shift(const Vec3f& p, unsigned lowest) noexcept {
   for (const float x : {p.x, p.y, p.z}) {
     const FloatParts parts = FloatParts::of(x);
@@ -72,8 +72,8 @@ WideInteger<kMost> product(const WideInteger<kA>& a, const WideInteger<kB>& b) n
   return result;
 }
 
-// A vector of integers as doubles times 2^exponent. The exponent is chosen so that the largest component is neither
-// infinite nor subnormal.
+// A vector of integers, given as doubles times 2^exponent. With this exponent the largest component is neither infinite
+// nor subnormal.
 struct ScaledVector {
   Vec3d vector;
   int exponent = 0;
@@ -90,7 +90,7 @@ struct ScaledVector {
   }
 };
 
-// Returns n(t) times the square of t.whole.
+// Returns n(t) multiplied by the square of t.whole.
 ScaledVector value_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
   constexpr std::size_t kInner = ExactCurve::kDigits + kTimeDigits + 1, kOuter = kInner + kTimeDigits + 1;
   const auto square = product<2 * kTimeDigits>(t.whole, t.whole);
@@ -106,7 +106,7 @@ ScaledVector value_at(const std::array<ExactCurve::CoefficientVector, 3>& c, con
   return ScaledVector::of(value);
 }
 
-// Returns n'(t) times t.whole.
+// Returns n'(t) multiplied by t.whole.
 ScaledVector slope_at(const std::array<ExactCurve::CoefficientVector, 3>& c, const TimeFraction& t) noexcept {
   std::array<WideInteger<ExactCurve::kDigits + kTimeDigits + 1>, 3> slope;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -254,7 +254,7 @@ Vec3d ExactCurve::normal_at(const LocalTime& t) const noexcept {
 
 UnitNormal ExactCurve::unit_normal_at(const LocalTime& t) const noexcept {
   if (t.is_double()) return unit_normal_at_double(t.t);
-  // From here on t is inside the segment. The cases are those of unit_normal_at_double().
+  // The following code is for t inside the segment. The cases are those of unit_normal_at_double().
   const TimeFraction fraction = TimeFraction::of(t);
   auto c = in_powers();
   if (const Vec3d n = value_at(c, fraction).vector; n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
@@ -284,8 +284,8 @@ Vec3d ExactCurve::normal_at_double(double t) const noexcept {
   return to_doubles(integers_at(fraction), unit() - 2 * static_cast<int>(fraction.scale));
 }
 
-// Returns the blossom n0 + (s + t) / 2 linear + s t bend. Twice the blossom is a sum of two terms that Horner's rule
-// computes, one beginning with s and one with t.
+// Returns the blossom n0 + (s + t) / 2 linear + s t bend. Twice the blossom is the sum of two terms that Horner's rule
+// computes. One of them begins with s, the other with t.
 Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   const UnitFraction a = UnitFraction::of(s), b = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();
@@ -308,7 +308,7 @@ UnitNormal ExactCurve::unit_normal_at_double(double t) const noexcept {
   const Vec3d n = normal_at_double(t);
   if (n != Vec3d{}) return {chronormal::unit(n), Direction::kRegular};
 
-  // If n(t) = 0, the curve at x near t is (x - t) n'(t) + (x - t)^2 bend.
+  // If n(t) = 0, the curve at a time x near t is (x - t) n'(t) + (x - t)^2 bend.
   const UnitFraction fraction = UnitFraction::of(t);
   const CoefficientVector c1 = linear();
   CoefficientVector c2 = bend();

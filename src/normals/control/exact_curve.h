@@ -1,18 +1,18 @@
-/// n(t) of an element without any rounding, for cases that double cannot decide.
+/// Computes n(t) of an element without any rounding, for cases that double cannot decide.
 ///
-/// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few
-/// (motion/segment_end.h). The control normals of a group are sums of these, so all are integers times 2^-298
-/// (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's rule
+/// The control normals of a face are sums of products of its coordinates, which are floats or sums of a few floats
+/// (motion/segment_end.h). The control normals of a group are sums of those of its faces. So all of them are integers
+/// times 2^-298 (core/wide_integer.h). A double t is an integer times a power of two as well, and by Horner's rule
 ///
 ///     n(t) = n0 + t (2m - 2 n0 + t (n0 - 2m + n1))                             (eq. 5 in powers of t)
 ///
-/// is one more such integer. If t is a quotient of differences of doubles (LocalTime), n(t) is such an integer divided
+/// is such an integer, too. If t is a quotient of differences of doubles (LocalTime), n(t) is such an integer divided
 /// by the square of the divisor. So the zeros and the direction of n(t) are known exactly. This takes about a
-/// microsecond for each t, hundreds of times longer than in double, so it is only used behind a filter: double decides
-/// if the bound of its rounding error is small relative to |n(t)|.
+/// microsecond for each t, hundreds of times longer than in double. So integers are only used where double fails: where
+/// the bound of its rounding error is not small relative to |n(t)|.
 ///
-/// No edges are formed: the products of neighbouring corners add up to the vector area (the shoelace formula), and for
-/// integers the distance from the origin does not matter.
+/// No edges are computed. The sum of the products of neighbouring corners is the vector area (the shoelace formula),
+/// and for integers the distance from the origin does not matter.
 #ifndef CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 #define CHRONORMAL_NORMALS_CONTROL_EXACT_CURVE_H_
 
@@ -31,11 +31,12 @@
 
 namespace chronormal::inline internal {
 
-/// The time t = part / whole, of integers. Doubles and their differences are integers times 2^-1074, of 2099 bits.
+/// A time t = part / whole, where both are integers. Doubles and their differences are integers times 2^-1074, which
+/// have at most 2099 bits.
 struct TimeFraction {
   static constexpr std::size_t kDigits = 89;
 
-  WideInteger<kDigits> part, whole;  ///< settled
+  WideInteger<kDigits> part, whole;  ///< both settled (WideInteger::settle())
 
   [[nodiscard]] static TimeFraction of(const LocalTime& t) noexcept {
     const DoubleParts start = DoubleParts::of(t.start), time = DoubleParts::of(t.time), end = DoubleParts::of(t.end);
@@ -55,40 +56,42 @@ struct TimeFraction {
 
 class ExactCurve {
  public:
-  // The number of digits of a coefficient. Products reach up to digit 23; the other digits are for sums of 2^40
+  // The number of digits of a coefficient. Products have up to 23 digits; the other digits are for sums of up to 2^40
   // products.
   static constexpr std::size_t kDigits = 26;
   using Coefficient = WideInteger<kDigits>;
   using CoefficientVector = std::array<Coefficient, 3>;
 
-  /// Makes the curve of a polygon, given by its vertices, or of several faces, whose normals are summed.
+  /// Make the curve of a polygon, given by its vertices, and the curve of several faces, which is the sum of theirs.
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 
-  /// Adds another curve. The bits are the same as from of_faces() for both at once.
+  /// Adds another curve. The result has the same bits as that of of_faces() for the faces of both curves.
   void add(const ExactCurve& other) noexcept;
 
-  /// Reads numbers that append_to() has written.
+  /// Makes a curve from the numbers that append_to() has written.
   [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
-  /// Appends the numbers of this curve, as few as necessary: about 40 for coordinates of similar magnitude.
+  /// Appends the numbers of this curve to a list, as few as possible. There are about 40 if all coordinates are of
+  /// similar size.
   void append_to(std::vector<std::int32_t>& kept) const;
 
-  /// Returns the control normals, each component rounded once or twice.
+  /// Returns the control normals. Each component is rounded once or twice.
   [[nodiscard]] ControlNormals rounded() const noexcept;
-  /// Returns n(t), each component rounded a few times. t is a local_time()
+  /// Returns n(t). Each component is rounded a few times. t must be the result of local_time().
   [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
   /// Returns the middle control normal of the part [s, t] of the curve, rounded as by normal_at(). It is the blossom
-  /// (polar form) of n at (s, t), which is n(t) if s = t. Both arguments must be doubles from local_time()
+  /// (polar form) of n at (s, t), which is n(t) if s = t. Both arguments must be doubles from local_time().
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
-  /// Returns n(t) / |n(t)|, with the cases of Direction decided exactly. t is a local_time()
+  /// Returns n(t) / |n(t)|. The cases of Direction are decided exactly. t must be the result of local_time().
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
-  /// Returns n(t) without any rounding: an integer of the unit 2^(2 base() - 298 - 2 t.scale), settled.
-  static constexpr std::size_t kValueDigits = 50;  // both factors t together have 2 (53 + 200) bits
+  /// Returns n(t) without any rounding, as settled integers in units of 2^(2 base() - 298 - 2 t.scale).
+  static constexpr std::size_t kValueDigits = 50;  // the two factors t have 2 (53 + 200) bits together
   using Value = std::array<WideInteger<kValueDigits>, 3>;
   [[nodiscard]] Value integers_at(const UnitFraction& t) const noexcept;
-  /// Returns `base`; all coordinates are multiples of 2^(base - 149).
+  /// Returns the exponent of the unit of coordinates: all coordinates are multiples of 2^(base - 149).
   [[nodiscard]] unsigned base() const noexcept { return base_; }
-  /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, settled: integers of one unit, a power of two.
+  /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, as settled integers with a common unit that is a
+  /// power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
  private:
@@ -96,7 +99,7 @@ class ExactCurve {
   [[nodiscard]] static ExactCurve of(const Segment& segment, const Body& for_polygons) noexcept;
   void add_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
 
-  // Calls body for all control normals in the order of ControlNormals, x y z of each.
+  // Calls body for each component of all control normals, in the order of ControlNormals: x, y, z of n0, and so on.
   template <class Body>
   void for_components(const Body& body);
   template <class Body>
@@ -107,8 +110,8 @@ class ExactCurve {
 
   [[nodiscard]] int unit() const noexcept { return 2 * static_cast<int>(base_) - 298; }
 
-  [[nodiscard]] CoefficientVector linear() const noexcept;  // 2m - 2 n0
-  [[nodiscard]] CoefficientVector bend() const noexcept;    // n0 - 2m + n1
+  [[nodiscard]] CoefficientVector linear() const noexcept;  // the coefficient 2m - 2 n0 of t
+  [[nodiscard]] CoefficientVector bend() const noexcept;    // the coefficient n0 - 2m + n1 of t^2
 
   CoefficientVector n0_, twice_m_, n1_;
   unsigned base_ = 0;

@@ -1,4 +1,4 @@
-/// The only rule that turns the t of a call into a local t of a segment.
+/// The only functions that turn the t of a call into a local t of a segment.
 #ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 #define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 
@@ -8,18 +8,19 @@
 
 namespace chronormal::inline internal {
 
-/// The smallest t that does not count as 0. With it, t^2 times the smallest product of two floats is still far above
+/// The smallest t that does not count as 0. For this t, t^2 times the smallest product of two floats is still far above
 /// the smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
-/// Returns t in [0, 1]: a t outside is moved to the nearer end. NaN stays NaN, which stands for no time at all.
+/// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end. NaN stays NaN, and callers treat it as no
+/// time at all.
 [[nodiscard]] inline double local_time(double t) noexcept {
   if (std::isnan(t)) return t;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;
 }
 
-/// Returns a time, which need not be a double, moved into [0, 1]. A time closer than kSmallestTime to an end becomes
-/// that end.
+/// Returns a time moved into [0, 1]. The time may be a quotient that is not a double. A time closer than kSmallestTime
+/// to an end becomes that end.
 [[nodiscard]] inline LocalTime local_time(const LocalTime& time) noexcept {
   if (time.is_double()) return local_time(time.t);
   if (time.t < kSmallestTime) return 0.0;

@@ -1,4 +1,4 @@
-/// The control normals of one polygon, computed without vectors of lanes, for cases that the kernels leave out.
+/// Computes the control normals of one polygon without lanes, for cases that the kernels leave to it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 
@@ -12,28 +12,28 @@
 
 namespace chronormal::inline internal {
 
-/// The share of the largest control normal below which coefficients count as zero in degree(). Leaving them out causes
-/// errors of the direction of 2^-28, far below the errors of evaluating in float32.
+/// The size of a coefficient, relative to the largest control normal, below which it counts as zero in degree().
+/// Leaving it out changes the direction by about 2^-28 rad, far below the errors of an evaluation in float32.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
-/// The largest rounding error of a control normal in double, relative to its length. If the error may be larger, the
-/// control normal is computed from integers.
+/// The largest rounding error of a control normal in double, relative to its length. A control normal whose error may
+/// be larger is computed from integers.
 inline constexpr double kLargestRounding = 0x1p-26;
 
-/// Control normals in double, and a bound of the error of any component of each.
+/// Control normals in double, and for each of them a bound of the error of its components.
 struct BoundedNormals {
   ControlNormals normals;
-  std::array<double, 3> errors{};  ///< errors of n0, m, n1
+  std::array<double, 3> errors{};  ///< bounds for n0, m and n1
 
-  /// Returns the largest error relative to its own control normal.
+  /// Returns the largest error of a control normal, relative to the size of that control normal.
   [[nodiscard]] double largest_share() const noexcept {
     const auto share = [](double error, const Vec3d& v) { return error == 0 ? 0 : error / max_abs(v); };
     return maximum_number(share(errors[0], normals.n0),
                           maximum_number(share(errors[1], normals.m), share(errors[2], normals.n1)));
   }
 
-  /// Replaces each control normal whose rounding may be more than kLargestRounding by that of `exact`, which was
-  /// computed in integers and then rounded.
+  /// Replaces each control normal whose relative error may be more than kLargestRounding. Its new value comes from
+  /// `exact`, which was computed in integers and then rounded.
   void settle(const ControlNormals& exact) noexcept {
     const auto take = [](const Vec3d& from, Vec3d& to, double& error) {
       constexpr double kExactError = 0x1p-50;
@@ -47,13 +47,13 @@ struct BoundedNormals {
   }
 };
 
-struct PolygonNormals : BoundedNormals {  ///< the normals, as face_control_normals() writes them
-  /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, the sums of both cross products
-  /// are added.
+struct PolygonNormals : BoundedNormals {  ///< normals are those that face_control_normals() writes
+  /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, the products of both cross
+  /// products are added.
   double magnitude = 0;
 };
 
-/// Returns the control normals of a polygon. face has its vertices.
+/// Returns the control normals of a polygon. `face` is the list of its vertices.
 [[nodiscard]] PolygonNormals polygon_control_normals(const Segment& segment,
                                                      std::span<const std::uint32_t> face) noexcept;
 

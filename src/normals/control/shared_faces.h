@@ -1,11 +1,11 @@
-/// The faces of a segment for elements that share them. A polygon of n corners is around n vertices. If each of these
-/// vertices added up all corners again, time would grow with the square of n. So the results for faces of many corners
-/// are kept.
+/// The faces of a segment, for elements that share faces. A polygon of n corners belongs to n vertices. If each of
+/// these vertices added up all corners again, the time would grow with the square of n. So the results for faces with
+/// many corners are stored.
 ///
 ///     a polygon of 32,000 corners   computed once, and looked up by its 32,000 vertices
 ///     a triangle, a quadrilateral   computed by each of their corners, which costs less than looking them up
 ///
-/// Results have the same bits as if each face were computed for every element that needs it. Private.
+/// Results have the same bits as if each face were computed for every element that needs it.
 #ifndef CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 #define CHRONORMAL_NORMALS_CONTROL_SHARED_FACES_H_
 
@@ -23,15 +23,16 @@
 
 namespace chronormal::inline internal {
 
-/// A store for values of faces with many corners. Several threads may request values at once. A value for which there
-/// is no memory is not kept.
+/// Stores values of faces with many corners. Several threads may ask for values at once. If there is no memory for a
+/// value, it is not stored.
 template <class Value>
 class LargeFaceValues {
  public:
   [[nodiscard]] static bool are_kept_of(const Topology& topology, std::uint32_t face) noexcept {
     return topology.face(face).size() > kFewCorners;
   }
-  /// Returns make(), or the result that it had for the same face before. make must be pure.
+  /// Returns the value of a face: the result of make(), or the stored result of an earlier call for this face. `make`
+  /// must be pure.
   template <class Make>
   [[nodiscard]] Value of(const Topology& topology, std::uint32_t face, const Make& make) const noexcept {
     if (!are_kept_of(topology, face)) return make();
@@ -43,19 +44,21 @@ class LargeFaceValues {
     try {
       const std::lock_guard lock(mutex_);
       values_.emplace(face, value);
-    } catch (const std::bad_alloc&) {  // the next caller computes the value again
+    } catch (const std::bad_alloc&) {  // the value is not stored; the next call computes it again
     }
     return value;
   }
 
  private:
-  static constexpr std::size_t kFewCorners = 64;  // looking up smaller faces does not pay
+  // For faces with at most this many corners, storing values does not pay.
+  static constexpr std::size_t kFewCorners = 64;
 
   mutable std::mutex mutex_;
   mutable std::map<std::uint32_t, Value> values_;
 };
 
-/// The control normals of faces, and exact sums of them. The positions of the segment must not change. Threads: pure.
+/// The control normals of the faces of a segment, and exact sums of them. The positions of the segment must not change
+/// during the object's lifetime. Threads: pure.
 class SharedFaces {
  public:
   explicit SharedFaces(const Segment& segment) noexcept : segment_(segment) {}
@@ -67,7 +70,7 @@ class SharedFaces {
     return normals_.of(topology, face, [&] { return polygon_control_normals(segment_, topology.face(face)); });
   }
 
-  /// Returns the exact curve of one face, or of the sum of several faces.
+  /// Return the exact curve of one face, and that of the sum of several faces.
   [[nodiscard]] ExactCurve exact(std::uint32_t face) const noexcept {
     const Topology& topology = *segment_.topology;
     return curves_.of(topology, face, [&] { return ExactCurve::of_polygon(segment_, topology.face(face)); });

@@ -8,7 +8,7 @@
 namespace chronormal {
 namespace {
 
-// The angle in radians below which slerp equals lerp to the last bit of double.
+// The angle in radians below which slerp and lerp agree to the last bit of double.
 constexpr double kSmallAngle = 1e-8;
 
 using Quaternion = std::array<double, 4>;
@@ -27,7 +27,7 @@ Quaternion normalised(const Quaternion& q) { return weighted_sum(1 / std::sqrt(d
 
 Quaternion slerp(const Quaternion& from, Quaternion to, double t) {
   if (dot4(from, to) < 0) to = weighted_sum(-1, to, 0, to);
-  // Computing the angle from chord and diagonal keeps the digits of small angles.
+  // Computing the angle from chord and diagonal, and not from a dot product, keeps the digits of small angles.
   const Quaternion chord = weighted_sum(1, to, -1, from), diagonal = weighted_sum(1, to, 1, from);
   const double angle = 2 * portable::atan2(std::sqrt(dot4(chord, chord)), std::sqrt(dot4(diagonal, diagonal)));
   if (angle < kSmallAngle) return normalised(weighted_sum(1 - t, from, t, to));
@@ -88,7 +88,7 @@ Vec3d turned(const Vec3d& from, const Vec3d& to, const Vec3d& v) noexcept {
   const Vec3d sine = cross(from, to);
   const double cosine = dot(from, to);
   const Vec3d axis = unit(sine);
-  // If the vectors are opposite up to rounding, any perpendicular axis will do.
+  // If the two vectors are opposite up to rounding, the rotation is half a turn about any axis perpendicular to them.
   constexpr double kOpposite = 1e-12;
   if (cosine < 0 && max_abs(sine) < kOpposite) {
     const Vec3d across = any_perpendicular(from);

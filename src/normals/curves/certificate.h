@@ -1,4 +1,4 @@
-/// Proofs by Bernstein coefficients that n(t) of one element stays long enough for float32, or for double
+/// Proves by Bernstein coefficients that n(t) of one element stays long enough for float32, or for double
 /// (docs/theory.md, section 5). kernels/certify.h proves the same for sixteen elements at a time, with the same
 /// operations.
 #ifndef CHRONORMAL_NORMALS_CURVES_CERTIFICATE_H_
@@ -20,7 +20,7 @@ namespace chronormal::inline internal {
 
 inline constexpr int kCertificateDepth = 4;
 
-/// Returns whether Bernstein coefficients show that p >= 0 on [0, 1] after a few subdivisions.
+/// Returns true if Bernstein coefficients prove that p >= 0 on [0, 1], after at most `depth` subdivisions.
 template <std::size_t M>
 [[nodiscard]] bool certainly_not_negative(const std::array<double, M>& p, int depth = kCertificateDepth) {
   if (std::all_of(p.begin(), p.end(), [](double b) { return b >= 0; })) return true;
@@ -33,7 +33,8 @@ template <std::size_t M>
   return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
 }
 
-/// Returns whether ratio |n(t)| >= limit(t) for all t, where limit is a quadratic with these Bernstein coefficients.
+/// Returns true if it is proven that ratio |n(t)| >= limit(t) for all t. `limit` has the Bernstein coefficients of a
+/// quadratic.
 [[nodiscard]] inline bool stays_above(const Bernstein<Vec3d, 2>& n, double ratio, const Bernstein<double, 2>& limit) {
   const Bernstein<double, 4> n_squared = multiply(n, n, dot<double>), limit_squared = multiply(limit, limit);
   Bernstein<double, 4> slack;
@@ -41,16 +42,18 @@ template <std::size_t M>
   return certainly_not_negative(slack);
 }
 
-/// Returns the length of a vector that has been scaled, so that its square stays in range if the vector does.
+/// Returns the length of a vector that has been scaled to a size near 1, so that its square neither overflows nor
+/// underflows.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// The size below which the scale itself would be outside the range of double.
+/// The size of a mesh below which the scale would be outside of the range of double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// The number that is added to a length if each control normal has its own exponent, since such exponents have a lower
-/// limit.
+/// The number that is added to the length of a control normal if each control normal has its own exponent, since such
+/// exponents have a lower limit.
 inline constexpr double kSmallestScale = 0x1p-30;
 
-/// Returns the fewest bits that keep this element within the tolerance at every t, or nothing if double is needed.
+/// Returns the lowest precision that keeps this element within the tolerance at every t, or no value if double is
+/// needed.
 [[nodiscard]] inline std::optional<Precision> precision_for(const ControlNormals& normals,
                                                             const PrecisionLimits& limits) {
   const double largest = largest_component(normals);
@@ -69,24 +72,26 @@ inline constexpr double kSmallestScale = 0x1p-30;
   return std::nullopt;
 }
 
-/// The largest relative error of the components of control normals in double that are precise enough for float32.
+/// The largest relative error of the components of control normals in double with which float32 can be used.
 inline constexpr double kLargestShare = 0x1p-30;
 
-/// Returns the share of sum w_k max_abs(c_k) above which the largest component of n(t) in double must be for n(t) to
-/// have a direction. The errors of the control normals, and ten roundings of 2^-53, then turn n(t) by less than 6e-7
-/// rad.
+/// Returns the smallest size of n(t) in double for which n(t) has a direction, relative to sum w_k max_abs(c_k). Above
+/// it, the errors of the control normals, which are at most `share`, and ten roundings of 2^-53 turn n(t) by less than
+/// 6e-7 rad.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
 inline constexpr double kDeterminantRounding = 0x1p-44;
-inline constexpr double kSmallestLength = 0x1p-400;      ///< squares of larger lengths stay in range
-inline constexpr double kSmallestProvenShare = 0x1p-20;  ///< its square is far above the rounding of the proof
+inline constexpr double kSmallestLength = 0x1p-400;  ///< squares of larger lengths neither overflow nor underflow
+/// The square of this is far above the rounding error of the proof.
+inline constexpr double kSmallestProvenShare = 0x1p-20;
 
-/// Returns true if n(t) stays above the share `certain` at every t, so that double suffices. One determinant usually
-/// shows this: n(t) never leaves the plane of the three control normals, and is never nearer to zero than that plane.
+/// Returns true if it is proven that n(t) stays above the relative size `certain` at every t, so that double suffices.
+/// One determinant usually proves it: n(t) never leaves the plane through the three control normals, and is never
+/// nearer to zero than that plane.
 [[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
   if (largest == 0) return true;
-  const double scale = 1 / largest, share = 4 * certain;  // 2 between norms, and 2 for safety
+  const double scale = 1 / largest, share = 4 * certain;  // 2 for the ratio between norms, and 2 for safety
   const Bernstein<Vec3d, 2> n = {scale * c.n0, scale * c.m, scale * c.n1};
   const double height = std::fabs(dot(n[0], cross(n[1], n[2])));
   if (height >= share * scaled_length(cross(n[1] - n[0], n[2] - n[0])) + kDeterminantRounding) return true;

@@ -1,4 +1,5 @@
-// Builds curves in parts, in one go on all threads or in slices on one thread, and puts the parts one after the other.
+// Builds curves in parts, and puts the parts one after the other. Either all threads build parts at once, or one thread
+// builds them in slices.
 #include "normals/curves/curve_builder.h"
 
 #include <algorithm>
@@ -24,8 +25,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns how many elements a thread processes at a time: few enough that their blocks stay in a cache until they are
-// moved, and that all threads are busy to the end. The number depends on the size alone, and so is the same for any
+// Returns the number of elements in a part. It is small enough that their blocks stay in a cache until they are moved,
+// and that all threads are busy to the end. It depends only on the number of elements, and so is the same for any
 // number of threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
@@ -33,11 +34,11 @@ std::size_t part_size(std::size_t size) {
   return std::clamp<std::size_t>(chunks, 4, 32) * kChunk;
 }
 
-// A copy of a segment in which both positions of a vertex share a cache line, 32 bytes per vertex. If every vertex is a
-// cache miss, this halves the misses.
+// A copy of the positions of a segment in which both positions of a vertex share a cache line, with 32 bytes per
+// vertex. If vertices are in random order, this halves the cache misses.
 class EndsSideBySide {
  public:
-  // Takes memory, which is used if it is large enough. Nothing is copied yet.
+  // Prepares the copy. `memory` is used for it if it is large enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -67,7 +68,8 @@ class EndsSideBySide {
   Segment from_, segment_;
 };
 
-// A builder of curves, either part after part on one thread, a chunk at a time, or many parts at once on all threads.
+// The state while curves are built. Either one thread builds part after part, a chunk at a time, or all threads build
+// many parts at once.
 class Build {
  public:
   Build(std::size_t size, const CurveOptions& options, CurveData* reuse)
@@ -77,7 +79,7 @@ class Build {
     curves_.size = size;
     curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
-    // Room is reserved for the largest result, since memory that is not written costs nothing.
+    // Memory is reserved for the largest possible result. The part of it that is not written costs nothing.
     if (curves_.blocks.capacity() < whole() * kWorst) {
       curves_.blocks = {};
       curves_.blocks = AlignedBytes(whole() * kWorst);
@@ -88,13 +90,14 @@ class Build {
 
   [[nodiscard]] std::size_t chunk_count() const { return block_count(curves_.size, kChunk); }
 
-  // Builds the next `count` chunks.
+  // Builds the next `count` chunks on this thread.
   template <class Source>
   void make_chunks(Source& source, std::size_t count) {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        std::swap(parts_[next_].flagged, curves_.flagged);  // the flagged elements then need not be moved
+        // With this swap, the flagged elements of the part need not be moved.
+        std::swap(parts_[next_].flagged, curves_.flagged);
         builder_.emplace(parts_[next_], limits_);
       }
       if (builder_->make_chunk(source)) continue;
@@ -105,8 +108,8 @@ class Build {
     }
   }
 
-  // Builds all parts. Each thread has its own source, and memory near itself. The place of a part is known once all
-  // parts before it are built; then the thread that built the part copies it there.
+  // Builds all parts. Each thread has its own source, and builds in memory of its own. The place of a part in the
+  // curves is known once all parts before it are built; the thread that built the part then copies it there.
   template <class MakeSource>
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
@@ -129,10 +132,10 @@ class Build {
           while (builder.make_chunk(source)) {
           }
         } catch (...) {
-          end_at(0);  // no thread may wait for a part that will not come
+          end_at(0);  // so that no thread waits for a part that will not come
           throw;
         }
-        // Some thread has begun every earlier part.
+        // Parts are taken in order, so some thread is building each earlier part.
         std::size_t begin = 0;
         if (p > 0) {
           std::unique_lock lock(mutex);
@@ -165,7 +168,7 @@ class Build {
     to.insert(to.end(), more.begin(), more.end());
   }
 
-  // Appends the next part, whose blocks are already in place.
+  // Appends the results of the next part, whose blocks are already in their place.
   void join(const CurvePart& made) {
     for (const CurveData::Run& run : made.runs) {
       if (!curves_.runs.empty() && curves_.runs.back().kind == run.kind) {
@@ -192,9 +195,9 @@ class Build {
 
   CurveData curves_;
   BuildLimits limits_;
-  std::size_t part_;  // elements
+  std::size_t part_;  // number of elements in a part
   std::vector<CurvePart> parts_;
-  std::size_t next_ = 0, bytes_ = 0;    // the next part to be added, and the bytes of the parts before
+  std::size_t next_ = 0, bytes_ = 0;    // the next part to be appended, and the bytes of the parts before it
   std::optional<PartBuilder> builder_;  // builds the current part, if parts are built one after the other
 };
 
@@ -202,7 +205,8 @@ template <class MakeSource>
 CurveData build(std::size_t size, const CurveOptions& options, Threads threads, CurveData* reuse,
                 MakeSource make_source) {
   Build build(size, options, reuse);
-  // Starting another thread takes as long as a few hundred elements.
+  // If there are so few elements, all are built on this thread: starting another thread takes as long as building a few
+  // hundred elements.
   if (threads == Threads::kAll && size > 2 * part_size(size)) {
     build.make_parts(make_source);
   } else if (size > 0) {
@@ -212,21 +216,22 @@ CurveData build(std::size_t size, const CurveOptions& options, Threads threads, 
   return build.finish();
 }
 
-// Returns the memory in which earlier curves kept both ends of each vertex side by side.
+// Takes from earlier curves the memory in which they kept both positions of each vertex side by side.
 AlignedArray<float> scratch_of(CurveData* reuse) {
   return reuse != nullptr ? std::exchange(reuse->scratch, {}) : AlignedArray<float>();
 }
 
 bool are_far_apart(const Segment& segment) { return lines_per_face(*segment.topology) > kScatteredLines; }
 
-// Returns whether both ends of each vertex must be copied side by side first.
+// Returns true if both positions of each vertex must be copied side by side before curves are built.
 bool needs_ends(const Segment& segment, const NormalGroups* groups) {
   const bool near = segment.from.count * 6 * sizeof(float) <= kNearBytes;
   return !near && !has_residuals(segment) && (groups != nullptr || segment.topology->all_triangles()) &&
          are_far_apart(segment);
 }
 
-// Builds curves of either kind of elements. Prefetches points if groups are scattered.
+// Builds the curves of faces if groups is nullptr, or of the elements of groups. Prefetches points if groups are
+// scattered in memory.
 CurveData build_elements(const Segment& segment, const NormalGroups* groups, bool scattered,
                          const CurveOptions& options, Threads threads, CurveData* reuse) {
   if (groups == nullptr)
@@ -260,8 +265,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// The work has two steps: copying both ends of each vertex side by side, only for meshes whose vertices are in no
-// order, and building the curves.
+// The work of CurveSlices. It has two steps. The first copies both positions of each vertex side by side, if vertices
+// are in no order. The second builds the curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),
@@ -289,7 +294,7 @@ struct CurveSlices::State {
 
   struct Step {
     std::size_t count = 0;
-    double share = 0;  // share of all work, approximately
+    double share = 0;  // the share of all work that is done, approximately
     std::size_t done = 0;
   };
 

@@ -1,10 +1,10 @@
-/// Builds curves: packs control normals, sixteen at a time, into blocks of the fewest bytes.
+/// Builds curves. Packs control normals, sixteen at a time, into the blocks that take the fewest bytes.
 ///
 ///     source --tiles--> how precise each must be --> runs of blocks of one kind --> packed, one after the other
 ///
 /// Elements are processed in chunks of 32 tiles, which stay in cache from the first step to the last. Several threads
-/// may build parts of 4 to 32 chunks at once. The ends of the parts do not depend on the threads, and so neither do the
-/// bits.
+/// may build parts of 4 to 32 chunks at once. The boundaries of the parts do not depend on the threads, so the bits do
+/// not either.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_BUILDER_H_
 
@@ -23,15 +23,15 @@ namespace chronormal::inline internal {
 /// Builds the curves of elements whose control normals already exist.
 [[nodiscard]] CurveData build_curves(std::span<const ControlNormals> normals, const CurveOptions& options);
 
-/// Makes the curves of all faces of a segment, or of all elements of the groups. If `reuse` is not nullptr, these
-/// curves are emptied and their memory is used again.
+/// Build the curves of all faces of a segment, and of all elements of groups. If `reuse` is not nullptr, these curves
+/// are emptied and their memory is used again.
 [[nodiscard]] CurveData build_curves(const Segment& segment, const CurveOptions& options, Threads threads,
                                      CurveData* reuse);
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// A builder of the same curves, bit for bit, on one thread in slices, for MeshNormals::prepare(). The segment and the
-/// groups must outlive the object.
+/// Builds curves with the same bits on one thread in slices, for MeshNormals::prepare(). The segment and the groups
+/// must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);
@@ -39,7 +39,7 @@ class CurveSlices {
   CurveSlices& operator=(const CurveSlices&) = delete;
   ~CurveSlices();
 
-  /// Does this share of the work, or the rest of the work if less is left. Returns true if all work is done.
+  /// Does a share of all work, from 0 to 1, or the rest of the work if less is left. Returns true if all work is done.
   bool advance(double share);
   /// Does the rest of the work, and returns the curves. Must not be called again.
   [[nodiscard]] CurveData finish();

@@ -1,4 +1,5 @@
-// Lets a PartBuilder find out what blocks it would make, and adds up their sizes.
+// Counts the bytes of curves. A PartBuilder finds out which blocks it would make, without making them, and their sizes
+// are added up.
 #include "normals/curves/curve_count.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace {
 
 static_assert(kCountedTogether == kChunk);
 
-// A reader for the faces of a segment, which keeps their control normals in double when it writes tiles.
+// Writes the tiles of the faces of a segment, and keeps the control normals in double that are computed on the way.
 class KeptFaces : public FaceNormals {
  public:
   KeptFaces(const Segment& segment, IndexRange faces, std::span<EdgedTile> kept)
@@ -70,7 +71,7 @@ void CurveCount::add(const CurveCount& next) noexcept {
 std::size_t CurveCount::bytes(std::size_t size) const noexcept {
   const std::size_t filling = runs == 0 ? 0 : (kTile - size % kTile) % kTile;
   const std::size_t unused = filling == 0 ? 0 : filling * bytes_of(last);
-  // Indices count as 8 bytes on every machine, so that reports are the same on 32-bit machines.
+  // An index counts as 8 bytes on every machine, so that 32-bit machines report the same numbers.
   constexpr std::size_t kIndex = 8, kRun = 4 * kIndex, kExact = 2 * kIndex;
   static_assert(sizeof(std::size_t) != kIndex ||
                 (sizeof(CurveData::Run) == kRun && sizeof(CurveData::ExactElement) == kExact));

@@ -1,10 +1,10 @@
-/// Counts how many bytes NormalCurves take, and how many of their elements are flagged, without building them.
+/// Counts the bytes that NormalCurves take, and the number of their flagged elements, without building them.
 ///
 ///     CurveCount count = count_curves(segment, {0, 1024}, exact);
 ///     count.add(count_curves(segment, {1024, 1024}, exact));          // ... and so on to the last face
 ///     count.bytes(face_count) == NormalCurves::of_faces(segment).bytes()
 ///
-/// Threads    pure; each call takes the memory of a chunk.
+/// Threads    pure; each call takes the memory of one chunk of elements.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_COUNT_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_COUNT_H_
 
@@ -22,22 +22,23 @@ namespace chronormal::inline internal {
 struct CurveCount {
   std::size_t block_bytes = 0, runs = 0, flagged = 0, exact = 0, digits = 0;
   bool has_exponents = false;
-  BlockKind first = BlockKind::kUnit, last = BlockKind::kUnit;  ///< kinds of runs
+  BlockKind first = BlockKind::kUnit, last = BlockKind::kUnit;  ///< the kinds of the first and of the last run
 
   [[nodiscard]] static CurveCount of(const CurveData& curves) noexcept;
 
-  /// Adds the elements that follow.
+  /// Adds the counts of the elements that follow these.
   void add(const CurveCount& next) noexcept;
-  /// Returns how many bytes the curves of `size` elements take in all, as NormalCurves::bytes() counts them.
+  /// Returns the number of bytes that the curves of `size` elements take, as NormalCurves::bytes() counts them.
   [[nodiscard]] std::size_t bytes(std::size_t size) const noexcept;
 };
 
-/// The alignment of ranges of elements that are counted together: each begins at a multiple of this number.
+/// The number of a multiple of which each counted range must begin.
 inline constexpr std::size_t kCountedTogether = 512;
 
-/// Counts the sizes of exact curves of some faces, and writes their control normals and longest edges, sixteen faces
-/// each. faces.first must be a multiple of kCountedTogether. faces.end() must also be such a multiple or the end of all
-/// faces, unless there are no faces. exact must have ceil(faces.count / 16) elements
+/// Counts the sizes of exact curves of some faces. Also writes the control normals of these faces and their longest
+/// edges, sixteen faces to an element of `exact`. Preconditions: faces.first is a multiple of kCountedTogether;
+/// faces.end() is such a multiple, too, or the end of all faces, unless there are no faces; exact has ceil(faces.count
+/// / 16) elements.
 [[nodiscard]] CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact);
 
 }  // namespace chronormal::inline internal

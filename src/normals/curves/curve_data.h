@@ -1,5 +1,5 @@
-/// The data of NormalCurves: elements in blocks of 16, in runs of neighbouring blocks of one kind, and, stored
-/// separately, the elements for which float32 does not suffice.
+/// The data of NormalCurves. Elements are in blocks of 16, and neighbouring blocks of one kind form runs. Elements for
+/// which float32 does not suffice are stored separately.
 ///
 ///     build_curves (curve_builder.h) --CurveData--> NormalCurves, MeshNormals
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_DATA_H_
@@ -19,14 +19,14 @@
 namespace chronormal::inline internal {
 
 struct CurveData {
-  /// Neighbouring blocks of one kind.
+  /// A run of neighbouring blocks of one kind.
   struct Run {
     std::size_t first_block = 0;
     std::size_t block_count = 0;
-    std::size_t offset = 0;  ///< first byte of the first block in `blocks`
+    std::size_t offset = 0;  ///< place in `blocks` at which the first block begins, in bytes
     BlockKind kind = BlockKind::kUnit;
 
-    /// Returns the elements of the run. `count` is the number of elements of the curves, which may end within the last
+    /// Returns the elements of the run. `count` is the number of elements of all curves, which may end within the last
     /// block.
     [[nodiscard]] IndexRange elements(std::size_t count) const noexcept {
       const std::size_t first = first_block * kTile, end = first + block_count * kTile;
@@ -39,19 +39,20 @@ struct CurveData {
   std::array<std::size_t, 3> degree_counts{};
   AlignedBytes blocks;
   std::vector<Run> runs;
-  std::vector<std::int16_t> exponents;  ///< a block holds n * 2^-exponent; empty if all exponents are 0
-  FlaggedElements flagged;              ///< the elements that are evaluated in double
-  /// A flagged element for which double does not suffice at every t. These elements are in ascending order. `digits` is
-  /// the place in exact_digits at which the ExactCurve of the element begins.
+  /// Block b has the control normals of its elements times 2^-exponents[b]; empty if all exponents are 0.
+  std::vector<std::int16_t> exponents;
+  FlaggedElements flagged;  ///< the elements that are evaluated in double
+  /// A flagged element for which double does not suffice at every t. The list of these is in ascending order of
+  /// `element`. `digits` is the place in exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
     std::size_t element = 0;
     std::size_t digits = 0;
   };
   std::vector<ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
-  AlignedArray<float> scratch;  ///< memory of preparing, kept for the next segment
+  AlignedArray<float> scratch;  ///< memory for preparing curves, kept for the next segment
 
-  /// Removes all elements, and keeps their memory.
+  /// Removes all elements, but keeps their memory.
   void clear() noexcept {
     size = 0;
     degree_counts = {};

@@ -1,5 +1,5 @@
-/// One element of a curve of normals, over any scalar. With a scalar that counts operations, this code counts what the
-/// kernels do to sixteen elements at a time.
+/// The formulas for one element of a curve of normals, over any scalar. If the scalar counts operations, they count
+/// what the kernels do to each of sixteen elements at a time.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 
@@ -27,16 +27,16 @@ template <class S>
   return w.w0 * n0 + w.w1 * m + w.w2 * n1;
 }
 
-/// A quadratic at one of several equidistant t, with its first and second forward difference.
+/// A quadratic at one of several equidistant t, with its first and second forward differences.
 template <class S>
 struct QuadraticState {
   Vec3<S> n, first, second;
 
-  /// Returns the state at the next t: two additions per component.
+  /// Returns the state at the next t, which takes two additions per component.
   [[nodiscard]] QuadraticState next() const { return {n + first, first + second, second}; }
 };
 
-/// Returns v scaled to length 1. v must not be zero, and |v|^2 must neither overflow nor underflow
+/// Returns v scaled to length 1. Preconditions: v is not zero, and |v|^2 neither overflows nor underflows.
 template <class S>
 [[nodiscard]] Vec3<S> normalized(const Vec3<S>& v) {
   using std::sqrt;

@@ -1,6 +1,6 @@
-/// One evaluation of prepared curves, for any class that has CurveData. The evaluation goes over the runs of blocks
-/// (curve_data.h), passes each run to the kernel as a whole, and then overwrites the flagged elements of the result in
-/// double. outputs.h lists the forms of results. Nothing here allocates or throws.
+/// Evaluates prepared curves, for any class that has CurveData. An evaluation goes through the runs of blocks
+/// (curve_data.h), passes each run to the kernel as a whole, and then overwrites the flagged elements of the result
+/// with values computed in double. outputs.h lists the forms of results. Nothing here allocates or throws.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 
@@ -29,7 +29,8 @@ inline const std::int32_t* digits_of(const CurveData& curves, std::size_t elemen
   return is_exact ? curves.exact_digits.data() + at->digits : nullptr;
 }
 
-/// Returns how many elements of the list, from place `first` on and before place `last`, have consecutive numbers.
+/// Returns the number of flagged elements, from place `first` of the list on, that have consecutive numbers. Stops
+/// before place `last`.
 inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t first, std::size_t last) noexcept {
   if (flagged[last - 1] - flagged[first] == last - 1 - first) return last - first;
   std::size_t count = 1;
@@ -38,15 +39,15 @@ inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t
 }
 
 /// Computes the normals of the flagged elements of a range in double at t, and calls write(element, xyz, count) for
-/// each run of neighbours. Then calls settle(index, element) for each element for which double does not suffice;
-/// `index` is its number among the flagged elements.
+/// each run of neighbouring elements. Then calls settle(index, element) for each element for which double does not
+/// suffice; `index` is its place among the flagged elements.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
                  const Settle& settle) {
   const auto index_of = [&flagged = curves.flagged.numbers](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
-  constexpr std::size_t kBatch = 4;  // tiles
+  constexpr std::size_t kBatch = 4;  // number of tiles
   const std::size_t begin = index_of(range.first), end = index_of(range.end());
   FlaggedUnits batch[kBatch];
   for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {
@@ -67,7 +68,7 @@ void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, 
   }
 }
 
-/// Writes the flagged elements of a range. Returns how many have no direction.
+/// Writes the flagged elements of a range. Returns the number of elements that have no direction.
 template <class Output>
 std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const LocalTime& t,
                                 const Output& output) noexcept {
@@ -85,8 +86,8 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const
   return without_direction;
 }
 
-/// Writes the elements of a range at one t, in one pass over their blocks. Returns how many elements have no direction.
-/// range.first must be a multiple of kTile
+/// Writes the elements of a range at one t, in one pass over their blocks. Returns the number of elements that have no
+/// direction. Precondition: range.first is a multiple of kTile.
 template <class Output>
 std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,
                            const Output& output) noexcept {

@@ -1,5 +1,5 @@
-/// The sources of control normals for curves. Each source writes tiles for the quick test, and the values that a closer
-/// examination needs.
+/// The sources from which curves get control normals. Each source writes tiles for the quick test of pack.h, and
+/// provides the values that a closer examination of some elements needs.
 ///
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
 ///     write(elements, tiles, bounded)   also writes the values before rounding, and bounds of their errors
@@ -28,14 +28,14 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the elements of a source into tiles one by one.
+/// Writes elements of a source into tiles one by one.
 template <class Source>
 void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> bounded) {
   for (std::size_t i = 0; i < bounded.size() * kTile; ++i)
     put(bounded[i / kTile], i % kTile, source.in_double(elements.first + std::min(i, elements.count - 1)));
 }
 
-/// A source of control normals that already exist.
+/// Takes control normals that the caller has computed.
 class GivenNormals {
  public:
   explicit GivenNormals(std::span<const ControlNormals> normals) : normals_(normals) {}
@@ -45,7 +45,7 @@ class GivenNormals {
       const ControlNormals& c = normals_[elements.first + std::min(i, elements.count - 1)];
       ControlTile& tile = tiles[i / kTile];
       put(tile, i % kTile, c);
-      // Given values count as exact, since no products were rounded for them.
+      // No products were rounded for given values, so they count as exact.
       tile.magnitude[i % kTile] = static_cast<float>(largest_component(c));
       tile.degree[i % kTile] = degree(c);
     }
@@ -54,14 +54,14 @@ class GivenNormals {
     write(elements, tiles);
     put_each(*this, elements, bounded);
   }
-  // Given control normals count as true, whatever they were computed from.
+  // Given control normals count as exact, since the positions from which they were computed are not known.
   [[nodiscard]] BoundedNormals in_double(std::size_t i) const { return {normals_[i], {}}; }
 
  private:
   std::span<const ControlNormals> normals_;
 };
 
-/// A source that computes the control normals of the faces of a segment.
+/// Computes the control normals of the faces of a segment.
 class FaceNormals {
  public:
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
@@ -91,7 +91,7 @@ class FaceNormals {
   const Segment& segment_;
 };
 
-/// A source that computes the control normals of the elements of groups.
+/// Computes the control normals of the elements of groups.
 class GroupNormals {
  public:
   GroupNormals(const Segment& segment, const NormalGroups& groups, bool fetch)

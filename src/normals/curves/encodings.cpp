@@ -9,8 +9,8 @@ std::uint32_t snorm(float component, float largest, std::uint32_t mask) {
   return static_cast<std::uint32_t>(std::lrint(component * largest)) & mask;
 }
 
-// Returns the signed integer in the lowest bits, divided by the largest integer of that width. The most negative
-// integer counts as the next larger one.
+// Returns the signed integer in the lowest `bit_count` bits, divided by the largest integer of that width. The most
+// negative integer counts as the next larger one, so that the result is at least -1.
 float from_snorm(std::uint32_t bits, int bit_count) {
   const int shift = 32 - bit_count;
   const std::int32_t value = static_cast<std::int32_t>(bits << shift) >> shift;

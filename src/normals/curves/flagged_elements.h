@@ -1,5 +1,5 @@
-/// The elements of curves for which float32 is not accurate enough, in ascending order: their numbers, and their values
-/// in tiles of sixteen.
+/// The elements of curves for which float32 is not accurate enough, in ascending order. They are stored as their
+/// numbers, and as their control normals in tiles of sixteen.
 #ifndef CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_FLAGGED_ELEMENTS_H_
 
@@ -19,16 +19,16 @@ namespace chronormal::inline internal {
 struct FlaggedElements {
   std::vector<std::size_t> numbers;
   std::vector<FlaggedTile, AlignedAllocator<FlaggedTile>> tiles;
-  std::vector<std::int16_t> exponents;  ///< an element is the value in its tile times 2^exponent
+  std::vector<std::int16_t> exponents;  ///< the control normals of an element are those in its tile times 2^exponent
 
   [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
 
-  /// Returns the control normals of an element, scaled as in its tile.
+  /// Returns the control normals in the tile of an element, which are scaled by a power of two.
   [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }
 
-  /// Removes all elements, and keeps their memory.
+  /// Removes all elements, but keeps their memory.
   void clear() noexcept {
     numbers.clear();
     tiles.clear();
@@ -49,7 +49,7 @@ struct FlaggedElements {
     numbers.push_back(number);
   }
 
-  /// Adds elements that already lie side by side in a tile, from its lane `first` on.
+  /// Adds elements that are side by side in another tile. The first of them is in lane `first` of that tile.
   void append(std::span<const std::size_t> more, const FlaggedTile& from, std::size_t first,
               std::span<const std::int16_t> of_more) {
     const std::size_t lane = size() % kTile, fitting = std::min(more.size(), kTile - lane);

@@ -1,5 +1,6 @@
 // Evaluates NormalCurves in one pass over the runs of blocks (curve_data.h). Each run is passed to the kernel as a
-// whole; then the flagged elements of the result are overwritten in double. outputs.h lists the forms of results.
+// whole. Then the flagged elements of the result are overwritten with values computed in double. outputs.h lists the
+// forms of results.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -25,10 +26,10 @@
 namespace chronormal {
 namespace {
 
-// The number of elements that a thread takes at a time. Work on fewer elements is not shared between threads.
+// The number of elements that a thread takes at a time. Fewer elements are not shared between threads.
 constexpr std::size_t kPiece = 8192;
-// The number of elements that are evaluated at all requested t before the next elements: as many as stay in the nearest
-// cache. If results bypass the caches, the number is larger, so that each stream of results is long.
+// The number of elements that are evaluated at all requested t before the next elements are evaluated. It is small
+// enough for the nearest cache. If results bypass the caches, it is larger, so that results are written in long runs.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 std::size_t many_times_step(MemoryAccess access) { return access.stream ? kManyTimesLarge : kManyTimes; }
@@ -40,22 +41,23 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Returns true if double can tell, from exact control normals, the direction of n(t), or that n(t) has none.
+// Returns true if double is certain of the direction of n(t), or of n(t) having none. Control normals are taken as
+// exact.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
   const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);
   return largest_component(c) == 0 || max_abs(normal_at(c, t)) > smallest_certain(0) * size;
 }
 
-// Writes zeros, since NaN has no normal.
+// Writes zeros as the normals at the time NaN, and returns their number.
 template <class Output>
 std::size_t write_zeros(std::size_t size, const Output& output) {
   for (std::size_t i = 0; i < size; ++i) output.set(i, {});
   return size;
 }
 
-// Calls body(range) for all elements, on one thread as a whole or on all threads in pieces. Returns the sum of the
-// results.
+// Calls body(range) for all elements, either for all at once on this thread, or for pieces on all threads. Returns the
+// sum of the results of the calls.
 template <class Body>
 std::size_t over_pieces(std::size_t size, Threads threads, Body body) {
   const auto flushed = [&](IndexRange range) {
@@ -137,8 +139,8 @@ const CurveData& NormalCurves::data() const noexcept {
   return none;
 }
 
-// Returns the data of curves whose memory is to be reused. Curves without elements may have no data, and then get empty
-// data, in which the memory can be kept.
+// Returns the data of curves whose memory is to be reused. Curves without elements may have no data. They then get
+// empty data, in which memory can be kept.
 CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   if (reuse == nullptr) return nullptr;
   if (!reuse->data_) reuse->data_ = std::make_unique<CurveData>();
@@ -202,7 +204,7 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
 std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   const CurveData& curves = data();
   const double t = local_time(time);
-  // At both ends, n(t) is a control normal and nothing is rounded, so no element is uncertain.
+  // At both ends, n(t) is a control normal, and nothing is rounded. So no element is uncertain there.
   if (!(0 < t && t < 1)) return 0;
   std::size_t count = 0;
   for_flagged(

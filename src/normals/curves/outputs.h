@@ -1,4 +1,4 @@
-/// The forms in which NormalCurves returns results. Each form has the same two functions.
+/// The forms in which NormalCurves writes results. Each form has the same two functions.
 ///
 ///     write(span, weights, first)   writes the unit normals of a span of blocks, which begins with element `first`
 ///     set(i, v)                     writes the normal of one element
@@ -18,7 +18,8 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] inline bool is_packed(const VectorView<float>& view) { return view.is_packed(); }
 
-/// Returns the access of a pass to results in these arrays. It streams only if each array begins at a cache line.
+/// Returns the access of a pass whose results go to these arrays. Results bypass the caches only if each array begins
+/// at a cache line.
 template <class... Pointer>
 [[nodiscard]] MemoryAccess access_to(MemoryAccess of_pass, Pointer... arrays) {
   const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
@@ -84,8 +85,8 @@ struct Rgb10A2Output {
   MemoryAccess access;
 };
 
-/// Any other form, which is written by a function of the index and the vector. Results go through planes on the stack,
-/// a few blocks at a time.
+/// The form of all other results, which a function writes one by one from an index and a vector. The kernel writes into
+/// planes on the stack, a few blocks at a time, from which the function takes its vectors.
 template <class Set>
 struct AnyOutput {
   WorkingSet working_set;
@@ -107,7 +108,7 @@ struct AnyOutput {
 template <class Set>
 AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
-/// Writes the normals of the elements from `first` on, with xyz as (count, 3).
+/// Writes the normals of the elements from `first` on; xyz has three numbers for each.
 template <class Output>
 void set_run(const Output& output, std::size_t first, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) output.set(first + i, Vec3f{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
@@ -115,13 +116,13 @@ void set_run(const Output& output, std::size_t first, const float* xyz, std::siz
 
 inline void set_run(const PackedOutput& output, std::size_t first, const float* xyz, std::size_t count) {
   float* const to = output.result.x + 3 * first;
-  if (count == kTile)  // a constant size, which is copied without a call
+  if (count == kTile)  // with this constant size, the compiler copies without a call
     std::copy_n(xyz, 3 * kTile, to);
   else
     std::copy_n(xyz, 3 * count, to);
 }
 
-/// Calls body(output) with the form of a view, and returns its result.
+/// Calls body(output) with the form that suits the layout of a view, and returns the result of body.
 template <class Body>
 auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body body) {
   if (is_packed(result)) return body(PackedOutput(result, of_pass));

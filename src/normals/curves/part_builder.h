@@ -1,5 +1,5 @@
-/// Makes one part of some curves, chunk by chunk, from tiles of control normals to packed blocks. curve_builder.cpp
-/// puts the parts together.
+/// Builds one part of some curves, chunk by chunk. A chunk starts as tiles of control normals and ends as packed
+/// blocks. curve_builder.cpp puts the parts together.
 #ifndef CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
 #define CHRONORMAL_NORMALS_CURVES_PART_BUILDER_H_
 
@@ -31,7 +31,7 @@ inline constexpr std::size_t kChunkTiles = 32;
 inline constexpr std::size_t kChunk = kChunkTiles * kTile;
 inline constexpr std::size_t kWrittenTiles = 4;  // number of tiles that one call of a source writes
 
-inline constexpr std::size_t kShortestRun = 4;  // blocks
+inline constexpr std::size_t kShortestRun = 4;  // number of blocks
 
 inline constexpr double kSmallestShare = kSmallestEnd / kLargestComponent;
 
@@ -41,10 +41,10 @@ inline ControlNormals scaled(double scale, const ControlNormals& c) {
   return {scale * c.n0, scale * c.m, scale * c.n1};
 }
 
-// The values that a flagged element has in its block, whatever the kind of the block.
+// The control normals that stand in a block in place of a flagged element, whatever the kind of the block.
 inline constexpr ControlNormals kPlaceHolder{{1, 0, 0}, {1, 0, 0}, {1, 0, 0}};
 
-// The precision and the degree that a block must be able to hold.
+// The precision and the degree that the elements of a block need.
 struct Need {
   Precision precision = Precision::k11;
   int degree = 0;
@@ -60,7 +60,8 @@ struct NeedRun {
   Need need;
 };
 
-// Joins a run that is too short to be worth its overhead to a neighbouring run that can hold its elements.
+// Returns the runs of blocks with the same need. A run of fewer than kShortestRun blocks is not worth its overhead, and
+// is joined to a neighbouring run that can hold its elements.
 inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   std::vector<NeedRun> runs;
   const auto append = [](std::vector<NeedRun>& to, const NeedRun& run) {
@@ -96,19 +97,19 @@ inline std::vector<NeedRun> runs_of(std::span<const Need> needs) {
   return runs;
 }
 
-// A part of the curves, which one thread builds.
+// The results of one part of the curves, which one thread builds.
 struct CurvePart {
   IndexRange elements;
-  std::byte* begin = nullptr;  // start of its blocks; nullptr if they are only counted
+  std::byte* begin = nullptr;  // place of the part's blocks in memory; nullptr if they are only counted
   std::size_t bytes = 0;
-  std::vector<CurveData::Run> runs;  // offsets from begin
+  std::vector<CurveData::Run> runs;  // offsets count from `begin`
   FlaggedElements flagged;
   std::vector<CurveData::ExactElement> exact;
   std::vector<std::int32_t> exact_digits;
   std::vector<std::int16_t> exponents;  // empty, or one exponent for each block
   std::array<std::size_t, 3> degree_counts{};
 
-  // Reuses the memory of a part that is no longer needed, and whose flagged elements have been taken.
+  // Takes the memory of a part that is no longer needed. The flagged elements of that part must have been taken before.
   void take_memory(CurvePart& done) {
     const auto take = [](auto& to, auto& from) {
       to = std::move(from);
@@ -120,12 +121,14 @@ struct CurvePart {
   }
 };
 
-// The result of examining one element that the quick test in float32 left open.
+// The result of examining an element that the quick test in float32 did not settle.
 struct Examined {
-  ControlNormals normals;              // control normals in double, as precise as the direction needs
-  std::optional<Precision> precision;  // none if the element is flagged
-  double certain = 0;                  // if the element is flagged, the share above which double has a direction
-  bool needs_exact = false;            // flagged, and n(t) is not above that share at every t
+  ControlNormals normals;              // the control normals in double, as precise as the direction requires
+  std::optional<Precision> precision;  // the precision that the element needs; no value if it is flagged
+  // For a flagged element: the relative size of n(t) above which double is certain of its direction.
+  double certain = 0;
+  // True if the element is flagged, and n(t) is not proven to be above `certain` at every t.
+  bool needs_exact = false;
 };
 
 template <class Source>
@@ -134,8 +137,7 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   Examined result;
   result.normals = rounded.normals;
   double share = rounded.largest_share();
-  // Control normals from a caller count as exact, since there are no positions from which better ones could be
-  // computed.
+  // Control normals from a caller count as exact, since more precise ones cannot be computed without positions.
   constexpr bool kHasExact = !std::is_same_v<Source, GivenNormals>;
   if constexpr (kHasExact) {
     if (!(share <= kLargestShare)) {
@@ -149,8 +151,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
-// The requirements that follow from a tolerance: whether blocks keep lengths, and how precise elements must be, in
-// tiles that are computed in double and, if the tolerance allows it, in float32.
+// The requirements that follow from a tolerance. They say whether blocks keep lengths, and how precise elements must
+// be: for tiles that are computed in double and, if the tolerance allows it, for tiles in float32.
 struct BuildLimits {
   explicit BuildLimits(double tolerance)
       : with_lengths(!(tolerance > kExactTolerance)),
@@ -168,8 +170,8 @@ concept WritesInFloat = requires(const Source& source, std::span<ControlTile> ti
   source.write_in_float(IndexRange{}, tiles);
 };
 
-// The decision whether the next tiles are tried in float32. After a failed try, float32 is not tried for a while, and
-// after another failure for twice as long.
+// Decides whether the next tiles are tried in float32. After a failed try, float32 is not tried for a while. After
+// another failure, the pause is twice as long.
 class FloatTrials {
  public:
   [[nodiscard]] bool is_tried() {
@@ -191,7 +193,7 @@ class PartBuilder {
  public:
   PartBuilder(CurvePart& part, const BuildLimits& limits) : part_(part), limits_(limits), tiles_(kChunkTiles) {}
 
-  // Builds the next chunk of the part. Returns true if there are more chunks.
+  // Builds the next chunk of the part. Returns true if chunks are left.
   template <class Source>
   bool make_chunk(Source& source) {
     const IndexRange elements{part_.elements.first + made_, std::min(kChunk, part_.elements.count - made_)};
@@ -201,7 +203,7 @@ class PartBuilder {
   }
 
  private:
-  // Returns the bits of the first lanes of a tile.
+  // Returns a number in which the bits of the first `count` lanes are set.
   static constexpr std::uint32_t lanes_of(std::size_t count) { return (std::uint32_t{1} << count) - 1; }
 
   template <class Source>
@@ -227,13 +229,14 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Returns the elements of some of the tiles that hold `elements`.
+  // Returns the elements in `count` tiles, from tile `first_tile` on, where the first tile begins with the first of
+  // `elements`.
   static IndexRange range_of(IndexRange elements, std::size_t first_tile, std::size_t count) {
     const std::size_t first = first_tile * kTile;
     return {elements.first + first, std::min(count * kTile, elements.count - first)};
   }
 
-  // Computes a few tiles, and finds what a block needs to hold each of them.
+  // Computes a few tiles, and finds for each of them what its block needs.
   template <class Source>
   void add_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles, Need* needs) {
     std::array<TileSummary, kWrittenTiles> summaries;
@@ -256,13 +259,13 @@ class PartBuilder {
     }
   }
 
-  // Writes a few tiles and summarizes them, in float32 if that may suffice, and in double where float32 does not
-  // suffice.
+  // Writes a few tiles and summarizes them. It tries float32 first if that may suffice, and uses double for the tiles
+  // for which float32 does not suffice.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
-    // If the last tiles had to be examined, the next tiles probably will be too, so bounds are requested now, while
-    // they are cheap.
+    // If elements of the last tiles had to be examined, this is likely for the next tiles, too. So error bounds are
+    // requested now, while they cost little.
     const bool with_bounds = std::exchange(is_examined_, false);
     has_bounds_ = 0;
     const auto in_double = [&](std::size_t first, std::size_t count) {
@@ -293,9 +296,9 @@ class PartBuilder {
     in_double(0, tiles.size());
   }
 
-  // Prefetches the memory that the blocks of some tiles will go to, as many bytes as the blocks of the last chunk took.
-  // The memory arrives while tiles are computed. Only a little is prefetched at a time, since the core would wait if it
-  // requested more lines than can be in flight.
+  // Prefetches the memory to which the blocks of some tiles will be written, as many bytes as the blocks of the last
+  // chunk took. The memory arrives while the tiles are computed. Only a little is prefetched at a time, since a core
+  // that requests too many cache lines at once has to wait.
   void fetch_destination(std::size_t tile, std::size_t count) const {
 #if defined(__GNUC__)
     if (part_.begin == nullptr) return;
@@ -306,13 +309,12 @@ class PartBuilder {
 #endif
   }
 
-  // Examines in double the elements of tile k that the quick test left open: first sixteen at a time, and then the
-  // remaining elements one by one. Returns the bits of the flagged elements, and corrects degrees that turn out
-  // differently.
+  // Examines in double those elements of tile k that the quick test did not settle, first sixteen at a time, and then
+  // the remaining elements one by one. Returns the bits of the flagged elements, and corrects degrees.
   template <class Source>
   std::uint32_t examine(Source& source, IndexRange elements, std::size_t k, ControlTile& tile, Need& need,
                         TileSummary& summary) {
-    constexpr int kFewest = 3;  // the fewest elements for which sixteen at a time are faster
+    constexpr int kFewest = 3;  // number of elements from which it is faster to examine sixteen at a time
     const std::uint32_t uncertain = summary.uncertain & lanes_of(elements.count);
     TileCertificates& known = certificates_;
     known.clear();
@@ -326,15 +328,15 @@ class PartBuilder {
     if (known.flagged == lanes_of(kTile)) {
       add_known(elements.first, 0, kTile);
       for (std::size_t plane = 0; plane < 9; ++plane)
-        std::fill_n(tile.normals[plane], kTile, plane % 3 == 0 ? 1.0F : 0.0F);  // kPlaceHolder
+        std::fill_n(tile.normals[plane], kTile, plane % 3 == 0 ? 1.0F : 0.0F);  // the values of kPlaceHolder
       add_exact(source, elements.first, known.needs_exact);
       return known.flagged;
     }
     return examine_alone(source, elements, uncertain & ~known.known, tile, need, summary);
   }
 
-  // Examines some elements of a tile one by one, and adds all flagged elements of the tile, including those with
-  // certificates.
+  // Examines some elements of a tile one by one. Then adds all flagged elements of the tile, also those that
+  // certify_tile() has found.
   template <class Source>
   std::uint32_t examine_alone(Source& source, IndexRange elements, std::uint32_t asked, ControlTile& tile, Need& need,
                               TileSummary& summary) {
@@ -355,7 +357,8 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    // The block now holds the new values, which replace sums that were only rounding error. Their degrees may differ.
+    // The tile has new values, which replace sums that were only rounding error. So the degrees of its elements may
+    // have changed.
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
     }
@@ -379,7 +382,7 @@ class PartBuilder {
     return flagged;
   }
 
-  // Adds neighbouring flagged elements, which are stored beside their certificates.
+  // Adds neighbouring flagged elements, whose values are stored in certificates_.
   void add_known(std::size_t first, std::size_t lane, std::size_t count) {
     std::array<std::size_t, kTile> numbers;
     for (std::size_t i = 0; i < count; ++i) numbers[i] = first + lane + i;
@@ -387,7 +390,7 @@ class PartBuilder {
                          std::span(certificates_.exponents).subspan(lane, count));
   }
 
-  // Adds elements for which double does not suffice at every t.
+  // Adds the exact curves of elements for which double does not suffice at every t.
   template <class Source>
   void add_exact(const Source& source, std::size_t first, std::uint32_t lanes) {
     if constexpr (!std::is_same_v<Source, GivenNormals>) {
@@ -398,14 +401,14 @@ class PartBuilder {
     }
   }
 
-  // Calls body(lane) for each bit that is set.
+  // Calls body(lane) for each set bit of `lanes`.
   template <class Body>
   static void for_lanes(std::uint32_t lanes, const Body& body) {
     for (; lanes != 0; lanes &= lanes - 1) body(static_cast<std::size_t>(std::countr_zero(lanes)));
   }
 
-  // Scales a tile by its own power of two, for which all its unflagged elements must be examined. Returns the elements
-  // that are so much smaller than the others that they do not fit into the range with this exponent.
+  // Scales a tile by a power of two of its own. All its elements that are not flagged must have been examined. Returns
+  // the elements that are so much smaller than the others that float32 cannot hold them with this exponent.
   template <class Source>
   std::uint32_t rescale(const Source& source, IndexRange elements, std::uint32_t flagged, ControlTile& tile,
                         std::array<std::optional<Examined>, kTile>& alone) {
@@ -442,13 +445,14 @@ class PartBuilder {
   CurvePart& part_;
   const BuildLimits& limits_;
   AlignedArray<ControlTile> tiles_;
-  std::size_t made_ = 0;  // elements
+  std::size_t made_ = 0;  // number of elements that were built
   FloatTrials float_;
-  std::array<BoundedTile, kWrittenTiles> bounded_;  // bounds of the tiles that are being added
-  TileCertificates certificates_;                   // certificates of the tile that is being examined
+  std::array<BoundedTile, kWrittenTiles> bounded_;  // the tiles that are being added, with error bounds
+  TileCertificates certificates_;                   // the results of certify_tile() for the tile that is being examined
   std::uint32_t has_bounds_ = 0;                    // bits of the tiles that have bounds
-  bool is_examined_ = false;                        // whether one of the tiles was examined, sixteen elements at a time
-  std::size_t chunk_bytes_ = 0;                     // size of the last chunk
+  // True if elements of one of the last tiles were examined, sixteen at a time.
+  bool is_examined_ = false;
+  std::size_t chunk_bytes_ = 0;  // number of bytes of the last chunk's blocks
 };
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Finds a kind of element by its name, and makes the groups for it.
+// Finds a kind of elements by its name, and makes the groups for a kind.
 #include "chronormal/normals/normal_groups.h"
 
 #include <array>

@@ -1,9 +1,9 @@
-// Implements MeshNormals. An element has its own normal, and an output shows the normal of an element. If every output
-// is the element with its number, kernels write straight to the caller's memory. If outputs share elements, the code
-// walks over the outputs in order, and evaluates a tile of elements when an output first shows one of them. The tiles
-// go into slots on the stack, which hold the last thousand elements. Neighbouring outputs show neighbouring elements,
-// so each tile is evaluated about once. For a range of outputs, the walk covers only that part. The walk needs only the
-// stack, so any thread may do it.
+// Implements MeshNormals. An element has its own normal, and an output shows the normal of an element. If output i is
+// always element i, kernels write straight to the caller's memory. If outputs share elements, the code goes through the
+// outputs in order, and evaluates a tile of elements when an output shows an element of the tile for the first time.
+// Tiles are kept in slots on the stack, which hold the last thousand elements. Neighbouring outputs show neighbouring
+// elements, so each tile is evaluated about once. For a range of outputs, only that range is visited. Only memory on
+// the stack is needed, so any thread may evaluate any range.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <algorithm>
@@ -31,8 +31,8 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kOutputPiece = 16384;  // outputs of a thread
-constexpr std::size_t kSlotElements = 1024;  // 12 KiB of vectors
+constexpr std::size_t kOutputPiece = 16384;  // number of outputs that a thread writes at a time
+constexpr std::size_t kSlotElements = 1024;  // vectors of this many elements take 12 KiB
 constexpr std::size_t kElementsOfManyTimes = 8192;
 
 Status check_positions(const Topology& topology, VectorView<const float> positions, std::size_t keyframe) {
@@ -56,8 +56,8 @@ std::vector<float> packed_copy(VectorView<const float> positions) {
   return result;
 }
 
-// Returns the base, and the mesh at full weight of each target, as keyframes that tell which vertices stay at one
-// point.
+// Returns a motion with the base, and with the mesh at full weight of each target, as keyframes. They show which
+// vertices always stay at one point.
 Motion star_of(const BlendSet& set) {
   Motion star;
   star.topology = set.topology;
@@ -82,7 +82,7 @@ bool are_the_outputs(const NormalGroups& groups) {
 
 // ---- values in tiles on the stack ----------------------------------------------------------------------------------
 
-// Vectors as x y z.
+// The values of a result in vectors, as x y z.
 struct Vectors {
   template <std::size_t kCount>
   struct Array {
@@ -93,7 +93,7 @@ struct Vectors {
     [[nodiscard]] Vec3f operator[](std::size_t i) const { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
   };
 };
-// Values of four bytes each.
+// The values of a result in encodings of four bytes.
 template <class Encoded>
 struct Words {
   template <std::size_t kCount>
@@ -104,7 +104,7 @@ struct Words {
   };
 };
 
-// The type of the values that a form of results consists of.
+// The type of the values that a form of results writes.
 template <class Output>
 struct ValuesOf {
   using type = Vectors;
@@ -127,7 +127,7 @@ void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.res
 
 // ---- the two sources of elements -----------------------------------------------------------------------------------
 
-// A form that writes elements, from number `first` on, to memory that begins with element `first`.
+// A form that writes the elements from number `first` on to memory that begins with element `first`.
 template <class Form>
 struct Shifted {
   Form form;
@@ -139,16 +139,16 @@ struct Shifted {
   void set(std::size_t element, const Vec3f& v) const { form.set(element - first, v); }
 };
 template <class Form>
-Shifted(Form, std::size_t) -> Shifted<Form>;  // clang 14 finds none for an aggregate
+Shifted(Form, std::size_t) -> Shifted<Form>;  // clang 14 does not deduce this for an aggregate
 
 PackedOutput form_of(const VectorView<float>& view) { return {view, MemoryAccess{}}; }
 OctahedralOutput form_of(std::span<Octahedral> view) { return {view, MemoryAccess{}}; }
 Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; }
 
-// An evaluation of a segment at one t.
+// The evaluation of a segment at one t.
 struct AtTime {
-  // The number of elements of a tile is as large as the bits that write_tile() returns, since beginning an evaluation
-  // takes as long as evaluating some elements.
+  // The number of elements of a tile. It is the number of bits that write_tile() returns. A smaller number would be
+  // slower, since starting an evaluation takes as long as evaluating some elements.
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
   using Values = typename ValuesOf<Output>::type;
@@ -158,14 +158,14 @@ struct AtTime {
 
   [[nodiscard]] std::size_t size() const noexcept { return curves.size; }
 
-  // Writes elements to their places among all. The first must be the first of a tile. Returns how many have no
-  // direction.
+  // Writes elements to their places in the memory for all elements. The first element must be the first of a tile.
+  // Returns the number of elements that have no direction.
   template <class Output>
   std::size_t write(IndexRange elements, const Output& output) const noexcept {
     return evaluate_range(curves, elements, t, weights, output);
   }
-  // Writes elements to memory that begins with the first of them. Returns the bits of the elements that have no
-  // direction.
+  // Writes elements to memory that begins with the first of them. Returns a number whose bits mark the elements that
+  // have no direction.
   template <class View>
   std::uint64_t write_tile(IndexRange elements, const View& view) const noexcept {
     const std::size_t zeros = evaluate_range(curves, elements, t, weights, Shifted{form_of(view), elements.first});
@@ -187,7 +187,7 @@ struct AtTime {
   CurveWeights weights;
 };
 
-// An evaluation of blend shapes at the weights that are set.
+// The evaluation of blend shapes at the current weights.
 struct AtWeights {
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
@@ -225,14 +225,14 @@ struct AtWeights {
 
 // ---- from elements to outputs --------------------------------------------------------------------------------------
 
-// Returns the elements of a tile.
+// Returns the range of elements in a tile.
 template <class Source>
 IndexRange tile_of(const Source& source, std::size_t tile) {
   const std::size_t first = tile * Source::kTileElements;
   return {first, std::min(Source::kTileElements, source.size() - first)};
 }
 
-// Writes outputs that are elements. Only a range that begins within a tile needs the stack.
+// Writes outputs if output i is element i. Memory on the stack is only used for a range that begins within a tile.
 template <class Source, class Output>
 std::size_t write_elements(const Source& source, IndexRange outputs, const Output& output) noexcept {
   constexpr std::size_t kElements = Source::kTileElements;
@@ -280,8 +280,8 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
 
 // ---- vertex buffers ------------------------------------------------------------------------------------------------
 
-// Returns the control normals of one element of exact curves. (For constant and straight elements, these are the
-// control normals as they were packed.)
+// Returns the control normals of one element of exact curves. (If n(t) is constant or linear, these are the control
+// normals that the curves have stored.)
 ControlNormals control_normals_of(const CurveData& curves, std::size_t element) {
   const auto& flagged = curves.flagged.numbers;
   const auto at = std::lower_bound(flagged.begin(), flagged.end(), element);
@@ -360,7 +360,7 @@ struct MeshNormals::Parts {
     options.elements.group_of_face = group_of_face;
     options.elements.normal_of_corner = VectorView<const float>::packed(normal_of_corner);
   }
-  // Creates another object of the same mesh, without positions.
+  // Creates another object for the same mesh, without positions.
   Parts(const Parts& other, std::shared_ptr<const Topology> of_mesh)
       : mesh(std::move(of_mesh)),
         options(other.options),
@@ -386,7 +386,7 @@ struct MeshNormals::Parts {
     return {first, std::min(outputs.count, size() - first)};
   }
 
-  // Decides, once, which outputs share a normal.
+  // Decides which outputs share a normal. This is done once for a mesh.
   Status share(const Motion& motion) {
     Result<NormalGroups> made = make_groups(motion, options.elements);
     if (!made) return made.error();
@@ -429,7 +429,7 @@ struct MeshNormals::Parts {
     return outputs.count;
   }
 
-  // Writes outputs at one time, or zeros if the time is NaN or there is no segment.
+  // Writes outputs at one time. Writes zeros if the time is NaN or if there is no segment.
   template <class Output>
   std::size_t write(const LocalTime& t, IndexRange outputs, const Output& output) const noexcept {
     if (std::isnan(t.t) || curves.size == 0) return write_zeros(outputs, output);
@@ -440,18 +440,18 @@ struct MeshNormals::Parts {
     return access_of_pass(curves.blocks.size(), size() * bytes_of_result);
   }
 
-  std::shared_ptr<const Topology> mesh;  // the mesh of all objects that another() has created
+  std::shared_ptr<const Topology> mesh;  // shared by all objects that another() has created
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
   std::vector<float> normal_of_corner;       // kept until the outputs that share a normal are known
-  // The groups, which all objects of one mesh share as soon as they are known; nullptr for faces.
+  // The groups, which all objects for one mesh share as soon as they are known. It is nullptr for faces.
   std::shared_ptr<const NormalGroups> groups;
-  bool shares = false;      // whether an output is not the element with its number
-  CurveData curves, spare;  // the present segment, and memory for the next
+  bool shares = false;      // true if outputs share elements; false if output i is always element i
+  CurveData curves, spare;  // curves of the current segment, and memory for those of the next
   double fit_bound = 0;
   Segment next;
   bool has_next = false;
-  std::optional<CurveSlices> slices;  // curves of the next segment; none for fits
+  std::optional<CurveSlices> slices;  // builds the curves of the next segment; no value if the normals are fits
   std::optional<BlendNormals> blend;
 };
 

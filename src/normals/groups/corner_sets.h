@@ -1,4 +1,4 @@
-/// Sets of corners that grow together, and the corners around each point.
+/// Disjoint sets of corners that can be joined, and the lists of corners around each point.
 #ifndef CHRONORMAL_NORMALS_GROUPS_CORNER_SETS_H_
 #define CHRONORMAL_NORMALS_GROUPS_CORNER_SETS_H_
 
@@ -29,8 +29,8 @@ namespace chronormal::inline internal {
   return faces;
 }
 
-/// Disjoint sets by union-find with path halving. The smaller index becomes the root, so that roots do not depend on
-/// the order in which sets were joined.
+/// Disjoint sets of corners, by union-find with path halving. The smaller of two indices becomes the root, so that
+/// roots do not depend on the order in which sets were joined.
 class CornerSets {
  public:
   explicit CornerSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0U); }
@@ -46,7 +46,7 @@ class CornerSets {
     parent_[std::max(a, b)] = std::min(a, b);
   }
 
-  /// Returns the root of each corner.
+  /// Returns the root of each corner, which names the set of the corner.
   [[nodiscard]] std::vector<std::uint32_t> roots() && {
     for (std::uint32_t c = 0; c < parent_.size(); ++c) parent_[c] = root(c);
     return std::move(parent_);
@@ -56,7 +56,8 @@ class CornerSets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// A list of items for each owner, stored as offsets and items like the faces of a Topology.
+/// A list of items for each owner. The lists are stored one after the other, with offsets, like the faces of a
+/// Topology.
 struct Listing {
   std::vector<std::uint32_t> offsets, items;
 
@@ -65,7 +66,7 @@ struct Listing {
   }
 };
 
-/// Returns the corners around each point, ascending.
+/// Returns the corners around each point, in ascending order.
 [[nodiscard]] inline Listing corners_of_points(const Topology& topology, const Points& points) {
   Listing listing{std::vector<std::uint32_t>(points.count + 1), std::vector<std::uint32_t>(topology.corner_count())};
   for (const std::uint32_t vertex : topology.corners()) ++listing.offsets[points.point_of_vertex[vertex] + 1];

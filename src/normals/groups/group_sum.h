@@ -1,4 +1,4 @@
-/// Sums of the control normals of faces. If faces cancel so far that a sum is hardly more than rounding error, integers
+/// Adds up the control normals of faces. If faces cancel so far that a sum is hardly more than rounding error, integers
 /// compute it.
 #ifndef CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
 #define CHRONORMAL_NORMALS_GROUPS_GROUP_SUM_H_
@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// The sum of the control normals of faces, with zero in place of mere rounding.
+/// The sum of the control normals of faces. Components that are only rounding errors can be set to zero.
 class ControlNormalsSum {
  public:
   void add(const ControlNormals& face) noexcept {
@@ -35,8 +35,8 @@ class ControlNormalsSum {
   VectorSum n0_, m_, n1_;
 };
 
-/// Adds up the control normals of the faces of an element, with a bound on the errors of both the faces and the sum.
-/// Threads: pure.
+/// Adds up the control normals of the faces of an element. Also bounds the error of the sum, including the errors of
+/// the faces. Threads: pure.
 [[nodiscard]] inline BoundedNormals control_normals_of_group(const SharedFaces& faces, const NormalGroups& groups,
                                                              std::size_t element) noexcept {
   ControlNormalsSum sum;
@@ -51,14 +51,15 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Returns the control normals of an element. Each has an error of at most 2^-24 of its length, and is zero only if the
-/// exact control normal is zero. If faces cancel so far that its error in double could exceed 2^-26 of its length, the
-/// control normals are computed from integers. Pure. of_faces must have face_control_normals() of all faces
+/// Returns the control normals of an element, and bounds of their errors. Each control normal has an error of at most
+/// 2^-24 of its length, and is zero only if the exact control normal is zero. If faces cancel so far that the error in
+/// double could exceed 2^-26 of the length, integers compute the control normals. Pure. Precondition: of_faces has the
+/// result of face_control_normals() for all faces.
 [[nodiscard]] inline BoundedNormals settled_group_normals(const SharedFaces& faces, const NormalGroups& groups,
                                                           std::span<const ControlNormals> of_faces,
                                                           std::size_t element) noexcept {
-  // The error of each control normal of a face is at most 2^-26 (kLargestRounding) of its largest component, and the
-  // additions round far less.
+  // The error of each control normal of a face is at most 2^-26 (kLargestRounding) of its largest component. The
+  // additions round far less than that.
   constexpr double kOfFace = kLargestRounding + 0x1p-40, kMostCancelled = 4;
   ControlNormalsSum sum;
   std::array<double, 3> sizes{};
@@ -75,8 +76,8 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Writes group_control_normals() of normal_groups.h for a range of elements, for callers that request one range after
-/// the other.
+/// Writes group_control_normals() of normal_groups.h for a range of elements. It is for callers that ask for one range
+/// after the other, since SharedFaces keeps the results for large faces.
 void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
                            std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;

@@ -19,11 +19,11 @@ namespace {
 
 constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 
-// The error of an edge's angle from the rounding of positions to float32, radians.
+// The error, in radians, of the angle at an edge that rounding positions to float32 may cause.
 constexpr double kCreaseRounding = 1e-6;
 
-// The largest number of faces at a smooth edge. Edges with more faces are hard, which bounds the number of pairs of
-// faces to compare.
+// The largest number of faces at a smooth edge. Edges with more faces are hard. This bounds the number of pairs of
+// faces that are compared.
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 
 // Returns the faces in an order that follows from their vertices alone. Faces with the same vertices in the same order
@@ -48,14 +48,14 @@ std::vector<Vec3d> unit_face_normals(const Segment& still) {
   return normals;
 }
 
-// An edge from the examined point to another point, as seen by one corner.
+// An edge from a point to another point, as one corner has it.
 struct Spoke {
   std::uint32_t to, corner;
 
   friend bool operator<(const Spoke& a, const Spoke& b) { return a.to != b.to ? a.to < b.to : a.corner < b.corner; }
 };
 
-// One direction that a file stores around a point, and one corner that has this direction.
+// A direction that a file stores around a point, and a corner that has this direction.
 struct StoredNormal {
   Vec3d direction;
   std::uint32_t corner;
@@ -67,8 +67,8 @@ struct StoredNormal {
   }
 };
 
-// Joins the corners of all directions that are within `chord` of each other. Equal directions are joined first, since
-// there may be many of them.
+// Joins the corners of all directions whose distance is at most `chord`. Equal directions are joined first, since there
+// may be many of them.
 void join_close_directions(std::vector<StoredNormal>& normals, double chord, CornerSets& sets) {
   std::sort(normals.begin(), normals.end());
   std::size_t distinct = 0;
@@ -81,7 +81,7 @@ void join_close_directions(std::vector<StoredNormal>& normals, double chord, Cor
   for (std::size_t i = 0; i < distinct; ++i) {
     for (std::size_t k = i + 1; k < distinct; ++k) {
       const Vec3d between = normals[k].direction - normals[i].direction;
-      if (between.x > chord) break;  // all later directions are farther than that, too
+      if (between.x > chord) break;  // all later directions are farther away than `chord`, too
       if (dot(between, between) <= chord * chord) sets.join(normals[i].corner, normals[k].corner);
     }
   }
@@ -99,7 +99,7 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
   for (const std::uint32_t e : element_of_corner_) ++offsets_[e + 1];
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
 
-  // Corners are dealt out to their elements face by face, in an order that does not change if the mesh is shuffled.
+  // Corners are added to their elements face by face. The order of the faces does not change if the mesh is shuffled.
   std::vector<std::uint32_t> next = offsets_;
   for (const std::uint32_t f : faces_by_vertices(topology)) {
     const std::size_t first = first_corner(topology, f);
@@ -169,7 +169,7 @@ Result<NormalGroups> NormalGroups::by_crease_angle(const Motion& motion, const P
   const Listing around = corners_of_points(topology, points);
   std::vector<Spoke> spokes;
   for (std::uint32_t p = 0; p < points.count; ++p) {
-    // Every corner has two edges, to the vertices before and after it in its face.
+    // Each corner has two edges, to the vertices after and before it in its face.
     spokes.clear();
     for (const std::uint32_t c : around.of(p)) {
       const auto face = topology.face(face_of_corner[c]);
@@ -255,7 +255,7 @@ std::size_t NormalGroups::isolated_count() const noexcept {
 }
 
 void NormalGroups::forget_corners() noexcept {
-  corners_ = std::vector<std::uint32_t>();  // {} would keep the memory
+  corners_ = std::vector<std::uint32_t>();  // assigning {} would keep the memory
   element_of_corner_ = std::vector<std::uint32_t>();
 }
 

@@ -1,4 +1,4 @@
-// Orders the faces around an element so that each face adjoins the previous one, and stores the paths of sixteen
+// Orders the faces around an element so that each face adjoins the previous face, and stores the paths around sixteen
 // elements side by side.
 #include "normals/groups/rings.h"
 
@@ -11,11 +11,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The largest number of pieces of a path that are put in order.
+// The largest number of pieces of a path for which the code searches an order.
 constexpr std::size_t kMostSearched = 64;
-using Path = std::vector<std::uint32_t>;  // the first point is the centre
+using Path = std::vector<std::uint32_t>;  // first the centre, and then the points of the path
 
-// A builder of the paths around elements, one after the other.
+// Makes the paths around elements, one after the other.
 class PathMaker {
  public:
   PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)
@@ -47,14 +47,14 @@ class PathMaker {
     return path_;
   }
 
-  // Returns true if the last path replaces a path that has more points than the limit.
+  // Returns true if the last path that was made adds nothing, in place of a path with more points than the limit.
   [[nodiscard]] bool is_left_out() const { return is_left_out_; }
 
  private:
   static constexpr std::size_t kMostTriangles = 16;
 
   struct Piece {
-    std::size_t first, last;  // indices into points_
+    std::size_t first, last;  // the first and the last point of the piece, as indices into points_
   };
 
   // Returns a path that adds nothing, in place of a path that is too long.
@@ -65,8 +65,9 @@ class PathMaker {
     return path_;
   }
 
-  // Builds the path as next_piece() and append() would, for a few triangles around one vertex, where each triangle is a
-  // piece of two points. Returns false, with only the centre in the path, for triangles around several vertices.
+  // Makes the path that next_piece() and append() would make, for a few triangles around one vertex. Each triangle is
+  // then a piece of two points. Returns false if the triangles are not around one vertex; the path then has only the
+  // centre.
   bool make_of_triangles(std::span<const std::uint32_t> corners) {
     std::array<std::uint32_t, kMostTriangles> from, to;
     const std::uint32_t* const vertices = topology_.corners().data();
@@ -105,9 +106,9 @@ class PathMaker {
     return true;
   }
 
-  // Adds the piece that a face contributes at this corner: the other corners of the face in order. If the vertex of the
-  // corner is not the centre of the path (but a copy of it), the piece is the whole outline of the face, closed at this
-  // corner.
+  // Adds the piece of the path that a face contributes at a corner: the other corners of the face in order. The vertex
+  // of the corner may be a copy of the centre and not the centre itself. The piece is then the whole outline of the
+  // face, closed at this corner.
   void add_piece(std::size_t corner, std::span<const std::uint32_t> face) {
     const std::size_t first = points_.size();
     const std::size_t at = corner - static_cast<std::size_t>(face.data() - topology_.corners().data());
@@ -117,7 +118,7 @@ class PathMaker {
     pieces_.push_back({first, points_.size() - 1});
   }
 
-  // Adds a piece to the path. The path goes through the centre if the piece does not adjoin the last piece.
+  // Adds a piece to the path. If it does not adjoin the last piece, the path goes through the centre in between.
   void append(const Piece& piece) {
     std::size_t from = piece.first;
     if (path_.size() > 1 && path_.back() == points_[from]) {
@@ -128,7 +129,8 @@ class PathMaker {
     for (; from <= piece.last; ++from) path_.push_back(points_[from]);
   }
 
-  // Returns a piece that adjoins the last piece, or else a piece that no other piece leads to, or else any piece.
+  // Returns a piece that adjoins the last piece of the path. If there is none, returns a piece to which no other piece
+  // leads, or else any piece.
   [[nodiscard]] std::size_t next_piece() const {
     const auto start = [this](std::size_t piece) { return points_[pieces_[piece].first]; };
     for (std::size_t i = 0; i < pieces_.size() && path_.size() > 1; ++i) {
@@ -152,8 +154,8 @@ class PathMaker {
 
 }  // namespace
 
-// Calls path_of(element) for the centre and the path of each element twice; the first call is for the length only, so
-// that no excess memory is allocated.
+// Stores the centre and the path of each element. Calls path_of(element) twice: first for the length, so that no more
+// memory is allocated than needed, and then for the points.
 template <class PathOf>
 Rings::Rings(std::size_t count, const PathOf& path_of) {
   first_row_.reserve(1 + (count + kRingLanes - 1) / kRingLanes);
@@ -188,7 +190,7 @@ Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std
   std::vector<std::uint32_t> left_out;
   Rings rings(groups.size(), [&](std::size_t e) -> const Path& {
     const Path& path = paths.make(e);
-    // Each path is requested twice, in ascending order of elements, but counted once.
+    // Each path is requested twice, but must be listed once. Elements are requested in ascending order.
     if (paths.is_left_out() && (left_out.empty() || left_out.back() < e))
       left_out.push_back(static_cast<std::uint32_t>(e));
     return path;

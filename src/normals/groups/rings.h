@@ -1,22 +1,23 @@
-/// The points around elements as paths, sixteen elements at a time, for kernels that follow the paths in lanes.
+/// The points around elements as paths, for sixteen elements at a time. Kernels follow the paths in lanes.
 ///
 /// A normal is a sum over a path of points p around a centre c: n = sum (p[i] - c) x (p[i + 1] - c). The centre of a
-/// polygon is its first corner, and its path consists of the other corners; the path of a vertex consists of its
-/// neighbours in turn. Every second point belongs to two of these products, which can be joined into one product:
+/// polygon is its first corner, and its path consists of its other corners. The path of a vertex consists of its
+/// neighbours in turn. Every second point p[i] occurs in two of these products, which can be joined into one:
 ///
 ///     (p[i - 1] - c) x (p[i] - c) + (p[i] - c) x (p[i + 1] - c) = (p[i] - c) x (p[i + 1] - p[i - 1])
 ///
-/// so that kernels need half as many products. Pieces of a path that do not join are connected through the centre,
-/// which adds nothing. Shorter paths are filled up to the longest of sixteen with the centre, which adds nothing
-/// either. After the last element, slices repeat it:
+/// so that kernels need half as many products. Pieces of a path that do not adjoin each other are connected through the
+/// centre, which adds nothing. Shorter paths are filled up with the centre to the length of the longest of sixteen
+/// paths, which adds nothing either. After the last element, slices repeat the last element:
 ///
 ///     slice    centres        of 16 elements, as indices of points
 ///              first points   of the paths
 ///              second ...     as many rows as the longest path has points
 ///
-/// Paths follow from the topology and the groups alone, and so does the order of every sum. Each corner of a large
-/// polygon has a path around it, so the paths together grow with the square of its corners. A caller that has another
-/// way to compute the normals of such elements gives a limit, and gets a path without any area for each of them.
+/// Paths depend only on the topology and the groups, and so does the order of every sum. Each corner of a large polygon
+/// has a path around it, so the length of all paths together grows with the square of its corners. A caller that has
+/// another way to compute the normals of such elements gives a limit. An element with more points than the limit gets a
+/// path that adds nothing.
 #ifndef CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 #define CHRONORMAL_NORMALS_GROUPS_RINGS_H_
 
@@ -31,10 +32,10 @@
 
 namespace chronormal::inline internal {
 
-inline constexpr std::size_t kRingLanes = 16;  // elements of a slice
+inline constexpr std::size_t kRingLanes = 16;  // number of elements of a slice
 
-/// The slices as kernels read them: rows of kRingLanes indices. Slice s has the rows first_row[s] to first_row[s + 1];
-/// there are at least two rows.
+/// The slices as kernels read them, in rows of kRingLanes indices. Slice s has the rows from first_row[s] to before
+/// first_row[s + 1], which are at least two.
 struct RingSlices {
   const std::uint32_t* indices = nullptr;
   const std::size_t* first_row = nullptr;
@@ -43,7 +44,7 @@ struct RingSlices {
 
 class Rings {
  public:
-  /// Creates the rings of no elements.
+  /// Creates an object without elements.
   Rings() = default;
   /// Makes the paths of all faces. A face with more than most_points points gets a path that adds nothing. O(corners).
   [[nodiscard]] static Rings of_faces(const Topology& topology, std::size_t most_points = kUnlimited);
@@ -73,7 +74,7 @@ class Rings {
   std::vector<std::uint32_t> left_out_;
 };
 
-/// The paths around the elements of some groups, built when they are first requested.
+/// The paths around the elements of some groups. They are made when they are first requested.
 struct RingsOfGroups {
   std::once_flag once;
   Rings rings;
@@ -82,9 +83,9 @@ struct RingsOfGroups {
 /// The largest number of points of a path in rings_around().
 inline constexpr std::size_t kMostPathPoints = 64;
 
-/// Returns the paths of up to kMostPathPoints around the elements of groups. The groups and their copies keep the
-/// paths, which take 4 bytes for each point of the longest of sixteen paths, or 33 bytes per vertex of a grid. Any
-/// number of threads may request them. Throws std::bad_alloc.
+/// Returns the paths of up to kMostPathPoints points around the elements of groups. The groups and their copies keep
+/// the paths. These take 4 bytes for each point of the longest of sixteen paths, which is 33 bytes per vertex of a
+/// grid. Any number of threads may call this at the same time. Throws std::bad_alloc.
 [[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 
 }  // namespace chronormal::inline internal

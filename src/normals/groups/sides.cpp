@@ -8,7 +8,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns a number for a set of points that does not depend on their order.
+// Returns a hash of a set of points that does not depend on their order.
 std::uint32_t set_number(std::span<const std::uint32_t> points) {
   std::uint64_t sum = 0;
   for (const std::uint32_t p : points) {
@@ -38,7 +38,7 @@ bool has_twice(std::span<const std::uint32_t> loop) {
   return false;
 }
 
-// Sets of numbers that grow together, unless that would join two that must stay apart.
+// Disjoint sets of nodes. Two sets are not joined if this would join two nodes that must stay apart.
 class JoinedNodes {
  public:
   JoinedNodes(std::size_t nodes, std::span<const std::pair<std::uint32_t, std::uint32_t>> apart)
@@ -66,15 +66,16 @@ class JoinedNodes {
   std::span<const std::pair<std::uint32_t, std::uint32_t>> apart_;
 };
 
-// A corner at a point where sides may meet.
+// A corner at a point where the sides of a sheet may meet.
 struct PointCorner {
-  std::uint32_t point = 0, vertex = 0, face = 0, next = 0, previous = 0;  // both neighbours as points
+  // `next` and `previous` are the neighbours in the face, as points.
+  std::uint32_t point = 0, vertex = 0, face = 0, next = 0, previous = 0;
 };
 
 }  // namespace
 
 std::vector<BackToBack> find_backs(std::size_t count, const LoopOf& loop_of) {
-  // Few polygons share their set of points with another polygon, and only these few are examined.
+  // Few polygons share their set of points with another polygon. Only these polygons are examined.
   std::vector<std::uint32_t> loop, numbers(count), sorted;
   for (std::uint32_t i = 0; i < count; ++i) {
     loop.clear();
@@ -148,7 +149,7 @@ void keep_sides_apart(const Topology& topology, Points& points) {
     is_taken[p] = true;
   }
   if (!any) return;
-  // Sheets are pairs of polygons that share all their points.
+  // A sheet consists of pairs of faces that share all their points.
   const std::vector<BackToBack> found = find_backs(topology.face_count(), [&](std::uint32_t f, auto& loop) {
     for (const std::uint32_t v : topology.face(f)) {
       loop.push_back(point_of[v]);
@@ -185,7 +186,7 @@ void keep_sides_apart(const Topology& topology, Points& points) {
   for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
     for (end = first + 1; end < corners.size() && corners[end].point == corners[first].point;) ++end;
     const std::span<const PointCorner> here = std::span(corners).subspan(first, end - first);
-    // The nodes are vertices.
+    // The nodes whose sides are found are the vertices at the point.
     std::vector<std::uint32_t> vertices;
     std::vector<SideEdge> edges;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> of_faces, apart;

@@ -1,16 +1,18 @@
-/// The two sides of a sheet: faces that lie back to back. Private to normals and workflow.
+/// Finds the two sides of a sheet, which consists of faces that are back to back. It serves normals and workflow.
 ///
-/// A cape, a flag or a card of hair is often modelled twice, once for each side: every face has a *back*, a face with
-/// the same points the other way round. Their normals cancel, so a point of both sides has no direction. The sides are
-/// two surfaces. At a point where they meet, this code decides which faces belong together.
+/// A cape, a flag or a card of hair is often modelled twice, once for each side. Every face then has a *back*: a face
+/// with the same points in reversed order. The normals of the two cancel, so a point that belongs to both sides would
+/// have no direction. The sides are therefore treated as two surfaces. At a point where both sides meet, this code
+/// decides which faces belong to the same side.
 ///
 ///     together    two faces with an edge from the point in common, along which one face leaves the point and the other
 ///                 comes to it
 ///     apart       a face and its back
 ///
-/// Sides are the sets of faces that are together, as long as no two in a set are apart. A face that touches no set (of
-/// another sheet at the same point) joins the first set that it is not apart from. A point has two sides only if all of
-/// its faces have their backs: where walls of two boxes touch each other, the faces around the rim still determine how
+/// A side is a set of faces that are together, directly or through other faces, as long as no two faces of the set are
+/// apart. A face that is together with no set (it may belong to another sheet at the same point) joins the first set
+/// with no face that must stay apart from it. A point has two sides only if all of its faces have their backs. Where
+/// walls of two boxes touch each other, for example, the faces around the rim have no backs, and still determine how
 /// the point looks.
 ///
 /// Threads    pure
@@ -31,35 +33,36 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoFace = 0xFFFFFFFF;
 
-/// A pair of polygons, by number, of which each is the back of the other; the smaller number comes first.
+/// The numbers of two polygons each of which is the back of the other. The smaller number comes first.
 using BackToBack = std::pair<std::uint32_t, std::uint32_t>;
 
-/// A function that writes the points of the corners of polygon i, in order around it.
+/// A function that writes the points of polygon i, in the order of its corners.
 using LoopOf = std::function<void(std::uint32_t i, std::vector<std::uint32_t>& loop)>;
 
-/// Returns the polygons of `count` that are back to back, in ascending order. Each polygon is the back of at most one
-/// other. A polygon that visits a point twice, or has an empty loop, has no back. O(n log n), with a few bytes for each
+/// Returns the pairs among polygons 0 ... count - 1 that are back to back, in ascending order. A polygon is in at most
+/// one pair. A polygon that has a point twice, or has no points, has no back. O(n log n), with a few bytes for each
 /// polygon.
 [[nodiscard]] std::vector<BackToBack> find_backs(std::size_t count, const LoopOf& loop_of);
 
-/// An edge between a point and a neighbour, as one face has it. The corner of this face at the point belongs to a node:
-/// a vertex, or a set of corners, that stays whole when the point is split.
+/// An edge between a point and a neighbour, as one face has it. The corner of this face at the point belongs to a node.
+/// A node is a vertex, or a set of corners, that is not divided when the point is split into sides.
 struct SideEdge {
   std::uint32_t node = 0, neighbour = 0;
-  bool leaves = false;  ///< whether the face of the node goes along the edge from the point, not to it
+  /// True if the face passes the edge from the point to the neighbour, false if it passes it towards the point.
+  bool leaves = false;
 };
 
-/// Returns the side of each node at one point; sides are numbered in the order of their first nodes. `apart` has pairs
-/// of different nodes that must not be on the same side.
+/// Returns the number of the side of each node at one point. Sides are numbered in the order of their first nodes.
+/// `apart` has pairs of different nodes that must not be on the same side.
 [[nodiscard]] std::vector<std::uint32_t> split_sides(std::size_t nodes, std::vector<SideEdge> edges,
                                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> apart);
 
-/// Splits points at which vertices of both sides of a sheet were welded. A vertex that belongs to both sides itself
-/// stays as it is. O(F), and O(F log F) if sheets may have two sides
+/// Splits points at which vertices of both sides of a sheet were welded. A vertex that belongs to both sides is not
+/// split. O(F), and O(F log F) if sheets may have two sides.
 void keep_sides_apart(const Topology& topology, Points& points);
 
-/// Splits sets of corners that have corners of both sides of a sheet. A set is named by any of its corners, and each
-/// side gets its own name.
+/// Splits sets of corners that have corners of both sides of a sheet. A set is named by any of its corners. After the
+/// split, each side has a name of its own.
 void take_sides_apart(const Topology& topology, const Points& points, std::vector<std::uint32_t>& set_of_corner);
 
 }  // namespace chronormal::inline internal

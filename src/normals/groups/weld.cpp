@@ -1,5 +1,5 @@
-// Finds vertices that coincide in all keyframes. The vertices are sorted by place in one keyframe after the other; a
-// large number of vertices is first split by a hash of the place, on all cores.
+// Finds vertices that coincide in all keyframes. The vertices are sorted by their positions in one keyframe after the
+// other. If there are many vertices, they are first divided by a hash of the position, on all cores.
 #include "normals/groups/weld.h"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace chronormal {
 namespace {
 
-// Returns a key that gives coordinates a total order in which -0 equals 0.
+// Returns a number that is equal for equal coordinates, also for -0 and 0.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// The place of a vertex in the total order. Vertices of separate bodies are never equal.
+// The position of a vertex as three keys, which can be compared. Vertices of separate bodies are separated before.
 using PlaceKey = std::array<std::uint32_t, 3>;
 
 PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
@@ -26,8 +26,8 @@ PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {
 
 using Coinciding = std::span<std::uint32_t>;
 
-// Sorts vertices by their places at a keyframe, and by their numbers if these are equal. Appends the ones that share a
-// place with another to `found`.
+// Sorts vertices by their positions at a keyframe, and vertices at the same position by their numbers. Appends to
+// `found` the sets of vertices that share a position.
 void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   std::sort(vertices.begin(), vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
     const PlaceKey p = place_key(keyframe, a), q = place_key(keyframe, b);
@@ -40,7 +40,8 @@ void split_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::
   }
 }
 
-// A vertex and a hash of its place. Vertices at one place have the same hash, and few other vertices do.
+// A vertex and a hash of its position. Vertices at one position have the same hash, and few other vertices have that
+// hash.
 struct Hashed {
   std::uint32_t hash = 0, vertex = 0;
 
@@ -58,7 +59,8 @@ std::uint32_t hash_of(const PlaceKey& place) {
   return static_cast<std::uint32_t>(hash >> 32);
 }
 
-// Splits many vertices by their place, in buckets by the first bits of their hashes. Each bucket is sorted separately.
+// Divides many vertices by their positions. The first bits of a hash determine the bucket of a vertex, and each bucket
+// is sorted separately.
 void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, std::vector<Coinciding>& found) {
   constexpr std::size_t kBuckets = 1024, kShift = 22, kHashedBlock = std::size_t{1} << 14;
   std::vector<Hashed> hashed(vertices.size()), in_buckets(vertices.size());
@@ -81,10 +83,11 @@ void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, 
   }
 }
 
-// Returns the points of all vertices, where `found` has the vertices that coincide.
+// Returns the points of all vertices. `found` has the sets of vertices that coincide.
 Points points_of(std::size_t vertex_count, std::span<const Coinciding> found) {
   Points points = separate_points(vertex_count);
-  std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;  // at first, the first vertex of each
+  // At first, the first vertex at the point of each vertex.
+  std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;
   for (const Coinciding vertices : found) {
     for (const std::uint32_t vertex : vertices) of_vertex[vertex] = vertices.front();
   }
@@ -108,8 +111,7 @@ Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apar
   constexpr std::size_t kMany = std::size_t{1} << 14;
   const Motion& motion = stream.motion();
   std::vector<std::uint32_t> order = separate_points(motion.topology.vertex_count()).point_of_vertex;
-  // Vertices that coincide in all keyframes so far are neighbours in the list. Each further keyframe tells some of them
-  // apart.
+  // Each list has the vertices that coincide in all keyframes so far. Each further keyframe may divide lists.
   std::vector<Coinciding> found = {order}, before;
   if (const auto& bodies = motion.body_of_vertex; !bodies.empty()) {
     std::stable_sort(order.begin(), order.end(),

@@ -1,5 +1,5 @@
-/// Welds the vertices that coincide in all keyframes, and also those that coincide in keyframe 0. Private to normals
-/// and workflow.
+/// Welds the vertices that coincide in all keyframes, and separately those that coincide in keyframe 0. It serves
+/// normals and workflow.
 #ifndef CHRONORMAL_NORMALS_GROUPS_WELD_H_
 #define CHRONORMAL_NORMALS_GROUPS_WELD_H_
 
@@ -10,12 +10,12 @@
 namespace chronormal::inline internal {
 
 struct WeldedPoints {
-  Points always;    ///< vertices that coincide in all keyframes are one point, as in weld_coincident()
-  Points at_start;  ///< vertices that coincide in keyframe 0 are one point
+  Points always;    ///< points by weld_coincident(), where vertices that coincide in all keyframes are one point
+  Points at_start;  ///< points where vertices that coincide in keyframe 0 are one point
 };
 
-/// Welds the vertices of a stream in both ways at once. If sides are not kept apart (sides.h), vertices are one point
-/// wherever they share a place. Errors: from the stream.
+/// Welds the vertices of a stream in both ways at once. If sides are not kept apart (sides.h), all vertices that share
+/// a place become one point. Errors: those of the stream.
 [[nodiscard]] Result<WeldedPoints> weld_from_start(MotionStream& stream, bool keeps_sides_apart = true);
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,6 @@
-// Interpolates all positions at t into rows that one vector load reads, and then follows the paths around sixteen
-// elements at a time (groups/rings.h). The paths are built once, from the topology alone.
+// Implements FloatRecompute. All positions are interpolated at t and written as rows that one vector load reads. Then
+// the paths around sixteen elements at a time are followed (groups/rings.h). The paths are made once, from the topology
+// and the groups.
 
 #include "chronormal/normals/recompute.h"
 
@@ -25,7 +26,8 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlockOfPoints = 16384;
-constexpr std::size_t kBlockOfElements = 4096;  // a multiple of kRingLanes
+// Number of elements that a thread computes at a time; a multiple of kRingLanes.
+constexpr std::size_t kBlockOfElements = 4096;
 
 }  // namespace
 
@@ -40,7 +42,7 @@ struct FloatRecompute::Parts {
 
   const Topology& topology;
   std::size_t size;
-  Rings rings;  // empty if all faces are triangles
+  Rings rings;  // the paths; empty if the elements are faces and all are triangles
   AlignedArray<float> points;
   bool fetch = false;
 };
@@ -63,7 +65,7 @@ std::size_t FloatRecompute::Parts::unit_normals(VectorView<const float> from, Ve
       const IndexRange some{range.first / kRingLanes, (range.count + kRingLanes - 1) / kRingLanes};
       zeros += ring_unit_normals(ring_points, rings.view(), some, part, stream);
     }
-    // The flush makes results that bypassed the caches visible to other threads.
+    // FlushStream() makes results that bypassed the caches visible to other threads.
     if (stream) hwy::FlushStream();
   });
   return zeros;
@@ -85,7 +87,7 @@ std::size_t FloatRecompute::unit_normals(const Segment& segment, double t, Vecto
   assert(result.count == size());
   if (!parts_) return 0;
   if (!std::isnan(t)) return parts_->unit_normals(segment.from, segment.to, local_time(t), result, threads);
-  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // NaN has no normal
+  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // there is no normal at the time NaN
   return result.count;
 }
 

@@ -29,24 +29,26 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kFaceBatch = 1024;  // room for doubtful faces on the stack
+constexpr std::size_t kFaceBatch = 1024;  // number of doubtful faces for which there is room on the stack
 constexpr std::size_t kFaceBlock = 16;
 constexpr std::size_t kBlockOfVertices = 16384;
-constexpr std::size_t kGroupBatch = 256;                      // elements whose faces must be in the window at once
-constexpr std::size_t kLargestWindow = std::size_t{1} << 14;  // 256 KiB
+// Number of elements whose faces must be in the window at the same time.
+constexpr std::size_t kGroupBatch = 256;
+constexpr std::size_t kLargestWindow = std::size_t{1} << 14;  // normals of this many faces take 256 KiB
 constexpr std::size_t kWindowSamples = 64;
-constexpr std::size_t kSmallestPart = 4096;  // elements that are worth a thread
+constexpr std::size_t kSmallestPart = 4096;  // number of elements that are worth another thread
 constexpr std::size_t kMostParts = 64;
 
-// The vector n(t) in double from the positions, and a bound of its error.
+// The vector n(t) of a face or element in double, and a bound of its error.
 struct NormalAtTime {
   Vec3d n;
   double error = 0;
 };
 
-// Computes n(t) with a bound of its error. Edges, and both products of each component, are within 10 u of the absolute
-// products, and each triangle of a fan adds a rounding. The bound holds even if all roundings go the same way. Real
-// errors are smaller: a search by hill climbing from 60 triangles finds none above 3.4 u of these products.
+// Computes n(t) of a face with a bound of its error. Edges, and both products in a component, are within 10 u of the
+// absolute products, and each triangle of a fan adds a rounding. The bound holds even if all roundings go in the same
+// direction. Real errors are smaller: a search by hill climbing from 60 triangles finds none above 3.4 u of these
+// products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
@@ -68,17 +70,17 @@ NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTi
   return result;
 }
 
-constexpr double kLargestNormal = 0x1p100;  // largest normal in float32 that leaves room for sums
+constexpr double kLargestNormal = 0x1p100;  // the largest length of a normal in float32 that leaves room for sums
 
 FaceNormal rounded(const NormalAtTime& normal) {
-  // The factor is a little above 1, for the rounding of the bound.
+  // The factor is slightly above 1, to cover the rounding of the bound itself.
   const double error = 1.01 * (length(normal.n) + normal.error / kFloatUnitRoundoff);
   if (!(error <= kLargestNormal)) return {0, 0, 0, std::numeric_limits<float>::infinity()};
   const Vec3f n = to_float(normal.n);
   return {n.x, n.y, n.z, static_cast<float>(error)};
 }
 
-// The result for a triangle, with the bits that the kernel gives.
+// The result for a triangle, with the same bits as those of the kernel.
 struct QuickNormal {
   Vec3f n, unit;
   float error = 0;
@@ -87,8 +89,8 @@ struct QuickNormal {
 
 bool in_range(float smallest, float largest) { return smallest >= 0x1p-100f && largest <= 0x1p100f; }
 
-// Returns the normal of a thin triangle from exact edges, since edges in float32 are not precise enough. a and b are
-// the squares A and B of quick_normal().
+// Returns the normal of a thin triangle from exact edges, since edges in float32 are not precise enough for it. a and b
+// are the squares A and B of quick_normal().
 QuickNormal thin_normal(const Segment& segment, std::size_t f, const LocalTime& t, float a, float b) {
   const auto face = segment.topology->face(f);
   const auto edge_to = [&](std::size_t c) {
@@ -137,8 +139,8 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t
   return rounded(normal_at_time(segment, f, t));
 }
 
-// Returns the direction of a sum of faces, in double if rounding turns the sum by no more than 2^-23 = 1.2e-7 rad, and
-// else from make_exact().
+// Returns the direction of a normal. It is computed in double if rounding turns the normal by at most 2^-23 = 1.2e-7
+// rad, and otherwise from make_exact().
 template <class MakeExact>
 UnitNormal unit_normal_of(const NormalAtTime& normal, const LocalTime& t, const MakeExact& make_exact) {
   constexpr double kLargestAngle = 0x1p-23;
@@ -159,7 +161,7 @@ UnitNormal unit_normal_of_face(const Segment& segment, std::size_t f, const Loca
   return fine_unit_normal(segment, f, t);
 }
 
-// All values that elements share in one evaluation.
+// The values that all elements share in an evaluation at one t.
 struct FacesAtTime {
   explicit FacesAtTime(const Segment& segment) : faces(segment) {}
 
@@ -179,13 +181,13 @@ UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& g
     sum.error += normal.error;
     magnitude += sum_abs(normal.n);
   }
-  // Each addition rounds by at most u times the summed magnitudes.
+  // Each addition rounds by at most u times the sum of the absolute values.
   sum.error += kUnitRoundoff * static_cast<double>(groups.faces(element).size()) * magnitude;
   return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
 
-// Returns the normal of an element with the bits of the kernel: from the sum of rounded face normals if the kernel
-// would trust this sum, and otherwise as unit_normal_of_group() does.
+// Returns the normal of an element with the same bits as those of the kernel. If the kernel would trust the sum of
+// rounded face normals, this sum is used; otherwise the result is that of unit_normal_of_group().
 UnitNormal quick_unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& groups, std::size_t element,
                                       const LocalTime& t) {
   const Segment& segment = shared.faces.segment();
@@ -208,8 +210,8 @@ std::span<const std::uint32_t> faces_of(const NormalGroups& groups, IndexRange e
   return {first.data(), last.data() + last.size()};
 }
 
-// Returns the smallest power of two that holds the faces around nine of ten batches, or 0 if that is too large for the
-// cache.
+// Returns the smallest power of two for which a window can hold the faces around nine of ten batches of elements.
+// Returns 0 if that window would be too large for the cache.
 std::size_t window_for(const NormalGroups& groups) {
   std::array<std::size_t, kWindowSamples> counts{};
   const std::size_t batches = groups.size() / kGroupBatch;
@@ -229,16 +231,17 @@ bool is_packed(const VectorView<const float>& points) {
 
 // The memory that a NormalRecompute keeps for its calls.
 struct Scratch {
-  bool vertices_are_near = true;  // whether vertices of neighbouring faces are neighbours in memory
-  AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, or empty
-  std::size_t window = 0;         // number of face normals, a power of two; 0 for all
-  AlignedBytes normals;           // normals of faces, for groups
+  bool vertices_are_near = true;  // true if vertices of neighbouring faces are neighbours in memory
+  AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, one vertex after the other; or empty
+  // Number of face normals in the window, a power of two; 0 if all face normals are stored.
+  std::size_t window = 0;
+  AlignedBytes normals;  // normals of faces, from which those of groups are added up
 };
 
-// One evaluation.
+// One call of unit_normals(), at one t.
 class Call {
  public:
-  // Evaluates faces, without scratch memory. Element `first` goes to result[0].
+  // Evaluates faces, without scratch memory. The normal of element `first` is written to result[0].
   Call(const Segment& segment, const LocalTime& t, VectorView<float> result, std::size_t first)
       : segment_(segment), shared_(segment), t_(t), result_(result), first_(first) {
     const Topology& topology = *segment.topology;
@@ -276,13 +279,13 @@ class Call {
 
   void write_all_normals(IndexRange faces) const noexcept { write_normals(faces, normals_ + faces.first); }
 
-  // Evaluates elements in ascending order, with their own window.
+  // Evaluates elements in ascending order. Each part has a window of its own. Returns the number of zeros.
   std::size_t elements(IndexRange elements, std::size_t part) const noexcept {
     std::size_t zeros = 0;
     FaceNormal* const normals = normals_ + part * window_;
     FaceWindow window{window_};
     // The credit is the number of faces that may still be written to the window. If the faces of successive elements
-    // are far apart, it limits the cost to a few times the work of computing each face alone.
+    // are far apart, the credit limits the cost to a few times that of computing each face alone.
     std::size_t credit = 2 * window_;
     for (std::size_t e = elements.first; e < elements.end(); e += kGroupBatch) {
       const IndexRange batch{e, std::min(kGroupBatch, elements.end() - e)};
@@ -303,7 +306,7 @@ class Call {
   }
 
  private:
-  // Makes results that bypassed the caches visible to other threads.
+  // Makes results that bypassed the caches visible to other threads. Call it at the end of an evaluation.
   void finish() const {
     if (stream_) hwy::FlushStream();
   }
@@ -346,7 +349,8 @@ class Call {
     }
   }
 
-  // Moves the window to the needed faces. Returns false if they do not fit, or would cost more than the credit.
+  // Moves the window so that it contains the needed faces. Returns false if they do not fit, or if this would cost more
+  // than the credit.
   bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
     if (needed.count == 0 || window.holds(needed)) return true;
     const bool follows = window.begin <= needed.first && needed.first <= window.end;
@@ -386,14 +390,14 @@ class Call {
   LocalTime t_;
   VectorView<float> result_;
   std::size_t first_;
-  bool by_kernel_;  // if false, elements are evaluated one by one
+  bool by_kernel_;  // false if elements are evaluated one by one
   bool stream_;
   MovingTriangles triangles_;
   FaceNormal* normals_ = nullptr;
   std::size_t window_ = 0;
 };
 
-// Writes zeros, since NaN has no normal.
+// Writes zeros as the normals at the time NaN, and returns their number.
 std::size_t write_zeros(VectorView<float> result) {
   for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
   return result.count;
@@ -417,7 +421,7 @@ struct NormalRecompute::Parts {
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads);
 
   Segment segment;
-  const NormalGroups* groups;  // none for faces
+  const NormalGroups* groups;  // nullptr if the elements are faces
   Scratch scratch;
 };
 
@@ -439,7 +443,7 @@ NormalRecompute::Parts::Parts(const Segment& of_segment, const NormalGroups* of_
 
 std::size_t NormalRecompute::Parts::unit_normals(const LocalTime& t, VectorView<float> result, Threads threads) {
   if (size() == 0) return 0;
-  // The blocks are the same for any number of threads.
+  // The blocks are the same for every number of threads.
   const auto in_blocks = [threads](std::size_t count, std::size_t block, const auto& body) {
     if (threads == Threads::kOne || count <= block)
       body(IndexRange{0, count});

@@ -1,4 +1,4 @@
-/// The share of one corner in the normal of its element, at one t in double.
+/// The term that one corner adds to the normal of its element, at one t in double.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_CORNER_TERMS_H_
 
@@ -16,7 +16,7 @@
 
 namespace chronormal::inline internal {
 
-/// The vertices of one corner: its own, and the ends of its two edges.
+/// The vertices of one corner: its own vertex, and the other ends of its two edges.
 struct CornerVertices {
   std::uint32_t here, next, previous;
 };
@@ -28,7 +28,8 @@ struct CornerVertices {
   return {face[i], face[i + 1 == face.size() ? 0 : i + 1], face[i == 0 ? face.size() - 1 : i - 1]};
 }
 
-/// An edge between two vertices at t, and the size of its terms. Its error is a few eps of that size.
+/// An edge between two vertices at t, and the size of the terms from which it is computed. Its error is a few units
+/// roundoff of that size.
 struct MovingEdge {
   Vec3d vector;
   double size;
@@ -40,11 +41,11 @@ struct MovingEdge {
   }
 };
 
-/// The error of a cross product of two such edges, relative to the product of their sizes, with a margin.
+/// The error of a cross product of two MovingEdges, relative to the product of their sizes, with a margin.
 inline constexpr double kCrossError = 32 * kUnitRoundoff;
 
-/// Returns the term that a corner adds to the normal of its element, for a face with the normal n, which must not be
-/// zero. If an edge of the corner has no length, the term is zero, except by area and uniform.
+/// Returns the term that a corner adds to the normal of its element. n is the normal of the face, which must not be
+/// zero. If an edge of the corner has length 0, the term is zero for all weightings except area and uniform.
 [[nodiscard]] inline Vec3d corner_term(const Segment& segment, const CornerVertices& corner, const Vec3d& n,
                                        Weighting weighting, const LocalTime& t) noexcept {
   if (weighting == Weighting::kArea) return n;

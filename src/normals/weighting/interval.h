@@ -1,9 +1,9 @@
-/// Intervals that contain the exact result of every operation, regardless of rounding.
+/// Intervals of numbers. The result of every operation contains the exact result, despite rounding.
 ///
 /// Each bound of a result is moved outwards by more than its rounding error: by 2^-51 of itself, which is at least two
-/// units in the last place, and by the smallest double, for results that underflow. (One unit would do if both operands
-/// were exact; a factor such as 1/3 has its own rounding.) A division by an interval that contains zero, and a root of
-/// an interval that contains negative numbers, give the whole line.
+/// units in the last place, and by the smallest double, for results that underflow. (One unit would be enough if both
+/// operands were exact, but a factor such as 1/3 has a rounding of its own.) The result is the whole line for a
+/// division by an interval that contains zero, and for a root of an interval that contains negative numbers.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_INTERVAL_H_
 
@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 struct Interval {
   double low = 0, high = 0;
 
-  /// Returns [low, high] moved outwards, or the whole line if a bound is NaN.
+  /// Returns [low, high] with both bounds moved outwards, or the whole line if a bound is NaN.
   [[nodiscard]] static Interval outwards(double low, double high) noexcept {
     constexpr double kStep = 0x1p-51, kSmallest = std::numeric_limits<double>::denorm_min();
     if (!(low <= high)) return whole();
@@ -31,7 +31,7 @@ struct Interval {
   [[nodiscard]] static Interval point(double x) noexcept { return {x, x}; }
 
   [[nodiscard]] bool finite() const noexcept { return std::isfinite(low) && std::isfinite(high); }
-  /// Returns the largest absolute value.
+  /// Returns the largest absolute value in the interval.
   [[nodiscard]] double magnitude() const noexcept { return std::max(-low, high); }
 
   friend Interval operator+(const Interval& a, const Interval& b) noexcept {
@@ -51,7 +51,7 @@ struct Interval {
   }
 };
 
-/// Returns 1 / a.
+/// Returns an interval that contains 1 / x for all x in a.
 [[nodiscard]] inline Interval reciprocal(const Interval& a) noexcept {
   if (!(a.low > 0 || a.high < 0)) return Interval::whole();
   return Interval::outwards(1 / a.high, 1 / a.low);
@@ -62,19 +62,20 @@ struct Interval {
   return Interval::outwards(std::sqrt(a.low), std::sqrt(a.high));
 }
 
-/// Returns a^2, which is never negative.
+/// Returns an interval that contains x^2 for all x in a. It has no negative numbers.
 [[nodiscard]] inline Interval square(const Interval& a) noexcept {
   const Interval product = a * a;
   return {std::max(product.low, 0.0), product.high};
 }
 
-/// Returns the angles of the vectors (x, y) with y >= 0, from the angle of a point inside and the largest difference of
-/// the other points from it. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the true value.
+/// Returns the angles, in radians, of all vectors (x, y) with y >= 0. They are those near the angle of a point inside,
+/// up to the largest possible difference. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the
+/// true value.
 [[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
   const double radius = (y.high - y.low) + (x.high - x.low);
-  // No point of the intervals is nearer to the origin than this distance.
+  // The distance between the origin and any point of the intervals is at least this.
   const double distance = 0.999 * portable::hypot(mx, my) - radius;
   if (!(distance > 0)) return Interval::whole();
   constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();

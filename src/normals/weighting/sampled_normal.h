@@ -1,5 +1,5 @@
 /// The weighted normal of one element at one t, and the length that it would have with weights by area. Fits are
-/// computed from these samples.
+/// computed from such samples.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SAMPLED_NORMAL_H_
 
@@ -23,8 +23,8 @@ struct SampledNormal {
   [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }
 };
 
-/// Returns the weighted normal of corners. normal_of_face(f) must give the result of face_normals_at() for a face of
-/// the element at this t
+/// Returns the weighted normal of the element with some corners. Precondition: normal_of_face(f) returns the result of
+/// face_normals_at() for a face of the element at this t.
 template <class NormalOfFace>
 [[nodiscard]] SampledNormal sample_normal(const Segment& segment, const NormalOfFace& normal_of_face,
                                           std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces,
@@ -44,14 +44,14 @@ template <class NormalOfFace>
   return result;
 }
 
-/// Returns the quadratic that has the given values, which are weighted directions with lengths by area, at t = 0, 1/2
-/// and 1.
+/// Returns the quadratic that has the given values at t = 0, 1/2 and 1. The values are weighted directions, with
+/// lengths by area.
 [[nodiscard]] inline ControlNormals quadratic_through(const Vec3d& start, const Vec3d& middle,
                                                       const Vec3d& end) noexcept {
   return {start, 2.0 * middle - 0.5 * (start + end), end};
 }
 
-/// Returns the weighted normal of an element at t, from positions alone.
+/// Returns the weighted normal of an element at t, computed from positions alone.
 [[nodiscard]] inline SampledNormal sample_normal(const Segment& segment, const NormalGroups& groups,
                                                  std::size_t element, Weighting weighting, double t) {
   const auto normal_of_face = [&](std::uint32_t f) {

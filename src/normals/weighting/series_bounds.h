@@ -1,5 +1,5 @@
-/// Bounds, over a piece of time, of functions that are known by their series. The polynomial lies in the hull of its
-/// Bernstein coefficients, and the function within the remainder around it.
+/// Bounds functions over a piece of time, from their Taylor series (taylor.h). The Taylor polynomial is in the hull of
+/// its Bernstein coefficients, and the function differs from the polynomial by at most the remainder.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SERIES_BOUNDS_H_
 
@@ -14,18 +14,18 @@
 
 namespace chronormal::inline internal {
 
-/// The number of terms of a series, and the degree of its polynomial: a Taylor polynomial has 5 coefficients, and the
-/// sixth term is the remainder.
+/// The number of terms of a series, and the degree of its polynomial. The polynomial has 5 coefficients, and the sixth
+/// term is the remainder.
 inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
 
-/// Returns the largest length of a vector that is somewhere in these intervals.
+/// Returns an upper bound of the length of all vectors whose components are in these intervals.
 [[nodiscard]] inline double largest_length(const Interval& x, const Interval& y, const Interval& z) noexcept {
   return (1 + 0x1p-50) * length(Vec3d{x.magnitude(), y.magnitude(), z.magnitude()});
 }
 
-/// Returns the Bernstein coefficients over [c - half, c + half] of the Taylor polynomial about c.
+/// Returns the Bernstein coefficients, over [c - half, c + half], of the Taylor polynomial about c.
 [[nodiscard]] inline std::array<Interval, kDegree + 1> bernstein(const Series<kTerms>& taylor, double half) noexcept {
-  // The rows are C(4, k) x the Bernstein coefficients over [-1, 1] of u^k, k = 0 ... 4.
+  // Row k has C(4, j) times the Bernstein coefficients j of u^k over [-1, 1], for k = 0 ... 4.
   constexpr std::array<std::array<double, kDegree + 1>, kDegree + 1> kOfPowers = {
       {{1, 1, 1, 1, 1}, {-4, -2, 0, 2, 4}, {6, 0, -2, 0, 6}, {-4, 2, 0, -2, 4}, {1, -1, 1, -1, 1}}};
   std::array<Interval, kDegree + 1> result;
@@ -38,16 +38,16 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return result;
 }
 
-/// Bounds the remainder of a series: the interval holds the value of the remainder at every point of [c - half, c +
-/// half]. The coefficients of the series `around` hold for every center in that interval.
+/// Returns an interval that contains the remainder of a series at every point of [c - half, c + half]. `around` is the
+/// series about all points of this interval.
 [[nodiscard]] inline Interval remainder(const Series<kTerms>& around, double half) noexcept {
   Interval power = Interval::point(1);
   for (std::size_t k = 1; k < kTerms; ++k) power = half * power;
   return around[kTerms - 1] * power;
 }
 
-/// Returns a lower bound of a function over [c - half, c + half], from its series about c and about all of the
-/// interval. The true function may differ by `slack`.
+/// Returns a lower bound of a function over [c - half, c + half]. `here` is its series about c, and `around` its series
+/// about all points of the interval. The true function may differ from the series by `slack`.
 [[nodiscard]] inline double least_over(const Series<kTerms>& here, const Series<kTerms>& around, double half,
                                        double slack) noexcept {
   const auto coefficients = bernstein(here, half);
@@ -56,8 +56,9 @@ inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
   return least - (1 + 0x1p-50) * (remainder(around, half).magnitude() + slack);
 }
 
-/// Returns an upper bound of the length of a vector over [c - half, c + half], from its series about c and about all of
-/// the interval. The true vector may differ by a length of `slack`.
+/// Returns an upper bound of the length of a vector over [c - half, c + half]. `here` is its series about c, and
+/// `around` its series about all points of the interval. The true vector may differ from the series by a vector of
+/// length `slack`.
 [[nodiscard]] inline double largest_length_over(const VectorSeries<kTerms>& here, const VectorSeries<kTerms>& around,
                                                 double half, double slack) noexcept {
   const auto x = bernstein(here[0], half), y = bernstein(here[1], half), z = bernstein(here[2], half);

@@ -1,4 +1,4 @@
-/// Weighted normals of elements that share faces of many corners, for callers that have the normals of faces. Private.
+/// Weighted normals of elements that share faces with many corners, for callers that have the normals of faces already.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
 
@@ -11,7 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes weighted_normals_at() of weighting.h, for callers that request one range after the other.
+/// Writes weighted_normals_at() of weighting.h for a range of elements. It is for callers that ask for one range after
+/// the other, since SharedFaces keeps the results for large faces.
 void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 

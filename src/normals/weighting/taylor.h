@@ -1,7 +1,8 @@
 /// Taylor coefficients in interval arithmetic.
 ///
-/// A Series<M> has the coefficients of 1, s, ..., s^(M-1) of a function about a point c. About an interval T of points,
-/// each coefficient encloses the coefficients about every c in T, so that with c in T and c + s in T
+/// A Series<M> has the coefficients of 1, s, ..., s^(M-1) of a function about a point c. A series may also be about all
+/// points of an interval T. Each of its coefficients is then an interval that contains the coefficients about every c
+/// in T. If c and c + s are both in T,
 ///     f(c + s) = sum_(k < M-1) f_k(c) s^k + f_(M-1)(x) s^(M-1)     for some x in T, hence a coefficient of the series
 /// about T. A polynomial about its centre is shifted to the interval; other functions follow by the recurrences of
 /// power series. (Moore, Interval Analysis, 1966.)
@@ -21,7 +22,7 @@ using Series = std::array<Interval, M>;
 template <std::size_t M>
 using VectorSeries = std::array<Series<M>, 3>;
 
-/// Returns the first K coefficients of a product. Missing coefficients are zero.
+/// Returns the first K coefficients of the product of two series, of which coefficients that are missing count as zero.
 template <std::size_t K, std::size_t M, std::size_t N>
 [[nodiscard]] Series<K> product(const Series<M>& a, const Series<N>& b) noexcept {
   Series<K> result{};
@@ -65,7 +66,7 @@ template <std::size_t K, std::size_t M, std::size_t N>
   return {product<K>(factor, a[0]), product<K>(factor, a[1]), product<K>(factor, a[2])};
 }
 
-/// Returns a polynomial about c as a series about all c + s with s in `around`.
+/// Returns a polynomial about c as a series about all points c + s, where s is in `around`.
 template <std::size_t M>
 [[nodiscard]] Series<M> shifted(const Series<M>& p, const Interval& around) noexcept {
   if (around.low == 0 && around.high == 0) return p;
@@ -83,8 +84,8 @@ template <std::size_t M>
   return {shifted(p[0], around), shifted(p[1], around), shifted(p[2], around)};
 }
 
-/// Returns the series y of p to the power `exponent`, by the recurrence that follows from p y' = exponent p' y. `first`
-/// is the first coefficient of y.
+/// Returns the series y of p^exponent. It uses the recurrence that follows from p y' = exponent p' y. `first` is the
+/// first coefficient of y.
 template <std::size_t K, std::size_t M>
 [[nodiscard]] Series<K> power(const Series<M>& p, double exponent, const Interval& first) noexcept {
   Series<K> y;

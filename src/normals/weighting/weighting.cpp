@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::size_t kElementsAtOnce = 1024;
 
-// The largest relative error of the normal of a face, and the largest angle by which such errors may turn a sum of
-// faces. The angle of 2^-23 = 1.2e-7 rad is kept until the faces have cancelled to a hundredth.
+// The largest relative error of the normal of a face, and the largest angle, in radians, by which such errors may turn
+// a sum of faces. The angle 2^-23 = 1.2e-7 rad is not exceeded until faces cancel to a hundredth.
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
-// Returns the normal of a face, in double, or in integers if double is not enough.
+// Returns the normal of a face. Double computes it, or integers if double is not precise enough.
 Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, const LocalTime& t) {
   Vec3d n;
   double size = 0;

@@ -21,20 +21,21 @@ namespace {
 
 constexpr std::size_t kFitBlock = 64;
 
-constexpr std::size_t kSamples = 16;      // number of samples of the error, to compare the bound with
-constexpr double kTightness = 2;          // a bound of up to this multiple of the largest sample is tight enough
-constexpr double kFineEnough = 1e-9;      // radians
-constexpr int kDeepest = 20;              // halvings of the segment
-constexpr std::size_t kMostPieces = 256;  // per element
+constexpr std::size_t kSamples = 16;      // number of samples of the error, with which the bound is compared
+constexpr double kTightness = 2;          // a bound of up to this multiple of the largest sampled error is tight enough
+constexpr double kFineEnough = 1e-9;      // radians; a bound of up to this is tight enough
+constexpr int kDeepest = 20;              // largest number of times that the segment is halved
+constexpr std::size_t kMostPieces = 256;  // largest number of pieces of the segment for one element
 
-// The control normals of a face as intervals that contain the exact ones.
+// The control normals of a face, as intervals that contain the exact values.
 struct IntervalNormals {
   std::array<std::array<Interval, 3>, 3> control;  // n0, m, n1
-  bool area = false;                               // whether the corner has any area at any time, beyond rounding
+  // True if the face has an area at some time that is more than rounding error.
+  bool area = false;
 };
 
 struct IntervalEdge {
-  std::array<Interval, 3> from, to;  // at t = 0 and at t = 1
+  std::array<Interval, 3> from, to;  // the edge at t = 0 and at t = 1
 };
 
 std::array<Interval, 3> difference(const Vec3d& a, const Vec3d& b) {
@@ -77,7 +78,7 @@ IntervalNormals face_intervals(const Segment& segment, std::span<const std::uint
   return sum;
 }
 
-// Returns a quadratic in Bernstein form as a series about t.
+// Returns a quadratic in Bernstein form as a Taylor series about t.
 Series<3> about(const Interval& n0, const Interval& m, const Interval& n1, double t) {
   const Interval s = Interval::point(t), rest = Interval::point(1) - s;
   const Interval first = m - n0, last = n1 - m;
@@ -97,8 +98,8 @@ VectorSeries<2> about(const IntervalEdge& e, double t) {
   return result;
 }
 
-// Returns the squared length of a vector series about c, as a series about all c + around. The first coefficient is
-// computed as a sum of squares, so it is never negative.
+// Returns the squared length of a vector, given by its series about c, as a series about all points of c + around. Its
+// first coefficient about c is computed as a sum of squares, so it is never negative.
 template <std::size_t M>
 Series<2 * M - 1> squared_length(const VectorSeries<M>& v, const Interval& around) {
   Series<2 * M - 1> squares = dot_product<2 * M - 1>(v, v);
@@ -111,7 +112,8 @@ VectorSeries<kTerms> unit_series(const VectorSeries<3>& n, const Interval& aroun
   return scaled_by<kTerms>(power<kTerms>(squares, -0.5, reciprocal(square_root(squares[0]))), shifted(n, around));
 }
 
-// Returns the angle between two edges. Its derivative is (x y' - y x') / (x^2 + y^2) with x = e.f, y = |e x f|.
+// Returns the angle between two edges, in radians, as a series. Its derivative is (x y' - y x') / (x^2 + y^2) with x =
+// e.f and y = |e x f|.
 Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = cross_product<3>(e, f);
   const Series<3> x_here = dot_product<3>(e, f), x = shifted(x_here, around);
@@ -131,13 +133,13 @@ Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, 
   return angle;
 }
 
-// An angle over a piece of time that is only known up to a radius.
+// An angle in radians that differs from `middle` by at most `radius` over a piece of time.
 struct CoarseAngle {
   double middle, radius;
 };
 
-// Returns the angle between two edges over all of centre + around, where the angle is not smooth: near 0 and near pi it
-// is computed from its tangent.
+// Returns the angle between two edges over all of centre + around, for pieces in which it is not smooth. Near 0 and
+// near pi the angle is computed from its tangent.
 CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = shifted(cross_product<3>(e, f), around);
   const Interval x = shifted(dot_product<3>(e, f), around)[0];
@@ -149,8 +151,8 @@ CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, con
   return {low + (high - low) / 2, (high - low) / 2 + 1e-15};
 }
 
-// The term of a corner as a series, about the centre and about all of the piece. The true value may differ by a vector
-// of length `slack`.
+// The term that a corner adds, as a series about the centre of a piece and about all of the piece. The true term may
+// differ from the series by a vector of length `slack`.
 struct TermSeries {
   VectorSeries<kTerms> here, around;
   double slack = 0;
@@ -199,7 +201,7 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
           slack};
 }
 
-// All values of one element that bounds need.
+// The data of one element that its bounds need.
 struct Element {
   const Segment* segment;
   std::span<const IntervalNormals> of_faces;
@@ -207,11 +209,12 @@ struct Element {
   Weighting weighting;
   ControlNormals fit;
 
-  // The cross and dot product of the fit and the element, about the centre and about all of the piece.
+  // The cross product and the dot product of the fit and the element's normal, as series about the centre of a piece
+  // and about all of the piece.
   struct Products {
     VectorSeries<kTerms> cross_here, cross_around;
     Series<kTerms> dot_here, dot_around;
-    double slack;  // for all four
+    double slack;  // the error of all four series
   };
   [[nodiscard]] Products products(double centre, const Interval& piece) const {
     TermSeries sum;
@@ -239,8 +242,8 @@ struct Element {
             (1 + 1e-12) * sum.slack * largest};
   }
 
-  // Returns whether a corner adds anything at any time. A corner on a face that never has an area, or at an edge
-  // without length, adds nothing.
+  // Returns true if a corner adds something to the normal at some time. A corner of a face that never has an area, or
+  // at an edge that always has length 0, never does.
   [[nodiscard]] bool adds_something(std::size_t c) const {
     if (!of_faces[faces[c]].area) return false;
     if (weighting == Weighting::kUniform) return true;
@@ -252,7 +255,8 @@ struct Element {
     return apart(v.next) && apart(v.previous);
   }
 
-  // Returns an upper bound of the angle between the fit and the element over [t0, t1], or pi if none is proven.
+  // Returns an upper bound, in radians, of the angle between the fit and the element's normal over [t0, t1]. Returns pi
+  // if no bound is proven.
   [[nodiscard]] double bound(double t0, double t1) const {
     const double centre = t0 + (t1 - t0) / 2, half = (t1 - t0) / 2;
     const Products series = products(centre, Interval{-half, half});
@@ -262,8 +266,8 @@ struct Element {
     return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
-  // Returns the bound over the whole segment. Pieces are halved until their bounds are close to `goal`. If a piece of
-  // the smallest allowed length has no bound, the result is pi.
+  // Returns a bound of this angle over the whole segment. Pieces are halved until their bounds are close to `goal`, in
+  // radians. If a piece of the smallest allowed length has no bound, the result is pi.
   [[nodiscard]] double bound_over_segment(double goal) const {
     struct Piece {
       double t0, t1;
@@ -292,8 +296,8 @@ struct Element {
   }
 };
 
-// Returns true if all corners belong to one face, whose direction the sum then has. The weights of a triangle vanish
-// only with its area; for other polygons, the result is true only for uniform weights.
+// Returns true if all corners belong to one face and the sum certainly has the direction of this face. The weights of a
+// triangle vanish only with its area. For other polygons, the result is true only for uniform weights.
 bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
   if (faces.empty()) return false;
   for (const std::uint32_t face : faces) {
@@ -314,7 +318,7 @@ WeightingFit fit_weighting(const Segment& segment, const NormalGroups& groups, W
   fit.normals.resize(groups.size());
   fit.bounds.resize(groups.size());
 
-  // Make the faces once: as intervals, and at the times of the samples.
+  // The normals of all faces are computed once: as intervals, and at the times of the samples.
   const std::size_t face_count = segment.topology->face_count();
   std::vector<IntervalNormals> intervals(face_count);
   std::vector<std::vector<Vec3d>> of_faces(kSamples + 1, std::vector<Vec3d>(face_count));

@@ -1,4 +1,5 @@
-// Adds scaled rows to rows one by one, and computes unit normals in lanes of double, one element per lane.
+// Adds multiples of rows to other rows, one row at a time. Computes unit normals in lanes of double, with one element
+// per lane.
 #include "normals/blend/kernels/blend_rows.h"
 
 #include <algorithm>
@@ -41,13 +42,14 @@ void AddPairRows(std::span<const std::uint32_t> elements, const float* coefficie
   }
 }
 
-// Loads three floats as x y z 0, without reading beyond them.
+// Loads three floats as the row x y z 0, without reading beyond the third float.
 HWY_INLINE DoubleRow LoadLastThree(const float* from) {
   const float row[kBlendLanes] = {from[0], from[1], from[2], 0};
   return LoadDoubleRow(row);
 }
 
-// Makes a factor that clears the fourth component, which belongs to the next three floats.
+// Returns a row that multiplies x, y and z by a factor and the fourth component by 0. The fourth float that was loaded
+// belongs to the next vector.
 HWY_INLINE DoubleRow ThreeTimes(double factor) {
   const double row[kBlendLanes] = {factor, factor, factor, 0};
   return LoadDoubleRow(row);
@@ -74,7 +76,7 @@ void ResetPoints(std::span<const float> base, IndexRange vertices, double* point
   StoreDoubleRow(LoadLastThree(base.data() + 3 * last), RowAt(points, last));
 }
 
-// Moves one row in float32.
+// Adds a multiple of a delta to one point, in float32.
 HWY_INLINE void MoveFloatPoint(const float* delta, float weight, float* point) {
   for (std::size_t k = 0; k < 3; ++k) point[k] += weight * delta[k];
 }
@@ -86,7 +88,8 @@ void MoveFloatPoints(std::span<const std::uint32_t> vertices, const float* delta
   for (std::size_t i = 0; i < last; ++i)
     MoveFloatPoint(deltas + 3 * i, weight, points + kBlendLanes * std::size_t{vertices[i]});
 #else
-  // The fourth component of a point stays as it is, since in the row of deltas it belongs to the next three floats.
+  // The fourth component of a point must not change. In the row of deltas, it belongs to the next three floats, so its
+  // factor is 0.
   const hn::FixedTag<float, 4> tag;
   const float factors[4] = {weight, weight, weight, 0};
   const auto w = hn::LoadU(tag, factors);
@@ -108,12 +111,12 @@ void ResetFloatPoints(std::span<const float> base, IndexRange vertices, float* p
 
 HWY_INLINE Doubles Squared(Doubles v) { return hn::Mul(v, v); }
 
-// Writes n / |n| for the elements from `first` on whose bits are set in `elements`. Returns the bits of the elements
-// that are beyond the limits.
+// Writes n / |n| for kDoubleLanes elements from `first` on, as far as their bits are set in `elements`. Returns the
+// bits of those elements whose n or error is beyond the limits.
 HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t first, std::uint32_t elements,
                                    const UnitLimits& limits, const VectorView<float>& result) {
   const Doubles square = Dot(n, n);
-  // Both comparisons are false for NaN, which is then beyond the limits.
+  // Both comparisons are false for NaN, so NaN counts as beyond the limits.
   const auto is_usual = hn::And(hn::Ge(square, hn::Set(kDoubles, limits.smallest_square)),
                                 hn::Le(square, hn::Set(kDoubles, limits.largest_square)));
   const Doubles most = hn::Mul(hn::Set(kDoubles, limits.largest_error * limits.largest_error), square);
@@ -130,8 +133,8 @@ HWY_INLINE std::uint32_t WriteUnit(const Doubles3& n, Doubles error, std::size_t
   return elements & ~good;
 }
 
-// Calls body(first, bits) for each kDoubleLanes elements of a word with at least one bit set. Returns the bits that
-// body returned.
+// Calls body(first, bits) for each group of kDoubleLanes elements of a word, if at least one of their bits is set.
+// Returns the bits that the calls returned, at their places in the word.
 template <class Body>
 HWY_INLINE std::uint64_t ForLanesOfWord(std::uint64_t elements, const Body& body) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kDoubleLanes) - 1;
@@ -155,8 +158,8 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
   });
 }
 
-// The factors that bound the error of a sum over a path, from the largest component of its edges or of half the
-// distance of two neighbours whose product is added.
+// The factors that give a bound of the error of a sum over a path. They are multiplied by the largest component of the
+// path's edges and of half the distances between neighbours whose products are added.
 struct RingError {
   double of_square, of_edge, alone;
 
@@ -184,7 +187,7 @@ std::uint64_t UnitNormalsOfRings(const RingSlices& slices, std::uint64_t element
       indices += kRingLanes;
       return ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(points, row[i]); }).xyz;
     };
-    // A NaN in an edge makes the sum NaN. Then `largest` does not matter.
+    // If an edge has a NaN, the sum is NaN, and `largest` does not matter.
     const Doubles3 centre = next_row();
     Doubles3 before = next_row();
     const auto largest_of = [](const Doubles3& v) HWY_ATTR { return LargerAbs(LargerAbs(v.x, v.y), v.z); };

@@ -1,15 +1,16 @@
-/// Sixteen elements that one kernel computes and another kernel packs into NormalCurves.
+/// Sixteen elements whose control normals one kernel computes, and that another kernel packs into NormalCurves.
 ///
 ///     normals     n0.x of 16 elements, n0.y of 16, n0.z, m.x, m.y, m.z, n1.x, n1.y, n1.z
 ///     magnitude   for each element, at least the sum of the absolute products that went into any one component
 ///     degree      for each element, as degree() in control_normals.h finds it
 ///
-/// In tiles that are computed entirely in float32, `magnitude` bounds the errors of components, and `degree` may be
-/// smaller. The bound then includes the error of leaving out m, or m and n1.
+/// In tiles that are computed entirely in float32, `magnitude` bounds the error of every component, and `degree` may be
+/// smaller than the true degree. The bound then includes the error of leaving out m, or m and n1.
 ///
-/// All other tiles are computed in double and rounded once. A component that is smaller than the rounding error of its
-/// products (far below 2^-26 of `magnitude`) may be noise in such a tile. The reader must not trust it, and computes
-/// the element in double instead, where noise becomes zero. Lanes beyond the last element repeat it.
+/// All other tiles are computed in double and rounded once. In such a tile, a component that is smaller than the
+/// rounding error of its products (far below 2^-26 of `magnitude`) may be noise. The code that reads the tile must not
+/// trust such a component, and computes the element in double instead, where noise becomes zero. Lanes beyond the last
+/// element repeat the last element.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_CONTROL_TILE_H_
 
@@ -28,7 +29,7 @@ struct alignas(64) ControlTile {
   std::int32_t degree[kTile];
 };
 
-/// Rounds an element into a lane of a tile.
+/// Writes an element, rounded to float32, into a lane of a tile.
 inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) noexcept {
   std::size_t plane = 0;
   for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {

@@ -1,4 +1,4 @@
-/// Control normals of sixteen faces in double, from which tiles and sums are computed.
+/// The control normals of sixteen faces in double, from which tiles in float32 and sums are computed.
 #ifndef CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 #define CHRONORMAL_NORMALS_CONTROL_KERNELS_EXACT_TILE_H_
 
@@ -11,42 +11,44 @@
 
 namespace chronormal::inline internal {
 
-/// The normals of sixteen faces in double: planes as in ControlTile, with the bits of face_control_normals().
+/// The control normals of sixteen faces in double. They are planes as in ControlTile, with the bits of
+/// face_control_normals().
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
 };
 
-/// Sixteen elements like BoundedNormals: control normals in double, with bounds on their errors.
+/// The control normals of sixteen elements in double, and bounds of their errors, as in BoundedNormals.
 struct BoundedTile : ExactTile {
-  double errors[3][kTile];     ///< bound of the error of any component of n0, m and n1
-  std::uint32_t left_out = 0;  ///< bits of elements that are left to others
+  double errors[3][kTile];     ///< bounds of the errors of all components of n0, of m and of n1
+  std::uint32_t left_out = 0;  ///< bits of the elements that other code must compute
 };
 
-/// Sixteen faces with the length of the longest of their edges from the first corner.
+/// The control normals of sixteen faces, and the lengths of their edges.
 struct EdgedTile : ExactTile {
-  /// A bound of every component of these edges at both ends of the segment; infinity if a face is not a triangle.
+  /// For each face, a bound of every component of the edges from its first corner, at both ends of the segment. It is
+  /// infinity if the face is not a triangle.
   float longest[kTile];
 };
 
 /// Writes an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
-/// The share of the magnitude of a triangle that is more than twice its rounding error.
+/// A relative error, compared with the magnitude of a triangle, that is more than twice the triangle's rounding error.
 inline constexpr double kErrorAbove = 0x1p-47;
 
-/// Returns a float that is not less than a magnitude, and 0 for 0.
+/// Returns a float that is not less than a magnitude. It is 0 for 0.
 [[nodiscard]] float magnitude_above(double magnitude) noexcept;
 
-/// Writes one face into one lane, with any number of corners.
+/// Writes one face, with any number of corners, into one lane.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// The share of the magnitude of a triangle above which a control normal is hardly changed by rounding
-/// (kLargestRounding).
+/// The size of a control normal, relative to the magnitude of its triangle, above which rounding hardly changes the
+/// control normal (kLargestRounding).
 inline constexpr double kCertainAbove = 0x1p-22;
 
-/// Writes one triangle into one lane. Sets components to zero that are only rounding error, and computes control
-/// normals in integers if double is not enough. Keeps the magnitude if it is finite.
+/// Writes one triangle into one lane. Components that are only rounding error become zero, and integers compute a
+/// control normal if double is not precise enough. A magnitude that is finite does not change.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

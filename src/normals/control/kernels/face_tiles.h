@@ -13,27 +13,27 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the tiles of a range of faces: tile k holds the faces faces.first + 16 k ... (see ControlTile). Values and
-/// degrees are those of face_control_normals(), with the values rounded to float32. tiles must have ceil(faces.count /
-/// 16) elements; faces.count > 0
+/// Writes the tiles of a range of faces. Tile k has the faces from faces.first + 16 k on (see ControlTile). Values and
+/// degrees are those of face_control_normals(), with the values rounded to float32. Preconditions: tiles has
+/// ceil(faces.count / 16) elements; faces.count > 0.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
 /// Writes tiles, and for each tile its values before rounding, which have the bits of face_control_normals(), and its
-/// longest edges. exact must have as many elements as tiles
+/// longest edges. Precondition: exact has as many elements as tiles.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 
-/// Writes the tiles of triangles, and also bounds on the errors of the values before rounding. `exact` must have as
-/// many elements as `tiles`
+/// Writes the tiles of triangles, and for each tile its values before rounding and bounds of their errors.
+/// Precondition: `exact` has as many elements as `tiles`.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<BoundedTile> exact) noexcept;
 
-/// Writes the tiles of triangles entirely in float32. `magnitude` bounds the error of any component. `degree` is 2 if
-/// the curve bends by more than that error, so that its degree is certainly 2, and otherwise at most 1. The
-/// preconditions are those of face_control_tiles()
+/// Writes the tiles of triangles, computed entirely in float32. `magnitude` bounds the error of any component. `degree`
+/// is 2 if the curve bends by more than that error, so that its degree is certainly 2; otherwise it is at most 1. The
+/// preconditions are those of face_control_tiles().
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// Writes the results of face_control_normals() for a mesh of triangles.
+/// Writes the control normals of a mesh of triangles, as face_control_normals() does.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-// Finds the degrees of sixteen elements: in double, as degree() in control_normals.h does, or in float32, which can
-// only tell if a degree is certainly 2.
+// Finds the degrees of sixteen elements. In double, it works like degree() in control_normals.h. In float32, it can
+// only tell that a degree is certainly 2.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 
@@ -23,9 +23,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Sets the degrees to 2 and returns true if float32 alone proves that all degrees are 2. The error of float32 in n0 - 2
-// m + n1 is below 2^-20 of the largest component. This is far above the tolerance of degree(), but in most motions n0 -
-// 2 m + n1 is larger still.
+// Sets the degrees of a tile to 2 and returns true if float32 alone proves that all degrees are 2. The error of float32
+// in n0 - 2 m + n1 is below 2^-20 of the largest component. This is far above the tolerance of degree(), but in most
+// motions n0 - 2 m + n1 is larger still.
 HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   const Floats share = hn::Set(kFloats, 0x1p-19f), smallest_size = hn::Set(kFloats, 0x1p-100f);
   bool all = true;
@@ -43,20 +43,20 @@ HWY_INLINE bool SetDegreesByFloats(ControlTile& tile) {
   return all;
 }
 
-// Returns the error of a sum of this many products in float32, relative to the absolute products (docs/theory.md,
-// section 13). It includes the roundings of a product and of its additions to the sum.
+// Returns the error of a sum of `products` products in float32, relative to the absolute products (docs/theory.md,
+// section 13). It includes the roundings of each product and of its additions to the sum.
 HWY_INLINE Floats RoundingsInFloat(std::size_t products) {
   return hn::Set(kFloats, 0x1p-24f * static_cast<float>(products + 5));
 }
 
-// The control normals of one vector of lanes in float32.
+// The control normals of some elements in float32, with one element per lane.
 struct FloatControlLanes {
   Lanes3 n0, m, n1;
 };
 
-// Stores control normals in float32, with the error of their components as magnitude. The degree is 0 if all three are
-// the same, and 2 if the curve bends by more than eight errors. If it bends by less, the degree is 1, and the error
-// increases by a quarter of the bend and some roundings.
+// Stores control normals in float32, with a bound of the error of their components as magnitude. The degree is 0 if all
+// three control normals are the same, and 2 if the curve bends by more than eight errors. Otherwise the degree is 1,
+// and the bound is increased by a quarter of the bend and some roundings.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {

@@ -3,8 +3,8 @@
 // This file is included once for each instruction set, like lanes-inl.h. The operations are those of
 // polygon_control_normals() in the same order, so the values have the same bits.
 //
-// Positions in rows, as (n, 3), are loaded point by point, 16 bytes each, and transposed in registers. The 16 bytes of
-// the last point would end beyond its array, so triangles with that point are loaded differently.
+// If positions are rows of three floats, each point is loaded as 16 bytes, and the points are transposed in registers.
+// The 16 bytes of the last point would end beyond its array, so triangles that use this point are loaded differently.
 
 #include "simd/highway-inl.h"
 
@@ -47,16 +47,16 @@ HWY_INLINE auto MaxAbs(const V& a, const V& b, const V& c) {
 }
 HWY_INLINE Doubles MinAbs(const Doubles3& v) { return SmallerAbs(SmallerAbs(v.x, v.y), v.z); }
 
-// Selects how points are loaded: as 16 bytes of a row whose first three floats are x y z, for rows that are packed,
-// have both ends side by side, or have any stride; as 12 bytes of any row; or one coordinate after the other, for any
-// layout.
+// The ways of loading points. kPacked, kEnds and kRow load the 16 bytes of a row that begins with x y z: in packed
+// rows, in rows with both ends side by side, and in rows of any stride. kLastRow loads only 12 bytes of a row. kAny
+// loads one coordinate after the other, in any layout.
 enum class PointAccess { kPacked, kEnds, kRow, kLastRow, kAny };
 
 constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
 
 constexpr bool LoadsRows(PointAccess access) { return access < PointAccess::kLastRow; }
 
-// Returns the access that works for all points, except perhaps for the last one.
+// Returns the access that works for all points of a segment, except perhaps for the last point.
 HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   const auto is_rows = [](const VectorView<const float>& points) {
     return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
@@ -69,7 +69,7 @@ HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   return both_are(kEndsStride) ? PointAccess::kEnds : PointAccess::kRow;
 }
 
-// Returns the distance between two points in floats, as a constant if it is known.
+// Returns the number of floats from one point to the next, as a constant if the access determines it.
 template <PointAccess kAccess>
 HWY_INLINE std::size_t StrideOf(const VectorView<const float>& points) {
   if constexpr (kAccess == PointAccess::kPacked) return 3;
@@ -89,7 +89,7 @@ HWY_INLINE Row LoadPoint(const VectorView<const float>& points, std::uint32_t ve
 }
 
 #if HWY_TARGET != HWY_SCALAR
-// Loads a point into each 128 bits of a vector.
+// Loads one point into each 128 bits of a vector.
 template <PointAccess kAccess>
 HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::uint32_t* vertices) {
   if constexpr (LoadsRows(kAccess)) {
@@ -100,13 +100,13 @@ HWY_INLINE Floats LoadPoints(const VectorView<const float>& points, const std::u
 }
 #endif
 
-// The positions of the triangles of one vector of lanes at both ends.
+// The positions of some triangles at both ends of the segment, with one triangle per lane.
 struct TriangleLanes {
   Lanes3 a0, b0, c0, a1, b1, c1;
 };
 
-// Loads the positions of one vertex of each lane at both ends. The vertex of the next lane is kStep entries later. Both
-// ends are loaded together, so that every index is read once.
+// Loads the positions of one vertex per lane at both ends of the segment. The vertices of neighbouring lanes are kStep
+// entries apart in the list. Both ends are loaded together, so that every index is read once.
 template <PointAccess kAccess, std::size_t kStep>
 HWY_INLINE void LoadBothEnds(const Segment& segment, const std::uint32_t* vertices, Lanes3& from, Lanes3& to) {
 #if HWY_TARGET == HWY_SCALAR
@@ -134,25 +134,25 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
   return p;
 }
 
-// Returns an upper bound of the sum of the absolute products in any component of e x f, whichever ends e and f belong
-// to.
+// Returns an upper bound of the sum of the absolute products in any component of e x f, where e and f are edges at any
+// ends of the segment.
 HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1);
   const Floats f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  // The factor is slightly more than 2, for the rounding of the product, and a tiny number is added in case the product
+  // The factor is slightly more than 2 because the product is rounded. A tiny number is added in case the product
   // underflows.
   const Floats tiny = hn::Min(hn::Min(e, f), hn::Set(kFloats, std::numeric_limits<float>::min()));
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Returns an upper bound of the components of the edges from the first corner, at both ends.
+// Returns an upper bound of the components of the edges from the first corner, at both ends of the segment.
 HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the differences are rounded
+  return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the factor is for the rounding of the differences
 }
 
-// Returns the bounds of MagnitudeAbove() separately for n0, m and n1, each from the ends on which it depends. The bound
-// for m covers both of its products.
+// Returns the bounds of MagnitudeAbove() separately for n0, m and n1. Each is computed from the ends of the segment on
+// which the control normal depends. The bound for m covers both of its products.
 HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
   const Floats f0 = MaxAbs(p.c0 - p.a0), f1 = MaxAbs(p.c1 - p.a1);
@@ -163,8 +163,8 @@ HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   return {above(e0, f0), hn::Add(above(e0, f1), above(e1, f0)), above(e1, f1)};
 }
 
-// Writes half of the lanes into tile. Returns true if a value may be only rounding error or zero, or if a vector is
-// hardly larger than its rounding error.
+// Writes half of the lanes into a tile. Returns true if a component may be zero or only rounding error, or if a vector
+// is hardly larger than its rounding error.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);
@@ -185,7 +185,7 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
   return !hn::AllTrue(kDoubles, hn::Gt(smallest, certain));
 }
 
-// Stores the errors that CrossSum::error() bounds, for half of the lanes.
+// Stores the bounds of the errors of half of the lanes, which are those of CrossSum::error().
 template <int kHalf>
 HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], std::size_t lane) {
   const Doubles3 e = Scale(hn::Set(kDoubles, 12 * kUnitRoundoff), ToDouble<kHalf>(magnitudes));
@@ -194,8 +194,8 @@ HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], s
   hn::Store(e.z, kDoubles, errors[2] + lane);
 }
 
-// Turns -0 into 0. Recomputes every triangle with a component that may be only rounding error, or with a vector to
-// which rounding errors are significant.
+// Turns -0 into 0. Recomputes every triangle that has a component which may be only rounding error, or a vector that
+// rounding errors could turn.
 HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t* corners, ExactTile& tile) {
   const Doubles zero = hn::Zero(kDoubles);
   for (std::size_t lane = 0; lane < kTile; lane += kDoubleLanes) {
@@ -222,7 +222,8 @@ HWY_NOINLINE inline void SettleNoise(const Segment& segment, const std::uint32_t
   }
 }
 
-// The data of a tile besides its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
+// The results for a tile besides its normals: the errors of a BoundedTile, or the longest edges of an EdgedTile.
+// nullptr stands for results that are not needed.
 struct TileExtras {
   double (*errors)[kTile] = nullptr;
   float* longest = nullptr;
@@ -247,7 +248,7 @@ void TriangleTile(const Segment& segment, const std::uint32_t* corners, ExactTil
   if (noise) SettleNoise(segment, corners, tile);
 }
 
-// Prefetches both ends of `count` vertices of (n, 3) positions before they are loaded.
+// Prefetches the positions of `count` vertices at both ends of the segment, which must be rows of three floats.
 HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vertices, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t vertex = vertices[i];
@@ -259,15 +260,15 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 template <PointAccess kAccess>
 using AccessConstant = std::integral_constant<PointAccess, kAccess>;
 
-// Calls body(access), with the fastest access that is possible for sixteen triangles as a constant. corners are their
-// 48 vertices. Returns true if these are far from each other in memory.
+// Calls body(access) with the fastest access that works for sixteen triangles, as a constant. `corners` are their 48
+// vertices. Returns true if these vertices are far from each other in memory.
 template <class Body>
 HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {
     body(AccessConstant<PointAccess::kAny>());
     return false;
   }
-  constexpr std::uint32_t kFar = 1u << 14;  // number of positions that exceed a cache near the core
+  constexpr std::uint32_t kFar = 1u << 14;  // positions of this many vertices exceed a cache near the core
   const hn::RebindToUnsigned<FloatTag> tag;
   auto highest = hn::LoadU(tag, corners), lowest = highest;
   for (std::size_t i = kLanes; i < 3 * kTile; i += kLanes) {
@@ -288,13 +289,13 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
   return !hn::AllTrue(tag, hn::Eq(far_bits, hn::Zero(tag)));
 }
 
-// Calls body(access, corners) for the triangles first ... first + 15, with the access that they allow as a constant and
-// their 48 vertices. Triangles from `end` on repeat the last one. If vertices are far from each other, prefetches the
-// vertices of the next triangles. first < end
+// Calls body(access, corners) for the triangles first ... first + 15. `access` is the fastest access that works for
+// them, as a constant, and `corners` are their 48 vertices. From `end` on, the last triangle is repeated. If the
+// vertices are far from each other in memory, those of later triangles are prefetched. Precondition: first < end.
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {
-  constexpr std::size_t kAhead = 2;  // tiles
+  constexpr std::size_t kAhead = 2;  // number of tiles
   const Topology& topology = *segment.topology;
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {
@@ -308,8 +309,8 @@ HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::s
   WithAccess(segment, access, repeated, [&](auto known) HWY_ATTR { body(known, repeated); });
 }
 
-// Writes the faces first ... first + 15; faces from `end` on repeat the one before. Extras are written for triangles
-// only. first < end
+// Writes the control normals of the faces first ... first + 15 into a tile. From `end` on, the last face is repeated.
+// Extras are written for triangles only. Precondition: first < end.
 HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                          ExactTile& tile, const TileExtras& extras = {}) {
   if (!fits_lanes(segment)) {
@@ -321,7 +322,7 @@ HWY_INLINE void FaceTile(const Segment& segment, PointAccess access, std::size_t
   });
 }
 
-// Stores sixteen rows of nine doubles: the components of a face.
+// Stores the components of sixteen faces as sixteen rows of nine doubles.
 HWY_INLINE void StoreRows(const ExactTile& tile, double* rows) {
   constexpr std::size_t kRow = 9;
 #if HWY_TARGET == HWY_SCALAR

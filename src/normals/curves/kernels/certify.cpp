@@ -1,4 +1,5 @@
-// Proves for sixteen elements in lanes of double how short n(t) gets, with the same operations as certificate.h.
+// Proves for sixteen elements, in lanes of double, that n(t) stays long enough. The operations are those of
+// certificate.h.
 #include "normals/curves/kernels/certify.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ HWY_INLINE Doubles AllOf(double value) { return hn::Set(kDoubles, value); }
 HWY_INLINE Doubles LargestOf(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 HWY_INLINE bool None(DoubleMask mask) { return hn::AllFalse(kDoubles, mask); }
 
-// A quadratic of vectors and a quadratic of numbers, both by their Bernstein coefficients.
+// The Bernstein coefficients of a quadratic of vectors, and of a quadratic of numbers, in each lane.
 struct Vectors {
   Doubles3 n0, m, n1;
 };
@@ -38,7 +39,8 @@ struct Quartic {
   Doubles at[5];
 };
 
-// Returns the lanes among `open` for which halves of p show that p >= 0 on [0, 1], as certainly_not_negative() does.
+// Returns the lanes among `open` in which it is proven that p >= 0 on [0, 1]. The interval is halved, as by
+// certainly_not_negative().
 template <int kDepth>
 HWY_NOINLINE DoubleMask CertainlyNotNegative(const Quartic& p, DoubleMask open) {
   const Doubles zero = hn::Zero(kDoubles), half = AllOf(0.5);
@@ -63,7 +65,8 @@ HWY_NOINLINE DoubleMask CertainlyNotNegative(const Quartic& p, DoubleMask open) 
   }
 }
 
-// Returns the square of a quadratic. product(i, j) is symmetric, so each product of two coefficients is taken once.
+// Returns the square of a quadratic. product(i, j) multiplies two coefficients and is symmetric, so each product is
+// computed once.
 template <class Product>
 HWY_INLINE Quartic Square(const Product& product) {
   const Doubles sixth = AllOf(1.0 / 6), two_thirds = AllOf(4.0 / 6), ends = hn::Mul(sixth, product(0, 2));
@@ -80,7 +83,7 @@ HWY_INLINE Quartic Square(const Vectors& n) {
   return Square([&at](std::size_t i, std::size_t j) HWY_ATTR { return Dot(at[i], at[j]); });
 }
 
-// Returns the lanes of `open` in which ratio |n(t)| >= limit(t) at every t.
+// Returns the lanes among `open` in which it is proven that ratio |n(t)| >= limit(t) at every t.
 HWY_INLINE DoubleMask StaysAbove(const Quartic& n_square, double ratio, const Quartic& limit_square, DoubleMask open) {
   if (None(open)) return open;
   const Doubles ratio_square = AllOf(ratio * ratio);
@@ -98,8 +101,8 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// A comparison of |n(t)| with its limits at a few instants, which is far cheaper than a proof. If n(t) is too short at
-// one of these instants, no proof can succeed.
+// Compares |n(t)| with its limits at a few instants, which costs far less than a proof. If n(t) is too short at one of
+// these instants, no proof can succeed.
 class Glance {
  public:
   HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {
@@ -114,15 +117,15 @@ class Glance {
     }
   }
 
-  // Returns the lanes in which ratio |n(t)| >= 1 may hold at every t.
+  // Returns the lanes in which ratio |n(t)| >= 1 holds at these instants, so that it may hold at every t.
   HWY_INLINE DoubleMask MayStayAboveOne(double ratio) const {
     Doubles smallest = square_[0];
     for (std::size_t i = 1; i < kCount; ++i) smallest = hn::Min(smallest, square_[i]);
     return hn::Ge(hn::Mul(AllOf(kUp * ratio * ratio), smallest), AllOf(1));
   }
 
-  // Returns the lanes in which ratio |n(t)| >= sum w_k |c_k| may hold at every t. The square of that sum is larger than
-  // the sum of squares.
+  // Returns the lanes in which ratio |n(t)| >= sum w_k |c_k| may hold at every t. The limits here are sums of squares,
+  // which are smaller than the square of that sum.
   HWY_INLINE DoubleMask MayStayAbove(double ratio) const {
     const Doubles factor = AllOf(kUp * ratio * ratio);
     auto may = hn::Ge(hn::Mul(factor, square_[0]), limit_[0]);
@@ -132,7 +135,7 @@ class Glance {
 
  private:
   static constexpr std::size_t kCount = std::size(kInstants);
-  static constexpr double kUp = 1 + 0x1p-40;  // makes up for all roundings
+  static constexpr double kUp = 1 + 0x1p-40;  // allows for all roundings
   Doubles square_[kCount], limit_[kCount];
 };
 
@@ -142,7 +145,7 @@ HWY_INLINE Numbers LengthsOf(const Vectors& n, const Quartic& n_square) {
   return {hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
 }
 
-// Computes what stays_certain() computes, for control normals that are scaled to 1.
+// Does what stays_certain() does, for control normals that are scaled to a size of 1.
 HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, Doubles certain, DoubleMask open) {
   const Doubles share = hn::Mul(AllOf(4), certain);
   const Doubles height = hn::Abs(Dot(n.n0, Cross(n.m, n.n1)));
@@ -181,7 +184,8 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Vectors given{VectorAt(tile, 0, lane), VectorAt(tile, 3, lane), VectorAt(tile, 6, lane)};
   const Doubles size0 = LargestOf(given.n0), size_m = LargestOf(given.m), size1 = LargestOf(given.n1);
   const Doubles largest = hn::Max(hn::Max(size0, size_m), size1);
-  // The maximum of two numbers may be a number although one of the two is NaN, but their sum is then NaN.
+  // A NaN may be lost in the maximum of two numbers. So the sum of all numbers is computed, which is NaN if one of them
+  // is.
   const Doubles3 sums = (given.n0 + given.m) + given.n1;
   const Doubles sum = hn::Add(hn::Add(sums.x, sums.y), sums.z);
   const auto in_range =
@@ -229,7 +233,8 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const std::uint32_t flagged = BitsOf(kDoubles, open) & asked;
   if (flagged == 0) return;
   const Doubles certain = hn::Max(AllOf(0x1p-26), hn::Mul(AllOf(0x1p22), share));
-  // The power of two is the inverse of the largest component, up to a factor of 2. Both are normal numbers here.
+  // Elements are scaled by a power of two, which is the inverse of their largest component up to a factor of 2. Both
+  // are normal numbers here.
   const hn::RebindToSigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, largest), hn::Set(bits, std::int64_t{0x7FF} << 52));
   const Doubles power = hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, std::int64_t{0x7FE} << 52), exponent));

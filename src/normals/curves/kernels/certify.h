@@ -1,5 +1,5 @@
-/// The proofs of certificate.h for sixteen elements at a time, for elements that the quick test in float32 did not
-/// settle.
+/// Does the proofs of certificate.h for sixteen elements at a time. They are for elements that the quick test in
+/// float32 did not settle.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_CERTIFY_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_CERTIFY_H_
 
@@ -13,24 +13,27 @@
 
 namespace chronormal::inline internal {
 
-/// The knowledge about the requested elements of a tile. Bit i of each set stands for element i.
+/// The results for those elements of a tile that were asked for. Each number is a set of elements, in which bit i is
+/// element i.
 struct TileCertificates {
-  FlaggedTile scaled;                    ///< the flagged elements, as in FlaggedNormals; other lanes hold anything
-  std::int16_t exponents[kTile];         ///< exponents of the flagged elements, as in FlaggedNormals
-  std::uint32_t known = 0;               ///< decided elements; the others are huge, tiny, or mostly noise
-  std::uint32_t flagged = 0;             ///< the known elements for which float32 does not suffice
-  std::uint32_t needs_exact = 0;         ///< the flagged elements for which double does not suffice at every t
-  Precision precision = Precision::k11;  ///< the precision of all known elements that are not flagged
+  /// The flagged elements, as in FlaggedNormals; the other lanes have no meaning.
+  FlaggedTile scaled;
+  std::int16_t exponents[kTile];  ///< exponents of the flagged elements, as in FlaggedNormals
+  std::uint32_t known = 0;        ///< elements that were decided; the others are huge, tiny, or mostly noise
+  std::uint32_t flagged = 0;      ///< known elements for which float32 does not suffice
+  std::uint32_t needs_exact = 0;  ///< flagged elements for which double does not suffice at every t
+  /// The lowest precision that suffices for all known elements that are not flagged.
+  Precision precision = Precision::k11;
 
-  /// Forgets all knowledge about the elements.
+  /// Removes the results for all elements.
   void clear() noexcept {
     known = flagged = needs_exact = 0;
     precision = Precision::k11;
   }
 };
 
-/// Decides as precision_for(), smallest_certain() and stays_certain() do. The bits of `asked` are the elements in
-/// question.
+/// Decides for some elements what precision_for(), smallest_certain() and stays_certain() would decide. The elements
+/// are those whose bits are set in `asked`.
 void certify_tile(const BoundedTile& tile, const PrecisionLimits& limits, std::uint32_t asked,
                   TileCertificates& result) noexcept;
 

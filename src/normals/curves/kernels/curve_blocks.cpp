@@ -8,13 +8,14 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kLargestWeight = 32767;
-// The largest sum of weights for which weighted sums of control normals of up to 32767 stay in the range of int32.
+// The largest sum of integer weights. Up to this sum, weighted sums of control normals of up to 32767 stay in the range
+// of int32.
 constexpr double kLargestSum = 65532;
 
 std::int32_t pair_of(std::int32_t low, std::int32_t high) { return (low & 0xFFFF) | (high * 65536); }
 
-// Returns integers in the ratios of the weights. A direction depends on ratios only, so the function tries some scales
-// and takes the one that rounds least.
+// Returns integers whose ratios are nearly those of the weights. A direction depends only on ratios, so the function
+// tries several scales and takes the one with the smallest rounding errors.
 template <std::size_t kCount>
 std::array<std::int32_t, kCount> integer_weights(const std::array<double, kCount>& weights) {
   constexpr int kTrials = 16, kStep = 256;

@@ -1,8 +1,9 @@
-/// The layout of NormalCurves: elements in blocks of 16, each of one kind, and runs of neighbouring blocks of one kind.
+/// The layout of NormalCurves. Elements are in blocks of 16, each block is of one kind, and neighbouring blocks of one
+/// kind form runs.
 ///
-/// A block is a few planes of 16 numbers, with element i in lane i. c(k) are the control normals; M is the largest
-/// absolute component of an element. "int16 pairs" are 16 words of 32 bits with one number in each half, the first in
-/// the low half.
+/// A block is a few planes of 16 numbers, with element i in lane i. c(k) are the control normals, M is the largest
+/// absolute component of an element, and q is the integer that is stored. "int16 pairs" are 16 words of 32 bits. A word
+/// has two numbers of 16 bits, the first in the low half.
 ///
 ///     kUnit           u.x u.y u.z                               float32, length 1
 ///     kUnitLength     u.x u.y u.z |n|                           float32
@@ -42,19 +43,20 @@ enum class BlockKind : int {
   kNone,
 };
 
-/// Returns the number of bytes for each element.
+/// Returns the number of bytes per element of a block.
 [[nodiscard]] constexpr std::size_t bytes_of(BlockKind kind) {
   constexpr std::size_t bytes[] = {12, 16, 12, 12, 20, 20, 24, 36, 0};
   return bytes[static_cast<int>(kind)];
 }
 
-/// The precision with which the elements of a block are kept, whatever their degree.
+/// The precision with which a block stores its elements, whatever their degree.
 enum class Precision : std::uint8_t { k11, k16, kScaled16, k32 };
 
 /// The degree of a block whose elements are all flagged.
 inline constexpr int kNoDegree = -1;
 
-/// Returns the kind for elements of a degree. with_lengths asks for lengths if all are of degree 0.
+/// Returns the kind of a block for elements of a degree. with_lengths asks for lengths, which matters only for degree
+/// 0.
 [[nodiscard]] constexpr BlockKind kind_for(Precision precision, int degree, bool with_lengths) {
   if (degree == kNoDegree) return BlockKind::kNone;
   if (degree == 0) return with_lengths ? BlockKind::kUnitLength : BlockKind::kUnit;
@@ -71,28 +73,29 @@ inline constexpr int kNoDegree = -1;
   return degree == 1 ? BlockKind::kLinear32 : BlockKind::kQuadratic32;
 }
 
-// The range to which blocks are scaled: no component is above 2^50, and n0 or n1 is below 2^-52 in no element that is
-// stored in float32. Then |n(t)|^2 stays in the range of float32, since the smallest |n(t)| is 2^-53 / 64.
+// The range to which blocks are scaled. No component is above 2^50, and no n0 or n1 of an element in float32 is below
+// 2^-52. |n(t)|^2 then stays in the range of float32, since the smallest |n(t)| is 2^-53 / 64.
 inline constexpr int kLargestExponent = 50;
 inline constexpr double kLargestComponent = 0x1p50;
 inline constexpr double kSmallestEnd = 0x1p-52;
 
 inline constexpr int kMaxScaleExponent = 31;
 
-/// The values that all elements share at one t, in the form that each kind needs.
+/// The weights that all elements share at one t, in the form that each kind of block needs.
 struct CurveWeights {
-  float linear[2];              ///< weights of n0, n1
-  float quadratic[3];           ///< weights of n0, m, n1
-  std::int32_t linear16 = 0;    ///< int16 pair: weights of n0, n1, in units of a common scale
-  std::int32_t ends16 = 0;      ///< int16 pair: weights of n0, n1
-  std::int32_t middle16 = 0;    ///< weight of m, in the same units
-  std::int32_t middle_low = 0;  ///< a 32nd of middle16
+  float linear[2];              ///< weights of n0 and n1 of a linear curve
+  float quadratic[3];           ///< weights of n0, m and n1 of a quadratic
+  std::int32_t linear16 = 0;    ///< int16 pair: weights of n0 and n1, in units of a scale
+  std::int32_t ends16 = 0;      ///< int16 pair: weights of n0 and n1 of a quadratic, in units of a scale
+  std::int32_t middle16 = 0;    ///< weight of m, in the same units as ends16
+  std::int32_t middle_low = 0;  ///< middle16 / 32
 
-  /// Returns the weights. Choosing the integers takes a tenth of a microsecond; without `compact` they stay 0.
+  /// Returns the weights at a time. If `compact` is false, the integer weights stay 0, which saves a tenth of a
+  /// microsecond.
   [[nodiscard]] static CurveWeights at(const LocalTime& time, bool compact) noexcept;
 };
 
-/// A bound, at every t, of the sum of the absolute errors of the int16 weights, as a share of the sum of the weights.
+/// A bound, at every t, of the sum of the absolute errors of the int16 weights, divided by the sum of the weights.
 inline constexpr double kWeightError = 1.5 / 32767;
 
 }  // namespace chronormal::inline internal

@@ -17,8 +17,9 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 constexpr std::size_t kPrefetchStep = 64;
 
-// The following structs are the kinds of blocks. Each has the weights in registers, and its `direction` computes kLanes
-// vectors from the lanes at `lane`. Results have unit length only if kUnitLength.
+// The following structs evaluate the kinds of blocks. Each keeps the weights in registers. Its function `direction`
+// computes the vectors of kLanes elements of a block, from the lane `lane` on. These vectors have unit length only if
+// kUnitLength is true.
 
 struct Unit {
   static constexpr bool kUnitLength = true;
@@ -67,7 +68,7 @@ struct Quadratic32 {
 };
 
 #if HWY_TARGET == HWY_SCALAR
-// This target cannot reinterpret a lane of 32 bits as two lanes of 16, so the halves of a pair are processed one after
+// On this target, a lane of 32 bits cannot be read as two lanes of 16, so the halves of a pair are processed one after
 // the other.
 using Shorts = Ints;
 
@@ -95,9 +96,9 @@ HWY_INLINE Shorts PairSet(std::int32_t pair) { return hn::BitCast(kShorts, hn::S
 HWY_INLINE Shorts LoadPairs(const std::int32_t* p) { return hn::BitCast(kShorts, hn::Load(kInts, p)); }
 HWY_INLINE Shorts ShiftHalvesLeft11(Shorts a) { return hn::ShiftLeft<11>(a); }
 
-// Returns start + a.low v.low + a.high v.high + b.low w.low + b.high w.high, for each pair. Integers are exact in any
-// order. On NEON, both sums have their lanes in a different order until they are rearranged, so start is added
-// afterwards.
+// Returns start + a.low v.low + a.high v.high + b.low w.low + b.high w.high for each pair. The order of these additions
+// does not matter, since integers are exact. On NEON, sum and rest have their lanes in a different order until they are
+// rearranged, so `start` is added afterwards.
 HWY_INLINE Floats PairSum(Ints start, Shorts a, Shorts v, Shorts b, Shorts w) {
   Ints rest = hn::Zero(kInts);
   Ints sum = hn::ReorderWidenMulAccumulate(kInts, a, v, hn::Zero(kInts), rest);
@@ -135,7 +136,7 @@ struct Quadratic16 {
             PairSum(zero, LoadPairs(p + kTile), ends, middle_xy, high),
             PairSum(zero, LoadPairs(p + 2 * kTile), ends, middle_z, low)};
   }
-  Shorts ends, low, high;  // m is in the low half of its pair, or in the high half
+  Shorts ends, low, high;  // the weights of the ends, and the weight of m in the low and in the high half of a pair
 };
 
 struct Scaled16 {
@@ -159,7 +160,8 @@ struct Scaled16 {
     return hn::ConvertTo(kFloats, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
   }
   HWY_INLINE static Floats High(Ints pair) { return hn::ConvertTo(kFloats, hn::ShiftRight<16>(pair)); }
-  // Returns 2^-e for the lowest five bits e, by way of the exponent field of a float, in which 127 stands for 2^0.
+  // Returns 2^-e, where e is in the lowest five bits. Writes the exponent field of a float, in which 127 stands for
+  // 2^0.
   HWY_INLINE static Floats PowerOfTwo(Ints exponent) {
     const Ints e = hn::And(exponent, hn::Set(kInts, kMaxScaleExponent));
     return hn::BitCast(kFloats, hn::ShiftLeft<23>(hn::Sub(hn::Set(kInts, 127), e)));
@@ -179,9 +181,9 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // The ends are in the upper 11 bits of their halves, and count 32 times their value there. The two parts of m, moved
-  // to the same place, count 2048 times their value. The part of m from the 16-bit halves is added first, so that no
-  // partial sum leaves the range.
+  // The ends are in the upper 11 bits of their halves, which multiplies their values by 32. The two parts of m, moved
+  // to the same place, are multiplied by 2048. The part of m that is in the low bits of the halves is added first, so
+  // that no partial sum leaves the range of int32.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
@@ -191,12 +193,12 @@ struct Quadratic11 {
   Ints start;
 };
 
-// The following structs define where results go, kLanes vectors at a time.
+// The following structs write results to memory, kLanes vectors at a time.
 
 template <bool kPastCaches>
 struct Accesses {
   static constexpr bool kStream = kPastCaches;
-  std::size_t ahead;  // how many bytes ahead a kernel prefetches blocks; 0 for none
+  std::size_t ahead;  // number of bytes by which a kernel prefetches blocks in advance; 0 for no prefetch
 };
 
 template <bool kPastCaches>
@@ -230,7 +232,7 @@ template <bool kPastCaches>
 struct ToOctahedral : Accesses<kPastCaches> {
   using Accesses<kPastCaches>::kStream;
   std::uint32_t* bits;
-  // The octahedral encoding accepts vectors of any length, so no square root is needed.
+  // The octahedral encoding is the same for vectors of any length, so no square root is needed.
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
     const Floats one = hn::Set(kFloats, 1.0f);
@@ -265,12 +267,12 @@ struct ToRgb10A2 : Accesses<kPastCaches> {
   }
 };
 
-// Evaluates all whole blocks of a span.
+// Evaluates all full blocks of a span.
 template <class Kind, class To>
 HWY_NOINLINE void WholeBlocks(const BlockSpan& span, const CurveWeights& weights, To to) {
   const Kind kind(weights);
   const std::size_t ahead = to.ahead;
-  // The pointer is copied, since the compiler assumes that stores might change an object behind a reference.
+  // The pointer is copied, since the compiler assumes that stores may change an object that is passed by reference.
   const std::byte* const blocks = span.blocks;
   const std::size_t block_count = span.elements / kTile;
   for (std::size_t b = 0; b < block_count; ++b) {
@@ -313,9 +315,9 @@ void ByAccess(const BlockSpan& span, const CurveWeights& w, bool stream, std::si
   return ByKind(span, w, To<false>{{ahead}, to...});
 }
 
-// The elements of the last block if only `part` of them exist.
+// The last block of a span, if only `part` of its elements exist.
 struct Tail {
-  BlockSpan block;  // the block as if it were full
+  BlockSpan block;  // the block, described as if all its elements existed
   std::size_t first, part;
 };
 
@@ -375,8 +377,8 @@ HWY_EXPORT(EvaluateRgb10A2);
 
 namespace {
 
-// Calls evaluate() for parts of a span until all of it is done, each time with the memory for the results of the part
-// and the distance to prefetch ahead.
+// Calls evaluate() for parts of a span, one after the other. Each call gets the memory for the results of its part, and
+// the number of bytes by which to prefetch in advance.
 template <class Result, class Evaluate>
 void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
   if (span.kind == BlockKind::kNone) return;

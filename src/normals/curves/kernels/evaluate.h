@@ -1,4 +1,4 @@
-/// The kernel of NormalCurves, which turns blocks of one kind into unit normals.
+/// The kernel of NormalCurves, which computes unit normals from blocks of one kind.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_EVALUATE_H_
 
@@ -11,21 +11,21 @@
 
 namespace chronormal::inline internal {
 
-/// Neighbouring blocks of one kind, the last of which may be partly filled.
+/// Neighbouring blocks of one kind. The last block may be only partly filled.
 struct BlockSpan {
   const std::byte* blocks = nullptr;
   BlockKind kind = BlockKind::kUnit;
   std::size_t elements = 0;
 };
 
-/// The way in which a kernel uses memory. PrefetchRule decides by the working set how early blocks are prefetched. With
-/// `stream`, results bypass the caches, for which all their arrays must be aligned to 64 bytes.
+/// The way in which a kernel uses memory. PrefetchRule decides, by the working set, how early blocks are prefetched. If
+/// `stream` is true, results bypass the caches; all arrays of results must then be aligned to 64 bytes.
 struct MemoryAccess {
   WorkingSet working_set = WorkingSet::kSmall;
   bool stream = false;
 };
 
-/// Returns the access for a pass that reads and writes so many bytes, if its results are aligned.
+/// Returns the access for a pass that reads `read` and writes `written` bytes, if its results are aligned.
 constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noexcept {
   constexpr std::size_t kMiB = std::size_t{1} << 20;
   const std::size_t all = read + written;
@@ -36,7 +36,7 @@ constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noe
   return {set, all > kStreamFrom};
 }
 
-/// The memory for the results of a span. Its pointers point to the result of the first element of the span.
+/// The memory for the results of a span. The pointers point to the result of the first element of the span.
 struct PackedResult {
   float* xyz;
   MemoryAccess access = {};
@@ -54,7 +54,7 @@ struct Rgb10A2Result {
   MemoryAccess access = {};
 };
 
-/// Returns the place for the results from element `count` on.
+/// Returns the memory for the results of the elements from `count` on.
 inline PackedResult behind(const PackedResult& result, std::size_t count) {
   return {result.xyz + 3 * count, result.access};
 }
@@ -68,14 +68,14 @@ inline Rgb10A2Result behind(const Rgb10A2Result& result, std::size_t count) {
   return {result.bits + count, result.access};
 }
 
-/// Writes the unit normals of all elements of a span, at the t of the weights. Writes nothing for kNone.
+/// Write the unit normals of all elements of a span, at the t for which the weights were made. Write nothing for kNone.
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PackedResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept;
 
-/// Makes what this thread has streamed visible to other threads. Call it once, after the last span, since it waits for
-/// the memory.
+/// Makes the results that this thread has streamed visible to other threads. Call it once, after the last span, since
+/// it waits for the memory.
 void flush_stream() noexcept;
 
 }  // namespace chronormal::inline internal

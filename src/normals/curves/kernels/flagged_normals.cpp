@@ -18,7 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Returns n(t) in some lanes of double, with the operations of normal_at().
+// Returns n(t) of kDoubleLanes elements, with the operations of normal_at().
 HWY_INLINE Doubles3 NormalsAt(const FlaggedTile& tile, std::size_t lane, Doubles w0, Doubles w1, Doubles w2) {
   const auto vector = [&tile, lane](std::size_t k) HWY_ATTR {
     return Doubles3{hn::Load(kDoubles, tile.normals[k] + lane), hn::Load(kDoubles, tile.normals[k + 1] + lane),
@@ -45,7 +45,8 @@ void FlaggedUnitNormals(const FlaggedTile* tiles, std::size_t count, double s, d
       }
       const auto certain = hn::Gt(largest, limit);
       results[i].uncertain |= BitsOf(kFloats, hn::Not(certain)) << lane;
-      // An element whose direction is uncertain may have the zero vector. A positive minimum avoids dividing by zero.
+      // An element with an uncertain direction may have the zero vector here. The positive minimum avoids a division by
+      // zero.
       const Floats square = hn::Max(Dot(u, u), hn::Set(kFloats, 0x1p-100f));
       StorePacked<false>(Scale(hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square)), u), results[i].xyz + 3 * lane);
     }
@@ -63,7 +64,7 @@ HWY_EXPORT(FlaggedUnitNormals);
 FlaggedNormals FlaggedNormals::scaled(const ControlNormals& c, double certain) noexcept {
   const double sizes[3] = {max_abs(c.n0), max_abs(c.m), max_abs(c.n1)};
   const double largest = std::max({sizes[0], sizes[1], sizes[2]});
-  // The power of two and its inverse must both be normal numbers.
+  // The exponent is limited, so that the power of two and its inverse are both normal numbers.
   constexpr int kMost = 1022;
   const bool in_range = largest >= 0x1p-1022 && is_finite(c.n0) && is_finite(c.m) && is_finite(c.n1);
   const int exponent = in_range ? std::min(kMost, std::ilogb(largest)) : 0;

@@ -23,36 +23,36 @@ HWY_INLINE Lanes3 LoadTileVector(const ControlTile& tile, std::size_t k, std::si
 
 HWY_INLINE Floats MaxAbs(const Lanes3& v) { return hn::Max(hn::Max(hn::Abs(v.x), hn::Abs(v.y)), hn::Abs(v.z)); }
 
-// The results of the tests of each lane as bits, the lowest lane first.
+// The results of the tests of all lanes. Each number has a bit for each lane, with the first lane in the lowest bit.
 struct LaneTests {
   std::uint32_t certain = 0, fits11 = 0, fits16 = 0, moving = 0, bending = 0;
 };
 
-// Three control normals of a piece of each curve, and their lengths.
+// The three control normals of a piece of a curve, and their lengths, with one curve in each lane.
 struct Piece {
   Lanes3 n0, m, n1;
   Floats l0, lm, l1;
 };
 
-// The result of testing the quartics of a piece: whether n(t) stays long enough for float32, and if so a lower bound of
+// The result of the test of a piece: whether n(t) certainly stays long enough for float32, and if so a lower bound of
 // |n(t)|^2.
 struct PieceTest {
   hn::Mask<FloatTag> certain;
   Floats shortest_square;
 };
 
-// The depth down to which halves of a piece are tested if a test of the whole piece is inconclusive.
+// The number of times that a piece is halved at most, if the test of the whole piece gives no answer.
 inline constexpr int kPieceDepth = 2;
 
 HWY_INLINE Floats Middle(Floats a, Floats b) { return hn::Mul(hn::Set(kFloats, 0.5f), hn::Add(a, b)); }
 HWY_INLINE Lanes3 Middle(const Lanes3& a, const Lanes3& b) { return Scale(hn::Set(kFloats, 0.5f), a + b); }
 
-// Tests eq. 11, for whole pieces first and then for halves, until every lane is decided, or its |n(t)|^2 is known to be
-// at least `enough`. The result of a lane does not depend on the other lanes.
+// Tests eq. 11 of docs/theory.md for whole pieces first and then for halves. Stops when every lane is decided, or when
+// its |n(t)|^2 is known to be at least `enough`. The result of a lane does not depend on the other lanes.
 template <int kDepth>
 HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floats enough) {
   // The largest ratio for which float32 is exact enough is 3 (docs/theory.md, section 13). Its square is reduced from 9
-  // for safety.
+  // to 8.7 for safety.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f), third = hn::Set(kFloats, 1.0f / 3);
   const auto in_middle = [&](Floats ends, Floats middle)
                              HWY_ATTR { return hn::Mul(third, hn::Add(ends, hn::Add(middle, middle))); };
@@ -74,7 +74,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
-    // Both halves meet in this middle point, so halving does not help a lane whose n(t) is too short here.
+    // Both halves contain this middle point. So halving does not help in lanes in which n(t) is too short here.
     open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
     if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);
@@ -85,10 +85,10 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
 }
 
 // Tests the elements in some lanes. Squares are compared, so that no root is needed. With the axis a = n0 + 2 m + n1,
-// n(t).a >= min c(k).a for all t.
+// n(t).a >= min c(k).a for all t, where c(k) are the control normals.
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16,
                                Floats noise_square) {
-  // The ratio is the one of TestPiece().
+  // This is the squared ratio of TestPiece().
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 
@@ -96,7 +96,8 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   const Floats largest = hn::Max(hn::Max(MaxAbs(n0), MaxAbs(m)), MaxAbs(n1));
   const auto in_range = hn::And(hn::Ge(largest, smallest_largest), hn::Le(largest, largest_largest));
 
-  // Values are scaled by a power of two into [1, 2), so that fourth powers stay in range.
+  // Values are scaled by a power of two, so that the largest is in [1, 2). Fourth powers then stay in the range of
+  // float32.
   const Ints exponent = hn::And(hn::BitCast(kInts, largest), hn::Set(kInts, 0x7F800000));
   const Floats scale = hn::BitCast(kFloats, hn::Sub(hn::Set(kInts, 0x7F000000), exponent));
   n0 = Scale(scale, n0);
@@ -115,7 +116,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
   };
   const Floats shortest = hn::Min(hn::Min(along0, along_m), along1);
   const Floats shortest_square = hn::Mul(shortest, shortest);
-  const auto at_least = [&](Floats factor, Floats square) HWY_ATTR {  // tests |n(t)|^2
+  const auto at_least = [&](Floats factor, Floats square) HWY_ATTR {  // compares |n(t)|^2 with a limit
     return hn::Ge(hn::Mul(factor, shortest_square), hn::Mul(square, axis_square));
   };
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -126,7 +127,8 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
   const auto unknown = hn::AndNot(certain, in_range);
   if (!hn::AllFalse(kFloats, unknown)) {
-    // Eleven bits rarely suffice for elements that come so close to zero, unless the tolerance is large.
+    // Elements that reach this point come so close to zero that eleven bits rarely suffice, unless the tolerance is
+    // large.
     const Floats fewest = hn::Set(kFloats, 3.0f);
     const auto try11 = hn::Ge(square11, fewest), try16 = hn::Gt(square16, hn::Zero(kFloats));
     const Floats wanted = hn::IfThenElse(try11, square11, square16);
@@ -148,7 +150,7 @@ HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats
 
 void SummarizeTiles(const ControlTile* tiles, std::size_t count, const PrecisionLimits& limits,
                     TileSummary* summaries) {
-  // The limits are reduced slightly, to make up for the rounding of the tests themselves.
+  // The limits are reduced slightly to allow for the rounding of the tests themselves.
   constexpr double kSafe = 0.99;
   const auto square = [](double ratio) { return static_cast<float>(kSafe * ratio * ratio); };
   const Floats square11 = hn::Set(kFloats, square(limits.largest_ratio11));
@@ -202,7 +204,7 @@ HWY_INLINE Floats Largest(const Lanes3& n0, const Lanes3& m, const Lanes3& n1) {
   return hn::Max(hn::Max(MaxAbs(n0), MaxAbs(m)), MaxAbs(n1));
 }
 
-// Returns the factor that maps a component to integers from -limit to limit.
+// Returns the factor that maps components of up to `largest` to numbers from -limit to limit.
 HWY_INLINE Floats IntegersPer(float limit, Floats largest) { return hn::Div(hn::Set(kFloats, limit), largest); }
 
 void PackUnit(const ControlTile& tile, bool with_length, float* to) {
@@ -253,14 +255,13 @@ void PackQuadratic16(const ControlTile& tile, std::int32_t* to) {
   }
 }
 
-// Returns the number of powers of two by which the largest component of c is below `largest`, rounded down, and at most
-// 31.
+// Returns the largest e for which 2^e times the largest component of c does not exceed `largest`, but at most 31.
 HWY_INLINE Ints ExponentBelow(Floats largest, const Lanes3& c) {
   const auto field = [](Floats v) HWY_ATTR { return hn::ShiftRight<23>(hn::BitCast(kInts, v)); };
   const Floats own = MaxAbs(c);
   const Ints difference = hn::Sub(field(largest), field(own));
-  // The exponent is one less if the fraction of `own` is above that of `largest`, so that own 2^e does not exceed
-  // `largest`.
+  // If the fraction of `own` is above that of `largest`, the exponent is reduced by one, so that own 2^e does not
+  // exceed `largest`.
   const auto fraction = [](Floats v) HWY_ATTR { return hn::And(hn::BitCast(kInts, v), hn::Set(kInts, 0x7FFFFF)); };
   const Ints one_less = hn::VecFromMask(kInts, hn::Gt(fraction(own), fraction(largest)));
   const Ints exponent = hn::Add(difference, one_less);
@@ -286,7 +287,8 @@ void PackScaled16(const ControlTile& tile, std::int32_t* to) {
   }
 }
 
-// Puts 11 bits of each end and twice 5 bits of m, m - 16 = 32 high + low, into one word. m must be in [-512, 511]
+// Puts 11 bits of each end and two pieces of 5 bits of m into one word. The pieces are high and low in m - 16 = 32 high
+// + low. Precondition: m is in [-512, 511].
 HWY_INLINE Ints Word11(Ints n0, Ints m, Ints n1) {
   const Ints bits5 = hn::Set(kInts, 31), bits11 = hn::Set(kInts, 2047);
   const Ints high = hn::ShiftRight<5>(m);
@@ -348,17 +350,18 @@ namespace chronormal::inline internal {
 
 PrecisionLimits PrecisionLimits::for_tolerance(double radians) noexcept {
   constexpr double kSqrt3 = 1.7320508075688772;
-  // The tolerance is an angle, and errors are chords. Some of the tolerance is left for the rounding of float32 itself.
+  // The tolerance is an angle, but the errors are chords, which are slightly shorter. A part of the tolerance is left
+  // for the rounding of float32 itself.
   const double error = 0.99 * (std::fmin(radians, kLargestTolerance) - 5e-7);
 
   PrecisionLimits limits;
-  limits.sum_ratio32 = 3;  // kExactTolerance
+  limits.sum_ratio32 = 3;  // keeps the tolerance kExactTolerance
   if (!(radians > kExactTolerance)) return limits;
   const double weights = kSqrt3 * kWeightError;
   limits.largest_ratio16 = error / (kSqrt3 / 2 / 32767 + weights);
   limits.largest_ratio11 = error / (0.75 * kSqrt3 / 1023 + weights + 0x1p-15);
   limits.sum_ratio_scaled16 = error / (kSqrt3 / 32767 + 4e-7);
-  // The ratio is at most 64, so that |n(t)|^2 stays in the range of float32.
+  // The ratio is at most 64. |n(t)|^2 then stays in the range of float32.
   limits.sum_ratio32 = std::fmin(64, std::fmax(limits.sum_ratio32, radians / 3.4e-7));
   return limits;
 }

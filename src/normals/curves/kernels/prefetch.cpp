@@ -1,4 +1,4 @@
-// Records the times of trials, and finds the distance with the shortest median.
+// Records the times of trials, and finds the prefetch distance with the shortest median time.
 #include "normals/curves/kernels/prefetch.h"
 
 #include <algorithm>
@@ -8,7 +8,8 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // Each thread that gets past the following comparison takes the number of a trial. Several threads may do so at once.
+  // A thread that passes the following comparison takes the number of the next trial. Several threads may do this at
+  // once.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -18,7 +19,8 @@ std::optional<std::size_t> PrefetchRule::next() noexcept {
   return trial % distances_;
 }
 
-// The median ignores trials that the system interrupted or that found cold caches, and also a lucky one.
+// The distance with the shortest median time is the best. The median ignores trials that the system interrupted or that
+// found cold caches, and also one that was fast by chance.
 void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
   assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
   const std::size_t trial = counts_[distance].fetch_add(1, std::memory_order_relaxed);
@@ -47,8 +49,8 @@ class Rules {
   PrefetchRule& operator[](WorkingSet set) noexcept { return rules_[static_cast<std::size_t>(set)]; }
 
  private:
-  // Small working sets have fewer distances to try. Other data may have evicted their curves from the small cache
-  // during a trial, which would then choose to prefetch too far ahead.
+  // Small working sets try fewer distances. During a trial, other data may have evicted their curves from the small
+  // cache, and the trial would then favour too large a distance.
   std::array<PrefetchRule, kWorkingSets> rules_ = {PrefetchRule(1), PrefetchRule(2), PrefetchRule(), PrefetchRule()};
 };
 

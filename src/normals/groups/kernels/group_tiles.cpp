@@ -3,8 +3,9 @@
 //     indices --LoadRing--> both ends of each point, a column for each lane --SumRing--> control normals in double
 //                                                                 --RoundTile--> float32, and which of them need a look
 //
-// With the centre c of a path and its points p at two times, every second point adds one product to n0, n1 and m: (p[i]
-// - c) x (p[i + 1] - p[i - 1]), where the two factors are of the same time or of both.
+// Let c be the centre of a path and p its points, at two times. Every second point adds one product to n0, n1 and m:
+// (p[i] - c) x (p[i + 1] - p[i - 1]). In n0 and n1 both factors are of the same time, and in m they are of different
+// times.
 #include "normals/groups/kernels/group_tiles.h"
 
 #include <algorithm>
@@ -30,10 +31,11 @@
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 namespace chronormal::inline internal {
 
-// The rounding error of a sum over a path of up to kMostPathPoints is below half of this share of its magnitude.
+// A relative error, compared with the magnitude of a sum over a path of up to kMostPathPoints points. The rounding
+// error of the sum is below half of it.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
-// All inputs of a kernel.
+// The inputs of the kernels below.
 struct RingInput {
   const Segment& segment;
   const NormalGroups& groups;
@@ -41,13 +43,14 @@ struct RingInput {
   bool fetch;
 };
 
-// Both ends of a point of each lane, stored as from.x of sixteen lanes, then from.y, from.z, to.x, to.y, to.z.
+// The positions of one point of each lane at both ends of the segment, stored as from.x of sixteen lanes, then from.y,
+// from.z, to.x, to.y, to.z.
 struct alignas(64) PointColumns {
   float at[6][kTile];
 };
 
-// Writes the sum that group_control_normals() computes into one lane of both tiles, with zero in place of mere
-// rounding.
+// Writes the sum that group_control_normals() computes for an element into one lane of both tiles. Components that are
+// only rounding errors are zero.
 void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups, std::size_t element, std::size_t lane,
                               ExactTile& exact, ControlTile& tile) noexcept;
 
@@ -57,7 +60,7 @@ void set_sum_without_rounding(const Segment& segment, const NormalGroups& groups
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of rows of indices ahead at which points are prefetched.
+// The number of rows of indices by which points are prefetched in advance.
 constexpr std::size_t kRowsAhead = 24;
 
 // ---- points --------------------------------------------------------------------------------------------------------
@@ -80,7 +83,7 @@ HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, s
   }
 }
 
-// Prefetches the points of the rows that are kRowsAhead behind these.
+// Prefetches the points of the rows that come kRowsAhead rows after these.
 HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std::uint32_t* indices, std::size_t rows) {
   for (std::size_t i = 0; i < kTile * rows; ++i) {
     const std::size_t vertex = indices[kTile * kRowsAhead + i];
@@ -89,7 +92,8 @@ HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std:
   }
 }
 
-// Returns whether a path has the last vertex, whose packed row of 16 bytes would end beyond the array.
+// Returns true if a path contains the last vertex of the mesh. The 16 bytes that are loaded for this vertex would end
+// beyond the array.
 HWY_INLINE bool HasLast(const std::uint32_t* indices, std::size_t rows, std::size_t vertex_count) {
   const hn::RebindToUnsigned<FloatTag> tag;
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(vertex_count - 1));
@@ -112,7 +116,7 @@ HWY_INLINE void StoreColumns(const Doubles3& v, double (*to)[kTile], std::size_t
   hn::Store(v.z, kDoubles, to[2] + lane);
 }
 
-// The values n0, n1 and twice m of a path.
+// The sums over a path that become n0, twice m, and n1.
 struct RingSum {
   Doubles3 n0, m, n1;
 
@@ -145,7 +149,8 @@ HWY_INLINE void SumRing(const PointColumns* points, std::size_t rows, ExactTile&
   }
 }
 
-// Returns an upper bound of the sum of the absolute products in any component, whichever ends the factors belong to.
+// Returns an upper bound of the sum of the absolute products in any component, where the factors may be of any ends of
+// the segment.
 HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, std::size_t lane) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -154,8 +159,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   };
   const auto distance = [&](std::size_t a, std::size_t b)
                             HWY_ATTR { return MaxAbs(at(a, 0) - at(b, 0), at(a, 1) - at(b, 1)); };
-  // The factor is a little more than twice the products, for their rounding and the rounding of their sum; a tiny
-  // number is added in case one of them underflows.
+  // The factor is a little more than twice the products, to cover their rounding and that of their sum. A tiny number
+  // is added in case a product underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   Floats sum = hn::Zero(kFloats);
@@ -168,8 +173,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   return sum;
 }
 
-// Stores bounds on the errors of a sum over a path, for half of the lanes. The errors are 4 u of every product and u
-// for each addition; the bound is twice their sum for safety.
+// Stores bounds of the errors of a sum over a path, for half of the lanes. The errors are 4 u of every product, and u
+// for each addition. For safety, the bound is twice the sum of these errors.
 HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::size_t lane, double (*errors)[kTile]) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -179,7 +184,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   };
   const auto distance = [&](std::size_t a, std::size_t b, std::size_t end) HWY_ATTR {
     const auto d = at(a, end) - at(b, end);
-    // The bound is enlarged a little, for the rounding of the difference.
+    // The bound is increased slightly, to cover the rounding of the difference.
     return hn::Mul(hn::Set(kDoubles, 1 + 0x1p-20),
                    hn::PromoteTo(kDoubles, hn::Max(hn::Max(hn::Abs(d.x), hn::Abs(d.y)), hn::Abs(d.z))));
   };
@@ -203,8 +208,8 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
 
 // ---- tiles ---------------------------------------------------------------------------------------------------------
 
-// Rounds the sums to float32 in the tile. Returns the bits of the elements with a component that may be only rounding
-// error.
+// Rounds the sums to float32 and writes them to the tile. Returns the bits of the elements with a component that may be
+// only rounding error.
 HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows, const ExactTile& exact,
                                    ControlTile& tile) {
   std::uint32_t doubtful = 0;
@@ -217,7 +222,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);
       hn::Store(v, kFloats, tile.normals[k] + lane);
-      // A zero is not doubtful, unless it is -0, to which a negative number may have been rounded.
+      // A zero is certain, unless it is -0, to which a small negative number may have been rounded.
       const auto has_bits =
           hn::MaskFromVec(hn::BitCast(kFloats, hn::VecFromMask(kInts, hn::Ne(hn::BitCast(kInts, v), hn::Zero(kInts)))));
       some = hn::Or(some, hn::And(has_bits, hn::Le(hn::Abs(v), error)));
@@ -241,11 +246,11 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
 
 // ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Writes a tile entirely in float32, with its error in place of its magnitude.
+// Computes a tile entirely in float32. `magnitude` of the tile is a bound of the error.
 template <PointAccess kAccess>
 HWY_INLINE void FloatTile(const Segment& segment, const std::uint32_t* indices, std::size_t rows, ControlTile& tile) {
-  // The factor is a little more than twice the products, for their rounding and the rounding of their sum; a tiny
-  // number is added in case one of them underflows.
+  // The factor is a little more than twice the products, to cover their rounding and that of their sum. A tiny number
+  // is added in case a product underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   const Floats roundings = RoundingsInFloat(rows / 2 + 1);
@@ -406,14 +411,14 @@ std::span<const std::uint32_t> GroupTiles::left_out(IndexRange elements) const n
 
 void GroupTiles::set_alone(std::size_t element, IndexRange elements, std::span<ControlTile> tiles) const noexcept {
   const ControlNormals normals = control_normals_of_group(faces_, *groups_, element).normals;
-  // Lanes behind the last element repeat it.
+  // Lanes after the last element repeat the last element.
   const std::size_t first = element - elements.first;
   const std::size_t end = element + 1 == elements.end() ? kTile * tiles.size() : first + 1;
   for (std::size_t i = first; i < end; ++i) {
     ControlTile& tile = tiles[i / kTile];
     put(tile, i % kTile, normals);
     tile.degree[i % kTile] = degree(normals);
-    // Infinity tells the reader not to trust this element of the tile, but to request it in double.
+    // The magnitude infinity tells the code that reads the tile not to trust this element, but to ask for it in double.
     tile.magnitude[i % kTile] = std::numeric_limits<float>::infinity();
   }
 }

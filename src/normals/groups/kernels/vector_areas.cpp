@@ -1,5 +1,5 @@
-// Computes the areas of a few triangles at a time, one per lane. Sums are computed one by one, with a row of four
-// doubles in as few registers as possible.
+// Computes the vector areas of triangles, a few at a time, one per lane. Computes sums one element after the other. A
+// row of four doubles is kept in as few registers as possible.
 #include "normals/groups/kernels/vector_areas.h"
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Returns value, or 0 if value is not above the error.
+// Returns `value`, or 0 in lanes in which its absolute value is not above the error.
 template <class V>
 HWY_INLINE V WithoutRounding(V value, V error) {
   return hn::IfThenElseZero(hn::Gt(hn::Abs(value), error), value);
 }
 
-// Returns one component of e x f from its two products.
+// Returns one component of e x f from its two products. It is 0 if it may be only rounding error.
 HWY_INLINE Doubles ComponentOfArea(Doubles product, Doubles other) {
   const Doubles magnitude = hn::Add(hn::Abs(product), hn::Abs(other));
   return WithoutRounding(hn::Sub(product, other), hn::Mul(hn::Set(kDoubles, 8 * kUnitRoundoff), magnitude));
@@ -31,7 +31,7 @@ HWY_INLINE Doubles ComponentOfArea(Doubles product, Doubles other) {
 void TriangleAreas(const double* points, std::span<const std::uint32_t> corners, double* areas) {
   const std::size_t count = corners.size() / 3;
   for (std::size_t f = 0; f < count; f += kDoubleLanes) {
-    // Lanes behind the last triangle repeat it.
+    // Lanes after the last triangle repeat the last triangle.
     const auto corner = [&](std::size_t c) HWY_ATTR {
       return ColumnsOfDoubles([&](std::size_t i)
                                   HWY_ATTR { return points + kAreaRow * corners[3 * std::min(f + i, count - 1) + c]; })

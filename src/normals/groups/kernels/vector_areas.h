@@ -1,7 +1,7 @@
-/// Vector areas of triangles, and their sums over the faces around elements, in lanes of double.
+/// Computes vector areas of triangles, and their sums over the faces around elements, in lanes of double.
 ///
-/// Points and areas are rows of four doubles: x y z, and a fourth that is ignored in points and 0 in areas. Both
-/// functions give the bits of their scalar forms, without_rounding() of CrossSum and VectorSum (core/rounding.h).
+/// Points and areas are rows of four doubles: x, y, z and a fourth number, which is ignored in points and 0 in areas.
+/// Both functions give the same bits as without_rounding() of CrossSum and of VectorSum (core/rounding.h).
 #ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 
@@ -17,10 +17,10 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kAreaRow = 4;
 
-/// Writes twice the vector area of each triangle. corners has the three points of each, and areas one row for each.
+/// Writes twice the vector area of each triangle. corners has three points for each triangle, and areas has one row.
 void triangle_areas(const double* points, std::span<const std::uint32_t> corners, double* areas) noexcept;
 
-/// Writes the sum of the areas of the faces around each of some elements. areas begins with the row of face first_face.
+/// Writes the sums of the areas of the faces around some elements. The first row of `areas` is that of face first_face.
 void sums_of_areas(const double* areas, std::size_t first_face, const NormalGroups& groups, IndexRange elements,
                    Vec3d* sums) noexcept;
 

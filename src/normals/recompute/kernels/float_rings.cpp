@@ -1,4 +1,5 @@
-// Adds up cross products along paths in lanes of float32, one for every second point (groups/rings.h).
+// Adds up cross products along paths, in lanes of float32. Each second point of a path adds one product
+// (groups/rings.h).
 #include "normals/recompute/kernels/float_rings.h"
 
 #include <algorithm>
@@ -17,10 +18,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// The number of rows of indices ahead at which points are prefetched.
+// The number of rows of indices by which points are prefetched in advance.
 constexpr std::size_t kRingRowsAhead = 12;
 
-// Loads the points with the numbers index(0) ... index(kLanes - 1).
+// Loads the points whose numbers are index(0) ... index(kLanes - 1), one into each lane.
 template <class IndexOf>
 HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 #if HWY_TARGET == HWY_SCALAR
@@ -35,8 +36,8 @@ HWY_INLINE Lanes3 PointsAt(const float* rows, const IndexOf& index) {
 #endif
 }
 
-// Returns the sum over a path of row_count - 1 points. index(row, lane) is the number of a point; row 0 has the
-// centres.
+// Returns the sum over the path in each lane, which has row_count - 1 points. index(row, lane) is the number of a
+// point; row 0 has the centres.
 template <class IndexOf>
 HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t row_count) {
   const auto row = [&](std::size_t r)
@@ -54,11 +55,12 @@ HWY_INLINE Lanes3 SumOfRing(const float* rows, const IndexOf& index, std::size_t
   return sum;
 }
 
-// Writes the vectors n, scaled to length 1, from `place` on. Returns how many have no direction.
+// Writes the vectors n, scaled to length 1, to the places from `place` on. Returns the number of vectors that have no
+// direction.
 template <ResultLayout kLayout>
 HWY_INLINE std::size_t WriteUnit(const Lanes3& n, std::size_t place, const VectorView<float>& result) {
   const Floats square = Dot(n, n);
-  // NaN is out of range, too.
+  // NaN counts as out of range.
   const auto in_range =
       hn::And(hn::Ge(square, hn::Set(kFloats, 0x1p-126f)), hn::Le(square, hn::Set(kFloats, 0x1.fffffep127f)));
   const Floats scale = hn::Div(hn::Set(kFloats, 1.0f), hn::Sqrt(square));
@@ -98,7 +100,7 @@ std::size_t RingUnitNormals(const RingPoints& points, const RingSlices& all, Ind
 
 std::size_t TriangleUnitNormals(const RingPoints& points, const std::uint32_t* corners, std::size_t face_count,
                                 IndexRange faces, VectorView<float> result, bool stream) {
-  constexpr std::size_t kAhead = 4 * kRingRowsAhead;  // faces
+  constexpr std::size_t kAhead = 4 * kRingRowsAhead;  // number of faces
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
     std::size_t zeros = 0;
     for (std::size_t i = 0; i < faces.count; i += kRingLanes) {
@@ -126,7 +128,8 @@ void InterpolatePoints(VectorView<const float> from, VectorView<const float> to,
   std::size_t v = points.first;
 #if HWY_TARGET != HWY_SCALAR
   if (from.is_packed() && to.is_packed()) {
-    // kLanes floats of packed points are loaded; the first three of every four become a row.
+    // Packed points are loaded as kLanes floats. Of every four lanes of a row, the first three get the coordinates of a
+    // point.
     constexpr std::size_t kRows = kLanes / 4;
     alignas(64) std::int32_t place[kLanes];
     for (std::size_t i = 0; i < kLanes; ++i)

@@ -1,4 +1,5 @@
-// Evaluates triangles in lanes of float32 and thin triangles in lanes of double, and marks doubtful triangles.
+// Evaluates triangles in lanes of float32, and thin triangles in lanes of double. Triangles for which double is not
+// precise enough are marked as doubtful.
 #include "normals/recompute/kernels/recompute_tiles.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ struct Sum {
 
 #else
 
-// Loads four floats each from `base` plus kLanes / 4 offsets, as blocks of one vector.
+// Loads a vector as blocks of four floats. Each block is at `base` plus one of kLanes / 4 offsets.
 HWY_INLINE Floats RowsAt(const float* base, const std::size_t* offsets) {
   return LoadBlocks([base, offsets](std::size_t block) HWY_ATTR { return base + offsets[block]; });
 }
@@ -49,7 +50,7 @@ HWY_INLINE Lanes4 LoadRows(const float* rows) {
       {RowsAt(rows, kOffsets), RowsAt(rows + 4, kOffsets), RowsAt(rows + 8, kOffsets), RowsAt(rows + 12, kOffsets)});
 }
 
-// A sum of normals and of their errors in double.
+// The sum of some normals, and of their errors, in double.
 template <std::size_t kRegisters>
 struct SumOf {
   using Tag = hn::CappedTag<double, 4 / kRegisters>;
@@ -77,12 +78,13 @@ using Sum = SumOf<kLanes == 4 ? 2 : 1>;
 
 #endif
 
-// Edges from the first corner of the faces of a block, at both ends, and the corners that they were made from.
+// The edges from the first corner of each face of a block, at both ends of the segment, and the corners from which
+// these edges were made.
 struct alignas(64) EdgeBlock {
   float start_e[3][kBlock], start_f[3][kBlock], end_e[3][kBlock], end_f[3][kBlock];
   const std::uint32_t* corners;
-  std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces, filled up
-  bool has_last;                     // whether one of the corners is the last vertex, after which nothing may be read
+  std::uint32_t padded[3 * kBlock];  // the corners of a block of fewer than 16 faces, with the last face repeated
+  bool has_last;                     // true if one of the corners is the last vertex, after which nothing may be read
 };
 
 HWY_INLINE void StorePlanes(const Lanes4& v, float (*planes)[kBlock], std::size_t lane) {
@@ -97,7 +99,7 @@ HWY_INLINE Floats Square(const float (*planes)[kBlock], std::size_t lane) {
   return Dot(v, v);
 }
 
-// Loads edges without reading anything but the coordinates.
+// Loads edges one coordinate at a time, so that nothing beyond the coordinates is read.
 inline void LoadEdgesExactly(const float* from, const float* to, std::size_t stride, const std::uint32_t* corners,
                              EdgeBlock& block) {
   for (std::size_t i = 0; i < kBlock; ++i) {
@@ -124,7 +126,7 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 constexpr bool kReadsBehind = true;
 
-// The edges of faces k, k + 4, ... as rows.
+// The edges of the faces k, k + 4, ... as rows of four floats.
 struct EdgeRows {
   Floats e0, f0, e1, f1;
 };
@@ -144,7 +146,7 @@ HWY_INLINE EdgeRows RowsOfEdges(const float* from, const float* to, const std::u
   return {hn::Sub(b0, a0), hn::Sub(c0, a0), hn::Sub(b1, a1), hn::Sub(c1, a1)};
 }
 
-// Loads edges. The loads read one float behind each vertex.
+// Loads edges by vectors, which read one float more than the three of each vertex.
 template <std::size_t kStride>
 HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_t* corners, EdgeBlock& block) {
   for (std::size_t k = 0; k < kBlock; k += kLanes, corners += 3 * kLanes) {
@@ -161,7 +163,8 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 #endif
 
-// Interpolates half of the lanes of a vector if it has two halves.
+// Interpolates between two vectors in double, for the lanes from `lane` on: half of a vector of floats if it has two
+// halves.
 HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
   const HalfFloatTag part;
   const auto load = [part, lane](const float* plane)
@@ -176,15 +179,15 @@ HWY_INLINE Doubles3 CrossOfLerps(const EdgeBlock& block, std::size_t lane, const
   return Cross(Lerp(s1, block.start_e, t1, block.end_e, lane), Lerp(s1, block.start_f, t1, block.end_f, lane));
 }
 
-// Tells whether squares of float32 neither overflow nor lose digits.
+// Returns the lanes in which squares in float32 neither overflow nor lose digits.
 HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
   return hn::And(hn::Ge(smallest, hn::Set(kFloats, 0x1p-100f)), hn::Le(largest, hn::Set(kFloats, 0x1p100f)));
 }
 
 struct Normals {
   Lanes3 n;
-  Floats product;  // A B of recompute_tiles.h
-  Floats smaller;  // smaller of A and B
+  Floats product;  // the A B of recompute_tiles.h
+  Floats smaller;  // the smaller one of A and B
   hn::Mask<FloatTag> trusted;
 };
 
@@ -205,7 +208,7 @@ HWY_INLINE Normals NormalsAt(const EdgeBlock& block, std::size_t lane, const Loc
   return {n, product, smaller, hn::And(precise, InRange(hn::Min(square, smaller), square))};
 }
 
-// Returns the positions of corner c of kLanes faces of a block, at one end.
+// Returns the positions of corner c of kLanes faces of a block, at one end of the segment.
 template <std::size_t kStride>
 HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::size_t lane, std::size_t c) {
   const std::uint32_t* const corners = block.corners + 3 * lane + c;
@@ -225,10 +228,10 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
   return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
 }
 
-// The results of exact edges for kLanes faces of a block: see "thin" in recompute_tiles.h.
+// The results of exact edges for kLanes faces of a block. recompute_tiles.h explains them under "thin".
 struct FineNormals {
   Lanes3 n, unit;
-  Floats square;  // n . n
+  Floats square;  // n . n in float32
   hn::Mask<FloatTag> trusted;
 };
 
@@ -236,7 +239,7 @@ struct CornersAtEnd {
   Lanes3 a, b, c;
 };
 
-// Return n(t) of half of the lanes, and its multiple of length 1. scale is 1 / |n| in float32.
+// Return n(t) for half of the lanes, and the unit vector along n(t). `scale` is 1 / |n| in float32.
 template <int kHalf>
 HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to, const LocalTime& t) {
   const Doubles s1 = hn::Set(kDoubles, t.rest), t1 = hn::Set(kDoubles, t.t);
@@ -247,7 +250,7 @@ HWY_INLINE Doubles3 ExactNormal(const CornersAtEnd& from, const CornersAtEnd& to
 }
 template <int kHalf>
 HWY_INLINE Doubles3 ExactUnit(const Doubles3& n, Floats scale) {
-  // 1 / |n| is refined by two steps of Newton's method, each of which doubles the number of correct digits.
+  // Two steps of Newton's method refine 1 / |n|. Each step doubles the number of correct digits.
   const Doubles half_square = hn::Mul(hn::Set(kDoubles, 0.5), Dot(n, n)), three_halves = hn::Set(kDoubles, 1.5);
   Doubles y = ToDouble<kHalf>(scale);
   for (int step = 0; step < 2; ++step) y = hn::Mul(y, hn::Sub(three_halves, hn::Mul(hn::Mul(half_square, y), y)));
@@ -267,8 +270,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  // A B is divided by the largest ratio. The square times this ratio could be infinite, and then even an infinite A B
-  // would count as small enough.
+  // A B is divided by the largest ratio. If the square were multiplied by the ratio instead, the product could be
+  // infinite, and even an infinite A B would count as small enough.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -281,7 +284,7 @@ HWY_INLINE Lanes3 Select(hn::Mask<FloatTag> mask, const Lanes3& yes, const Lanes
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-// Returns true if one of the 48 corners of a block is this vertex.
+// Returns true if one of the 48 corners of a block is a given vertex.
 HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   const auto wanted = hn::Set(kIndices, vertex);
   auto found = hn::Eq(hn::LoadU(kIndices, corners), wanted);
@@ -290,7 +293,8 @@ HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   return !hn::AllFalse(kIndices, found);
 }
 
-// The numbers of faces, and of terms of sums, by which prefetches are ahead: enough for about 50 cache misses at once.
+// The number of faces, and of terms of sums, by which memory is prefetched in advance. This is enough for about 50
+// cache misses at once.
 constexpr std::size_t kFacesAhead = 48, kTermsAhead = 64;
 
 template <std::size_t kStride>
@@ -321,8 +325,9 @@ HWY_INLINE void LoadBlock(const MovingTriangles& triangles, std::size_t first, s
   }
 }
 
-// Calls body(place, normals, fine) for every kLanes faces of a range, where fine() computes the normals from exact
-// edges. The next block is loaded before the current block is processed, so that the machine does both at once.
+// Calls body(place, normals, fine) for every kLanes faces of a range. fine() computes the normals of these faces from
+// exact edges. The next block is loaded before the current block is processed, so that the processor can do both at the
+// same time.
 template <std::size_t kStride, class Body>
 HWY_INLINE void ForNormalsOfStride(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    const Body& body) {
@@ -371,7 +376,7 @@ std::size_t RecomputeFaceNormals(const MovingTriangles& triangles, IndexRange fa
                                  FaceNormal* result, std::uint32_t* doubtful) {
   std::size_t count = 0;
   const auto body = [&](std::size_t place, const Normals& normals, const auto& fine_normals) HWY_ATTR {
-    // The factor 3.32 has 2.31 for the edges, 1 for rounding n, and a little for the rounding of the bound itself.
+    // In the factor 3.32, 2.31 is for the edges, 1 for rounding n, and the rest for the rounding of the bound itself.
     Floats error = hn::Mul(hn::Set(kFloats, 3.32f), hn::Sqrt(normals.product));
     Lanes3 n = normals.n;
     if (HWY_UNLIKELY(!hn::AllTrue(kFloats, normals.trusted))) {
@@ -409,7 +414,8 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       Sum sum;
       const std::uint32_t* const faces_end = f + groups.faces(elements.first + i + k).size();
       if (!window.fetch && faces_end - f == 6) {
-        // Six faces are unrolled, since vertices have six faces far more often than any other number.
+        // Six faces are added without a loop over them, since vertices have six faces far more often than any other
+        // number.
         for (int term = 0; term < 6; ++term) sum.Add(window.normals[f[term] & window.mask]);
         f = faces_end;
       }
@@ -424,7 +430,7 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       const Lanes4 v = LoadRows(rows + 4 * k);
       const Lanes3 n = {v.x, v.y, v.z};
       const Floats square = Dot(n, n);
-      // An error of 14.56 u |n| leaves 2 u |n| for rounding to float32.
+      // An error of 14.56 u |n| leaves 2 u |n| for the rounding to float32.
       const auto precise = hn::Le(hn::Mul(v.w, v.w), hn::Mul(hn::Set(kFloats, 212.0f), square));
       Write<kLayout>(Normalized(n), i + k, result);
       count = Append(hn::And(precise, InRange(square, square)), i + k, elements.count, count, doubtful);

@@ -1,21 +1,23 @@
-/// Normals of moving triangles at one t, sixteen at a time, and their sums: the inner loops of NormalRecompute.
+/// Computes the normals of moving triangles at one t, sixteen at a time, and their sums. These are the inner loops of
+/// NormalRecompute.
 ///
-/// Most faces use edges in float32 and double after that: positions are subtracted in float32, edges are interpolated
-/// and multiplied in double. With u = 2^-24, and E, F the interpolated lengths of both edges, s|e0| + t|e1|,
+/// Most faces use float32 for edges and double for everything else: positions are subtracted in float32, and edges are
+/// interpolated and multiplied in double. Let u = 2^-24, and let E = s|e0| + t|e1| and F be the interpolated lengths of
+/// both edges. The errors are
 ///
 ///     edges       each component within u of itself            |error of n| <= 2 u 2/sqrt(3) E F = 2.31 u E F
 ///     to float32  of n, and of its multiple of length 1        2 u |n|
 ///     E F         <= sqrt(A B), A = s|e0|^2 + t|e1|^2 (Jensen), and B likewise
 ///
-/// so n is within 1e-6 rad if 2.31 sqrt(A B) <= 14.7 |n|. This holds for triangles with more than 9 degrees at their
-/// first corner that do not shrink much on their way. *Thin* triangles are recomputed from exact edges, entirely in
-/// double:
+/// so n is within 1e-6 rad if 2.31 sqrt(A B) <= 14.7 |n|. This holds for triangles with an angle of more than 9 degrees
+/// at their first corner that do not shrink much during the segment. All others are *thin*, and are recomputed from
+/// exact edges, entirely in double:
 ///
 ///     n           in double: edges from exact differences         |error of n| <= 20 2^-53 E F
 ///     unit        in double, and rounded to float32 at the end    2^-24
 ///
-/// Both errors are small enough if the error of n is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. Other faces are
-/// *doubtful*, and left to the caller, which examines them one by one.
+/// Both errors are small enough if the error of n is at most 2^-23 |n|, that is, if A B <= 2^50 |n|^2. All other faces
+/// are *doubtful*. They are left to the caller, which examines them one by one.
 #ifndef CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 #define CHRONORMAL_NORMALS_RECOMPUTE_KERNELS_RECOMPUTE_TILES_H_
 
@@ -29,49 +31,52 @@
 
 namespace chronormal::inline internal {
 
-/// The largest A B of a triangle that is not thin, in units of |n|^2: 2.31 sqrt(40) <= 14.7.
+/// The largest A B of a triangle that is not thin, divided by |n|^2. It follows from 2.31 sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
-/// Triangles as the kernels read them. Positions are packed, or paired as x0 y0 z0 _ x1 y1 z1 _ for each vertex.
+/// Triangles as the kernels read them. Positions are either packed, or paired, with both ends of each vertex side by
+/// side as x0 y0 z0 _ x1 y1 z1 _.
 struct MovingTriangles {
-  const std::uint32_t* corners = nullptr;  ///< three for each face
+  const std::uint32_t* corners = nullptr;  ///< the vertices of the three corners of each face
   std::size_t face_count = 0;
   const float* from = nullptr;
-  const float* to = nullptr;  ///< paired: from + 4
+  const float* to = nullptr;  ///< equal to from + 4 if positions are paired
   std::size_t vertex_count = 0;
   bool is_paired = false;
-  bool is_coherent = true;  ///< neighbouring faces have neighbouring vertices, so nothing is prefetched
+  /// True if neighbouring faces have neighbouring vertices, so that nothing need be prefetched.
+  bool is_coherent = true;
 };
 
-/// The vector n(t) of a face, and a bound of its error, which is 2^-24 `error`.
+/// The vector n(t) of a face, and a bound of its error: the bound is 2^-24 times `error`.
 struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
 
-/// The largest A B, in units of |n|^2, for which double is precise enough. The error that remains is below kThinError
+/// The largest A B, divided by |n|^2, for which double is precise enough. The remaining error is below kThinError
 /// sqrt(A B), in units of 2^-24.
 inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
-/// The place of the normals of faces: the normal of face f is normals[f & mask].
+/// The normals of faces in a ring: the normal of face f is normals[f & mask].
 struct NormalWindow {
   const FaceNormal* normals = nullptr;
   std::size_t mask = 0;
   bool fetch = false;  ///< true if the normals are scattered in memory, and have to be prefetched
 };
 
-/// Writes the unit normals of a range of faces, and into `doubtful` the places in the range whose normals are not
-/// reliable. Returns the number of doubtful places. `stream` bypasses the caches if the result is packed and aligned to
-/// 64 bytes. faces.count > 0; result must have faces.count elements, and doubtful must have as much room
+/// Writes the unit normals of a range of faces. Writes to `doubtful` the places in the range whose normals are not
+/// reliable, and returns their number. If `stream` is true, and the result is packed and aligned to 64 bytes, it
+/// bypasses the caches. Preconditions: faces.count > 0; result has faces.count elements, and doubtful has room for as
+/// many.
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
-/// Writes the normals of a range of faces in the same way, but with their lengths and errors.
+/// Writes the normals of a range of faces like recompute_unit_normals(), but with their lengths and error bounds.
 std::size_t recompute_face_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    FaceNormal* result, std::uint32_t* doubtful) noexcept;
 
-/// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. Elements are
-/// doubtful if their faces cancel, or if the sum is (0, 0, 0). elements.count > 0; result must have elements.count
-/// elements, and doubtful must have as much room
+/// Adds up the normals around each element in the order of groups.faces(), and writes unit normals. An element is
+/// doubtful if its faces cancel, or if its sum is (0, 0, 0). Preconditions: elements.count > 0; result has
+/// elements.count elements, and doubtful has room for as many.
 std::size_t recompute_group_normals(const NormalGroups& groups, IndexRange elements, const NormalWindow& window,
                                     VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 

@@ -1,5 +1,5 @@
-// Writes unit normals from lanes into the memory of the caller: packed, past the caches, as planes, or one by one. Also
-// lists the elements whose normals are not reliable.
+// Writes unit normals from lanes to the memory of the caller: packed, packed and past the caches, as planes, or one by
+// one. Also lists the elements whose normals are not reliable.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 
@@ -23,7 +23,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace chronormal::inline internal::HWY_NAMESPACE {
 
-// Appends the places of lanes that are not to be trusted.
+// Appends to `doubtful` the places of the lanes that are not trusted.
 HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std::size_t end, std::size_t count,
                               std::uint32_t* doubtful) {
   if (HWY_LIKELY(hn::AllTrue(kFloats, trusted))) return count;
@@ -37,7 +37,7 @@ HWY_INLINE std::size_t Append(hn::Mask<FloatTag> trusted, std::size_t first, std
 
 enum class ResultLayout { kPacked, kStreamed, kPlanes, kOther };
 
-// Writes kLanes vectors from number `first` on, except those beyond the end.
+// Writes kLanes vectors to the places from `first` on. Vectors beyond the end of the result are left out.
 template <ResultLayout kLayout>
 HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float>& result) {
   if (HWY_LIKELY(kLayout != ResultLayout::kOther && first + kLanes <= result.count)) {
@@ -57,7 +57,7 @@ HWY_INLINE void Write(const Lanes3& v, std::size_t first, const VectorView<float
   for (std::size_t i = 0; i < kLanes && first + i < result.count; ++i) result.set(first + i, {x[i], y[i], z[i]});
 }
 
-// Calls body with the layout of a result as a constant.
+// Calls body with the layout of a result, as a constant of the compiler.
 template <class Body>
 HWY_INLINE std::size_t WithLayout(const VectorView<float>& result, bool stream, const Body& body) {
   if (result.stride == 1) return body(std::integral_constant<ResultLayout, ResultLayout::kPlanes>());
