@@ -25,8 +25,8 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
-// Returns true if two shards may belong to one audit, that is, if they judge the same vertices at the same samples by
-// the same rule.
+// Returns true if two shards may belong to one audit: both judge the same vertices at the same samples by the same
+// rule.
 bool are_of_one(const Audit& a, const Audit& b) {
   const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
@@ -86,14 +86,14 @@ MotionError error_of_mesh(const Audit& audit, std::size_t mesh) {
 }
 
 WorseRespects find_worse(const MotionError& after, const MotionError& before) noexcept {
-  // Tolerances in degrees for rounding errors. A sum in float32 has an error of 1e-7 relative to its terms, and a
-  // normal may be a hundredth as long as its terms.
+  // Tolerances for rounding errors, in degrees. A sum in float32 has an error of 1e-7 times the length of its terms,
+  // and a normal may be a hundredth as long as the terms of its sum.
   constexpr double kWorst = 0.05, kMean = 0.001;
-  // The average may also grow because fewer samples are judged, so the sum must grow as well. Samples drop out if
-  // deltas are gone that were only rounding errors.
+  // The average also grows if fewer samples are judged, for example because deltas are gone that were only rounding
+  // errors. For this reason the sum of all errors must grow as well.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  // Rounding may tear edges that were nearly torn before, one for each hundred torn edges.
+  // Rounding may tear edges that were nearly torn before. One more torn edge is allowed for each hundred torn edges.
   const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
@@ -106,7 +106,7 @@ std::size_t FineBins::operator[](std::size_t number) const noexcept {
 
 void FineBins::add(std::size_t number, std::uint64_t count) {
   if (count == 0) return;
-  if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));  // mostly
+  if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));  // usually
   const auto at =
       std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
   if (at != bins_.end() && at->number() == number)
@@ -215,7 +215,8 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // If both ends of an edge are within half of the smallest tear, the edge is not torn. This test skips most edges.
+  // If both ends of an edge are within half of the smallest tear, the edge is not torn. Most edges pass this test and
+  // need no other.
   constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // slightly less, as a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
@@ -244,7 +245,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {
   if (options.samples) return *options.samples;
-  // The number is odd, so that one sample is in the middle.
+  // The number of samples is odd, so that one sample is in the middle of the segment.
   return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, fewest, kAuditSamples);
 }
 

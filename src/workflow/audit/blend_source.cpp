@@ -14,8 +14,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-// The number of morph targets from which adding up deltas takes longer than interpolating between both ends of a
-// segment.
+// The least number of morph targets for which the sum of all deltas takes longer than an interpolation between both
+// ends of a segment.
 constexpr std::ptrdiff_t kManyTargets = 8;
 
 }  // namespace
@@ -84,7 +84,8 @@ bool BlendSource::place(std::size_t segment, double t, std::span<Vec3d> position
   return true;
 }
 
-// Computes positions at both ends of a segment. Reuses the previous end if the segment starts there.
+// Computes the positions at both ends of a segment. If the segment starts at the end of the last segment, reuses the
+// positions of that end.
 void BlendSource::place_ends(std::size_t segment) {
   if (!ends_) ends_ = SegmentEnds{};
   std::vector<double> start = weights(segment, 0), end = weights(segment, 1);
@@ -103,7 +104,7 @@ void BlendSource::place_ends(std::size_t segment) {
   ends_->end = std::move(end);
 }
 
-// Returns true if the current weights lie on the straight line between the weights at both ends, apart from rounding.
+// Returns true if the current weights lie on the straight line between the weights at both ends, up to rounding errors.
 bool BlendSource::is_between_ends(double t) const {
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
   for (std::size_t k = 0; k < now_.size(); ++k) {
@@ -213,7 +214,7 @@ void BlendSource::place_base(std::span<Vec3d> positions) const {
     positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
 }
 
-// Returns the deltas of an involved target, with vertices numbered as in the part.
+// Returns the deltas of an involved target. Vertices have their numbers in the part.
 const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   if (moved_[k]) return *moved_[k];
   std::vector<Delta>& result = moved_[k].emplace();
@@ -234,8 +235,8 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
 // Returns the weights of the current moment and of the moments that follow in its segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // Finds the first sample after t_. There may be a million samples, so the search starts at t_ samples_: no sample
-  // after t_ has a smaller index, since samples are evenly spaced.
+  // Finds the first sample after t_. There may be a million samples, and they are evenly spaced, so no sample after t_
+  // has an index below t_ times the number of samples.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
   for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)

@@ -24,13 +24,13 @@ namespace chronormal::inline internal {
   return {v[0], v[1], v[2]};
 }
 
-/// Returns the place of a vertex in words of the file: `vertex` counts through all parts, and the place names the part
-/// and the vertex in it.
+/// Returns the place of a vertex as a message names it. `vertex` counts through all parts of the mesh. The place has
+/// the number of the part, and the number of the vertex in this part.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// Writes the weights of the targets that are involved in a motion, at t of a segment.
+/// A function that writes the weights of the targets that are involved in a motion, at position t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// A function that returns the weight or the time by which messages name a moment.
+/// A function that returns the weight or the time by which messages name position t of a segment.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {
@@ -38,15 +38,16 @@ class BlendSource {
   static constexpr bool kNeedsEnds = false;
 
   /// Creates a source. shading, truth, part, and the skin through which the mesh is seen (if there is one) must outlive
-  /// it. Outputs are the outputs of the part. If the joints of the skin move, moment must return the time. `involved`
-  /// lists targets in ascending order: `weights` has a value for each of them, and all other targets always have weight
-  /// 0. Each segment is placed at `samples` moments, one after the other.
+  /// the source. Its outputs are the outputs of the part. If the joints of the skin move, moment must return the time
+  /// in seconds. `involved` lists targets in ascending order. `weights` writes a value for each of these targets, and
+  /// all other targets always have weight 0. The caller places the source at `samples` moments of each segment, in
+  /// ascending order.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
-  /// Writes the positions at any weights. Does not change the placed moment.
+  /// Writes the positions of the part at the given weights. Does not change the placed moment.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
   /// Returns the weights of the placed moment.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
@@ -54,15 +55,16 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Turn sums of face normals into true normals by adding the author's own offset: at the placed moment, or at any
-  /// weights.
+  /// Turn sums of face normals into true normals, at the placed moment or at the given weights, by adding the angle
+  /// between the author's normals and the geometry.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
-  /// Adds up the rendered normals at the placed moment, and finds how the skin transforms them.
+  /// Adds up the stored normals as they are rendered at the placed moment, and finds how the skin transforms them.
   void show();
-  /// Returns a normal of the i-th output as a person sees it, of any length: transformed by the skin, if there is one.
+  /// Returns a normal of the i-th output as the screen shows it: transformed by the skin, if there is one. The result
+  /// has any length.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
-  /// Returns true if the skin collapses the true normal, so that no target could render it.
+  /// Returns true if the skin collapses the true normal. No target could correct such a normal.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   void shown(std::size_t first, std::span<Vec3d> normals) const;
@@ -71,8 +73,8 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  // Weights and positions at both ends of a segment. Most tracks are linear in between, and then vertices move on
-  // straight lines. So the deltas of many targets need to be added up only at the ends.
+  // Weights and positions at both ends of a segment. Most tracks are linear between two keys, and then vertices move on
+  // straight lines. For such tracks, the deltas of many targets need to be added up only at the ends.
   struct SegmentEnds {
     std::size_t segment = 0;
     std::vector<double> start, end;  // weights
@@ -105,15 +107,16 @@ class BlendSource {
   double t_ = 0;
   std::vector<double> now_, start_, end_;
   StoredSums sums_;
-  std::span<const float> shown_now_, shown_start_, shown_end_;  // sums at the moment and both ends, (outputs, 3)
+  // Sums at the moment, the start and the end, (outputs, 3).
+  std::span<const float> shown_now_, shown_start_, shown_end_;
 };
 
-/// Finds the vertices whose normals some of the targets change, by moving a face around the vertex or by a stored
-/// delta. For the rule flat, finds corners instead of vertices.
+/// Lists the vertices whose normals change with some of these targets, because the targets move a face around the
+/// vertex or have a delta for its stored normal. For the rule flat, lists corners instead of vertices.
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
 
-/// Makes the part of a mesh that has these outputs, for an audit.
+/// Returns the part of a mesh that has these outputs.
 [[nodiscard]] JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth,
                                      std::vector<JudgedOutput> outputs, AuditRule rule);
 

@@ -1,5 +1,6 @@
-// Audits glTF files. For each mesh, the audit measures the distance of the author's normals from the geometry, every
-// target from weight 0 to 1, every track of weights and every expression of an avatar, and collects notes.
+// Audits glTF files. For each mesh, the audit measures the angles between the author's normals and the geometry. It
+// then measures the errors of each target from weight 0 to 1, of each track of weights, and of each expression of an
+// avatar.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -43,11 +44,12 @@ struct MeshAudit {
   std::function<void()> progress;
   ErrorTable* errors;  // nullptr if errors are not kept
   const AuditWatch& watch;
-  MeshSkin* standing;                    // the skin for targets and expressions, or nullptr
+  MeshSkin* standing;                    // the skin for targets and expressions; nullptr if there is none
   std::map<std::size_t, Error>& unread;  // the reasons why skins of nodes cannot be read
 };
 
-// Reads the skin of a node, which must have one. If the skin cannot be read, returns nothing and notes the reason.
+// Reads the skin of a node, which must have a skin. If the skin cannot be read, returns nothing and adds the reason to
+// `unread`.
 std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                   std::optional<std::size_t> animation, std::map<std::size_t, Error>& unread) {
   Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation);
@@ -56,7 +58,8 @@ std::optional<MeshSkin> read_skin(const GltfDocument& document, const GltfShadin
   return std::nullopt;
 }
 
-// Reads the skin of the first node that has a skin and this mesh, posed as in the file.
+// Reads the skin of the first node that has this mesh and a skin. The joints have the pose in which the file stores
+// them.
 std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfShading& shading,
                                       std::map<std::size_t, Error>& unread) {
   const std::vector<GltfNode>& nodes = document.nodes();
@@ -66,10 +69,10 @@ std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfSh
   return read_skin(document, shading, static_cast<std::size_t>(found - nodes.begin()), std::nullopt, unread);
 }
 
-// Tracks as pairs: the index of an animation, and the index of a track in it.
+// A list of tracks. Each pair has the index of an animation, and the index of a track in this animation.
 using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// Lists the tracks that drive a mesh, in the requested animations.
+// Lists the tracks that drive a mesh: in all animations, or only in the requested one.
 Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<std::size_t> only) {
   Tracks tracks;
   for (std::size_t a = 0; a < document.animations().size(); ++a) {
@@ -80,7 +83,8 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures the angles between the stored base normals and the sums of face normals that define the true normals.
+// Measures the angles between the stored base normals and the sums of face normals from which the true normals are
+// computed.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -101,7 +105,7 @@ void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, Auth
   }
 }
 
-// Records the angles between base normals and the geometry, if there are base normals.
+// Records the angles between the base normals and the geometry. Records nothing if no vertex has a base normal.
 void note_offset(const GltfShading& shading, const AuthorTruth& truth, const AuthoredWeighting& authored,
                  std::optional<Weighting> asked, Audit& result) {
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
@@ -116,8 +120,8 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, const Aut
   result.offsets.push_back(offset);
 }
 
-// Finds the mesh as it was before the bake, from an earlier audit if that audit had the same normals. Returns nothing
-// if the original is not known.
+// Returns the mesh as it was before the bake. Takes it from an earlier audit if that audit read the same normals.
+// Returns nothing if the original file is not known.
 Result<std::shared_ptr<AuthorOfMesh>> original_of(const AuditOptions& options, const GltfShading& baked,
                                                   const KnownAuthors* known) {
   std::shared_ptr<AuthorOfMesh> author;
@@ -145,26 +149,28 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   return part;
 }
 
-// The weights of the targets that are involved in a subject: as specified, and as each viewer plays them.
+// The functions that write the weights of a subject's targets: as the specification of glTF requires, and as each
+// viewer plays them.
 struct SubjectWeights {
   Weights specified;
   std::vector<Weights> played;
 };
 
-// A subject with its errors in each viewer.
+// A subject of the audit, with its errors in each viewer.
 struct Measured {
   AuditSubject subject;
   std::vector<ViewerError> of_viewers;
 };
 
-// Returns weights for all targets: zero for each target that is not involved.
+// Returns the weights of all targets. A target that is not involved has weight 0.
 std::vector<double> of_all_targets(std::span<const double> weights, const Involved& involved, std::size_t targets) {
   std::vector<double> all(targets);
   for (std::size_t i = 0; i < involved.size(); ++i) all[involved[i]] = weights[i];
   return all;
 }
 
-// Turns a function that writes the weights of all targets into one that writes only the weights of involved targets.
+// Turns a function that writes the weights of all targets into a function that writes only the weights of involved
+// targets.
 Weights of_involved(const Involved& involved, std::size_t targets, Weights all_weights) {
   return [&involved, targets, all_weights = std::move(all_weights)](std::size_t segment, double t,
                                                                     std::span<double> weights) {
@@ -174,8 +180,8 @@ Weights of_involved(const Involved& involved, std::size_t targets, Weights all_w
   };
 }
 
-// The segments of a track, or the one segment of a target. They are all in memory, so reading them cannot fail. In a
-// long track, only every step-th segment is measured.
+// The segments of a track, or the one segment of a target. The segments are all in memory, so reading them cannot fail.
+// In a long track, only every step-th segment is measured.
 struct SegmentsOfTrack {
   std::size_t count, step;
   const std::function<void()>& progress;
@@ -195,7 +201,8 @@ struct SegmentsOfTrack {
   }
 };
 
-// Measures a subject; `index` is its future index in the result. Returns nothing if no output can be judged.
+// Measures a subject. `index` is the index that the subject will have in the result. Returns nothing if no output can
+// be judged.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
                                      AuditSubject subject, std::size_t index) {
@@ -238,7 +245,8 @@ void add_subject(Measured measured, Audit& result) {
   result.subjects.push_back(std::move(measured.subject));
 }
 
-// Audits a target from weight 0 to 1. Correction targets of a bake get the weights that follow from it.
+// Audits a target from weight 0 to 1. Correction targets of a bake get the weights that the bake defines for this
+// weight.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   Involved involved = {k};
@@ -291,8 +299,8 @@ void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   add_subject(std::move(*measured), result);
 }
 
-// Audits the weights between two keys of a track, and the part of the mesh that they move. Returns nothing for a track
-// that moves nothing.
+// Audits a track at its keys and between them. Judges the part of the mesh that the track moves. Returns nothing for a
+// track that moves no vertex.
 Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t animation, std::size_t index,
                                             std::size_t subject_index) {
   const GltfTrack& track = mesh.document.animations()[animation].tracks[index];
@@ -345,10 +353,11 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
                       std::move(subject), subject_index);
 }
 
-// Audits all tracks of a mesh. Tracks with the same keys are measured once, but each track is a subject.
+// Audits all tracks of a mesh. Tracks with the same keys are measured once, but each track becomes a subject of the
+// result.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  // The key is the animation, the track's same_keys_as, and the skin of the node.
+  // A curve is known by the animation, the track's same_keys_as, and the skin of the node.
   using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
   std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {
@@ -409,7 +418,8 @@ std::optional<Measured> measure_poses(const MeshAudit& mesh, const PoseList& pos
   return measure_part(mesh, part_of(mesh, involved), involved, weights, moment, skin, std::move(subject), index);
 }
 
-// Audits an expression of an avatar at full strength, with the weights of correction targets that follow from it.
+// Audits an expression of an avatar at full strength. Correction targets get the weights that follow from the weights
+// of the expression.
 void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_target, Audit& result) {
   const GltfExpression& expression = mesh.document.meshes()[mesh.shading.mesh].expressions[index];
   std::vector<double> full = expression.weights;
@@ -428,7 +438,8 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
-// Lists the distinct sets of weights with which a file opens, except all zeros. Each has the first node that shows it.
+// Lists the distinct sets of weights with which a file opens, except sets of zeros. Each set has the index of the first
+// node that shows it.
 std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
                                                                                       std::size_t mesh) {
   std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;
@@ -458,7 +469,7 @@ void add_poses(std::optional<Measured> measured, Audit& result) {
   add_subject(std::move(*measured), result);
 }
 
-// Audits the poses of a mesh when the file opens.
+// Audits the poses that a mesh has when a viewer opens the file.
 void audit_openings(const MeshAudit& mesh, Audit& result) {
   for (const auto& [weights, node] : opening_poses(mesh.document, mesh.shading.mesh)) {
     AuditSubject subject;
@@ -509,7 +520,7 @@ std::size_t count_segments(const GltfDocument& document, const AuditOptions& opt
   return total;
 }
 
-// Returns an upper bound of the number of samples of all subjects of a mesh.
+// Returns an upper bound of the number of samples in all subjects of a mesh.
 std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tracks& tracks, bool only_tracks,
                        const AuditOptions& options) {
   const GltfMesh& of_mesh = document.meshes()[mesh];
@@ -525,7 +536,7 @@ std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tra
   return rows;
 }
 
-// Makes the table of a mesh, with no rows yet.
+// Returns an error table for a mesh, with no rows yet.
 ErrorTable table_of(const GltfShading& shading) {
   ErrorTable table{"mesh" + std::to_string(shading.mesh), ElementKind::kVertices, shading.set.topology,
                    shading.set.base};

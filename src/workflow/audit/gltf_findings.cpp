@@ -25,8 +25,8 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
   return first != moved.end() && *first < part.first_vertex + part.vertex_count;
 }
 
-// Finds stale tangents: at weight 1 of a target, they are farther from perpendicular to the true normal than in the
-// base.
+// Finds stale tangents of a target. A tangent is stale if at weight 1 it is farther from perpendicular to the true
+// normal than in the base.
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const AuthorTruth& truth, AuditRule rule,
                                            std::size_t k, const JudgedPart& part, std::span<const std::size_t> involved,
                                            const Weights& weights) {
@@ -158,7 +158,7 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
   if (!fault || fault->kind == Kind::kUnlit) return fault;
-  // The findings of the targets report an error of this size already.
+  // The findings of the targets already report an error of this size.
   if (are_targets_judged && worst_target > kAuditFault && subject.error.worst <= worst_target + kAuditFault)
     return std::nullopt;
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;

@@ -14,11 +14,11 @@
 
 namespace chronormal::inline internal {
 
-/// Collects facts that are not faults but useful to the reader of an audit.
+/// Lists facts that are not faults, but that a reader of the audit should know.
 [[nodiscard]] std::vector<AuditFinding> notes_of(const GltfDocument& document, const GltfShading& shading);
 
-/// Makes notes on the nodes that carry the mesh with a skin: which skins were used to judge these subjects, and which
-/// skins or animations could not be read.
+/// Makes notes on the nodes that have the mesh and a skin. The notes tell which skins were used to judge the subjects,
+/// and which skins or animations could not be read.
 [[nodiscard]] std::vector<AuditFinding> notes_of_skins(const GltfDocument& document, const GltfShading& shading,
                                                        std::span<const AuditSubject> subjects,
                                                        const std::map<std::size_t, Error>& unread);
@@ -26,18 +26,19 @@ namespace chronormal::inline internal {
 /// Lists the viewers that support fewer targets than the mesh has.
 [[nodiscard]] std::vector<AuditFinding> limits_of(const GltfShading& shading, std::span<const Viewer> viewers);
 
-/// Finds the faults of a measured target, at the weights of the involved targets at which it was measured.
+/// Finds the faults of a measured target. `weights` has the weights of the involved targets at which the target was
+/// measured.
 [[nodiscard]] std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const GltfShading& shading,
                                                          const AuthorTruth& truth, AuditRule rule,
                                                          const AuditSubject& subject, const JudgedPart& part,
                                                          std::span<const std::size_t> involved, const Weights& weights);
 
-/// Finds the fault of a measured track. are_targets_judged tells whether targets were judged one by one before, and
-/// worst_target is their largest error.
+/// Finds the fault of a measured track. are_targets_judged tells whether each target was judged alone before, and
+/// worst_target is the largest error of these targets in degrees.
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-/// Makes notes on keys that say nothing about the author's normals, and on an unknown rule of the author.
+/// Makes notes on keys from which the author's normals cannot be derived, and on normals whose rule is unknown.
 [[nodiscard]] std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth);
 
 /// Finds the fault of a pose in which a file opens, or of a requested pose.

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
 
-// Numbers all marks that are not kUnused, in order, and returns their indices.
+// Replaces all marks that are not kUnused by the numbers 0, 1, 2 and so on. Returns the indices of these marks.
 std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
   std::vector<std::uint32_t> used;
   used.reserve(marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), kUnused)));
@@ -45,8 +45,8 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   }
   vertices_ = number_used(vertex);
 
-  // Stores the normals of faces if computing them again for each element would take long, or if they take little
-  // memory.
+  // The normals of faces are stored if they take little memory, or if computing them again for each element would take
+  // long.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
   const bool has_corners = weighting != Weighting::kArea;
   keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);
@@ -86,7 +86,7 @@ void JudgedPart::set_edges(std::span<const std::array<std::uint32_t, 2>> edges, 
   output_of_.assign(vertex_count, none);
   for (std::uint32_t i = 0; i < none; ++i) output_of_[outputs_[i].vertex] = i;
   edges_ = edges;
-  if (2 * outputs_.size() > vertex_count) return;  // a separate list would cost more memory than it saves time
+  if (2 * outputs_.size() > vertex_count) return;  // a list of its own would cost more memory than it saves time
   for (const auto& [a, b] : edges)
     if (output_of_[a] != none || output_of_[b] != none) own_edges_.push_back({a, b});
   if (own_edges_.empty()) edges_ = {};
@@ -100,7 +100,8 @@ void JudgedPart::normals(std::span<const Vec3d> positions, PartNormals& result) 
   if (sums_ != nullptr) return given_normals(positions, result);
   if (weighting_ != Weighting::kArea) return weighted_normals(positions, result);
   numbered_blocks(result.elements.size(), kRange, [&](std::size_t, std::size_t first, std::size_t last) {
-    // A face whose normal was computed recently. It is kept because neighbouring elements often need the same faces.
+    // A face whose normal was computed recently. The normal is kept because neighbouring elements often need the same
+    // faces.
     struct Known {
       std::uint32_t face = kUnused;
       Vec3d normal;

@@ -19,11 +19,12 @@ namespace chronormal::inline internal {
 /// The number of elements or outputs that one task handles.
 inline constexpr std::size_t kRange = 4096;
 
-/// If terms cancel to less than this share of their size, the sum is only rounding error and has no direction.
+/// A share of the sum of the sizes of some terms. A shorter sum consists only of rounding errors and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
-/// Bounds the change of a polygon's normal if each coordinate of its corners is rounded to float32, which changes it by
-/// at most 2^-24 of its value. The change of the normal is the sum over the corners c of d p[c] x (p[c+1] - p[c-1]).
+/// Returns a bound of the change of a polygon's normal if the coordinates of its corners are rounded to float32.
+/// Rounding changes a coordinate by at most 2^-24 of its value. The change of the normal is the sum over the corners c
+/// of d p[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
   constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // relative to the largest of three coordinates
@@ -35,7 +36,7 @@ template <class VertexAt>
   return sum;
 }
 
-/// An output, which shows a normal: a vertex, or a corner if its vertex has several normals.
+/// A vertex whose normal is judged, or a corner if its vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
   std::uint32_t face = 0, corner = 0;  ///< for rules that need a face and a corner
@@ -50,9 +51,10 @@ struct PartNormals {
 /// normal), and the faces and vertices around these, renumbered.
 class JudgedPart {
  public:
-  /// Elements and faces of the outputs are renumbered for this part; vertices and corners keep their numbers in the
-  /// mesh. If needs_faces is false, normals() may leave out the normals of faces. If the weighting is area, `groups`
-  /// need no corners. If sums is given, it supplies the normals of elements and must outlive the object.
+  /// Creates the part. Elements and faces of the outputs are renumbered for this part, but vertices and corners keep
+  /// their numbers in the mesh. If needs_faces is false, normals() may leave out the normals of faces. If the weighting
+  /// is area, `groups` need no corners. If sums is given, it supplies the normals of elements and must outlive the
+  /// part.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
@@ -61,7 +63,7 @@ class JudgedPart {
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
 
-  /// Returns the faces of an element. corners_of() numbers the corners of a face as vertices() does.
+  /// Returns the faces of an element. corners_of() returns the corners of a face as indices in vertices().
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t element) const noexcept {
     return std::span(faces_of_element_)
         .subspan(element_offsets_[element], element_offsets_[element + 1] - element_offsets_[element]);
@@ -70,27 +72,29 @@ class JudgedPart {
     return std::span(face_vertices_).subspan(face_offsets_[face], face_offsets_[face + 1] - face_offsets_[face]);
   }
   /// Returns the edges as pairs of vertices of the mesh. The list contains every edge between two vertices with
-  /// outputs, and may contain others. output_of() returns the output of a vertex; if the vertex has none, an index
-  /// beyond all outputs.
+  /// outputs, and may contain other edges. output_of() returns the output of a vertex, or an index beyond all outputs
+  /// if the vertex has no output.
   [[nodiscard]] std::span<const std::array<std::uint32_t, 2>> edges() const noexcept {
     return own_edges_.empty() ? edges_ : own_edges_;
   }
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
-  /// Returns the number of vertices of the whole mesh, by which edges() numbers vertices.
+  /// Returns the number of vertices of the whole mesh. edges() uses the vertex numbers of the whole mesh.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
-  /// Sets the edges of the whole mesh, which has this many vertices. The edges must outlive the object. Every vertex
-  /// must have at most one output.
+  /// Sets the edges of the whole mesh, which has this many vertices. The edges must outlive the part. Every vertex must
+  /// have at most one output.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
-  /// Returns the index in vertices() of a vertex of the mesh. Only for parts with sums that need this vertex.
+  /// Returns the index that a vertex of the mesh has in vertices(). May be called only for parts with sums, and for
+  /// vertices that these sums need.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
-  /// Computes the normals of faces and elements from the positions of vertices(): cross products, and for elements
-  /// their weighted sums (normals/weighting.h) or the given sums. Sums that are only rounding error are not removed.
+  /// Computes the normals of faces and elements from the positions of vertices(). The normal of a face is a cross
+  /// product. The normal of an element is the weighted sum of face normals (normals/weighting.h), or the given sum.
+  /// Sums that are only rounding error are not removed.
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
-  /// Bounds the change of an element's normal if each of these positions is rounded to float32. Treats the weights of
-  /// its faces as constant.
+  /// Returns a bound of the change of an element's normal if these positions are rounded to float32. Treats the weights
+  /// of its faces as constant.
   [[nodiscard]] double rounding_of(std::span<const Vec3d> positions, std::size_t element) const;
 
  private:
@@ -104,12 +108,12 @@ class JudgedPart {
   std::vector<std::uint32_t> vertices_, elements_;
   std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // vertices as numbered in the part
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // elements and faces as numbered in the part
-  // The corner of each face that belongs to the element, by its number in the face; empty if faces are weighted by
-  // area.
+  // For each face of an element, the corner of the face that belongs to the element, by its number in the face. The
+  // list is empty if faces are weighted by area.
   std::vector<std::uint32_t> corners_of_element_;
   Weighting weighting_;
   const AuthorSums* sums_;
-  std::vector<std::uint32_t> places_;  // for vertices of the mesh, their indices in vertices_
+  std::vector<std::uint32_t> places_;  // for each vertex of the mesh, its index in vertices_
   bool keeps_faces_;                   // if false, each element computes the normals of its faces again
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;

@@ -1,5 +1,5 @@
-/// The loop of an audit: compares the true normals of the moving part of a mesh with the rendered ones. Private to
-/// workflow.
+/// The loop of an audit, which compares the rendered normals of a moving part of a mesh with the true normals. Private
+/// to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_H_
 
@@ -25,18 +25,18 @@
 
 namespace chronormal::inline internal {
 
-/// A normal shorter than this share of its largest control normal does not count in any sum: where a surface nearly
-/// collapses, its shading mostly follows from the normals around. With a limit (--tolerance), such a normal is judged
-/// as long as it has a direction.
+/// A share of an element's largest control normal. A shorter normal does not count in any sum, because where a surface
+/// nearly collapses, its shading mostly follows from the normals around it. If the caller sets a limit of the error
+/// (--tolerance), such a normal is still judged as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
-/// The value for the error of a sample whose faces have an area but whose normals cancel.
+/// The value that stands for the error of a sample whose faces have an area but whose normals cancel each other.
 inline constexpr double kCancels = -3;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
 inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 
-/// The number of outputs that are computed together: few enough for the fastest cache.
+/// The number of outputs that are computed together. Their data fit into the fastest cache.
 inline constexpr std::size_t kOutputsAtOnce = 256;
 
 /// Returns the bin of the histogram for an error in [0, 180] degrees.
@@ -46,11 +46,11 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
   return bin;
 }
 
-/// Returns the bin of the fine histogram for an error. If the processor does not round to nearest, an angle may also be
-/// -0 or slightly more than 180, so check the result before using it as an index.
+/// Returns the bin of the fine histogram for an error in degrees. If the processor does not round to nearest, an angle
+/// may also be -0 or slightly more than 180 degrees, so the result is clamped to the last bin.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
-  // Each power of two in degrees has 128 bins. So the exponent of a double and the first 7 bits of its fraction, read
-  // as one number, count the bins.
+  // Each power of two in degrees has 128 bins. For this reason the exponent of a double and the first 7 bits of its
+  // fraction, read as one integer, are the number of the bin apart from a constant.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
@@ -59,31 +59,32 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
   return static_cast<std::size_t>(std::min<std::uint64_t>(fine_bin, kAuditFineBins - 1));
 }
 
-/// Returns a lower bound, in degrees, of the angle between the rendered and the true direction: the angle between the
-/// two minus the angle by which rounding may have turned the true normal, which has this length and a rounding error of
-/// this size. Returns kNotJudged if rounding may give the normal any direction.
+/// Returns a lower bound, in degrees, of the angle between the rendered and the true normal. The bound is the computed
+/// angle minus the angle by which rounding may have turned the true normal, which has this length and a rounding error
+/// of this size. Returns kNotJudged if rounding may give the true normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
-/// Returns the normal that a rule renders between two stored normals, or (0, 0, 0) if the blend is zero.
+/// Returns the unit normal that a viewer renders by this rule between two stored normals. Returns (0, 0, 0) if the
+/// blended normal is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
-/// Returns the number of samples in each segment, or in each target if targets are judged one by one.
+/// Returns the number of samples in each segment. If targets are judged one by one, each target is a segment.
 [[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments,
                                               std::size_t fewest = kAuditFewSamples) noexcept;
 
-/// Returns the position of the i-th sample in its segment.
+/// Returns the position of the i-th sample in its segment, from 0 to 1.
 [[nodiscard]] inline double time_of_sample(std::size_t i, std::size_t samples) noexcept {
   return samples > 1 ? static_cast<double>(i) / static_cast<double>(samples - 1) : 0;
 }
 
 [[nodiscard]] Status check_samples(const AuditOptions& options);
 
-/// Returns the angles between the stored normals and the geometry, by the requested weighting, or by the detected one
-/// if none is requested.
+/// Returns the angles between the stored normals and the geometry, for the requested weighting of faces. If no
+/// weighting is requested, uses the detected weighting.
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
-/// Finds the fault of a subject whose stored normals have an error above kAuditFault. Normals that cannot be lit come
-/// first, then errors at keys, then errors between keys.
+/// Returns the fault of a subject whose stored normals have an error above kAuditFault. If the subject has several
+/// faults, returns the first of these: normals that cannot be lit, errors at keys, errors between keys.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
 /// Adds the errors of a segment to those of its subject.
@@ -92,32 +93,33 @@ inline void add_segment(const SegmentErrors& found, AuditSubject& subject) {
   subject.at_keys.add(found.at_keys);
 }
 
-/// Finishes an audit: adds up all subjects, finds the worst one, and puts faults before notes.
+/// Finishes an audit: adds up the errors of all subjects, finds the worst subject, and puts faults before notes.
 void finish(Audit& result);
 
-// A source is a motion together with the normals that are rendered during it:
-//     place(segment, t, positions)   writes the positions of the part; false if nothing differs from the last call
+// A source is a motion together with the normals that are rendered during it. It has these functions:
+//     place(segment, t, positions)   writes the positions of the part; returns false if they are as in the last call
 //     forget()                       makes the next call of place() return true
 //     turn(positions, normals)       turns the normals of the part into true directions, and keeps their lengths
 //     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
 //     show()                         is called after each placement, before shown()
-//     shown(first, normals)          writes the normals of outputs from number `first` on; zero if there is none
-//     seen(i, n)                     returns a normal of the i-th output as it reaches the screen
+//     shown(first, normals)          writes the rendered normals of outputs from number `first` on; zero if no sum
+//     exists
+//     seen(i, n)                     returns a normal of the i-th output as the screen shows it
 //     right(first, normals)          replaces normals of the geometry by the true directions for outputs from number
 //                                    `first` on
 //     hides(output, n)               tells whether the true normal has no direction on the screen and is not judged
-//     at(segment, t, output)         returns the place in terms that a person understands
+//     at(segment, t, output)         returns the place as a message names it
 //
-// Segments tell where to measure:
+// Segments tell where to measure. They have these functions:
 //     look_over(look)                calls look(segment) for segments that determine the largest normals; a Status
 //     maximize(numbers)              replaces each number by the largest of all processes that have other segments
 //     over(subject, work)            adds work(segment), the errors of each measured segment, to the subject; a Status
 
-/// Positions and normals of a part, as placed by the source.
+/// The positions and normals of a part at the moment at which the source was placed last.
 struct PlacedPart {
   explicit PlacedPart(const JudgedPart& judged) : part(judged), positions(judged.vertices().size()) {}
 
-  /// Returns whether anything differs from the last call.
+  /// Places the part at position t of a segment. Returns true if any position differs from the last call.
   template <class Source>
   bool place(Source& source, std::size_t segment, double t) {
     const bool differs = source.place(segment, t, positions);
@@ -133,9 +135,9 @@ struct PlacedPart {
   PartNormals normals;
 };
 
-/// Returns the length of the largest control normal of each element in all segments. The control normals of a quadratic
-/// follow from its ends and its middle. (On curved paths they belong to the parabola through these three, which is near
-/// enough for a scale.)
+/// Returns the length of the largest control normal of each element in all segments. The control normals of a segment
+/// follow from the normals at its ends and its middle. On curved paths they belong to the parabola through these three
+/// normals, which is accurate enough for a length to compare with.
 template <class Source, class Segments>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, Segments& segments,
                                                                   PlacedPart& placed) {
@@ -160,9 +162,9 @@ template <class Source, class Segments>
 }
 
 /// Adds the errors of some outputs, in order, to an empty result. Has the same effect as MotionError::add() and
-/// add_unlit(), in less time. degrees_of() returns the error of an output, kNotLit or kNotJudged. If it is kNotJudged,
-/// faint_of() decides whether a tolerance applies nevertheless: it returns the error of the sample, kNotJudged if no
-/// face around it has an area, or kCancels.
+/// add_unlit(), in less time. degrees_of() returns the error of an output in degrees, kNotLit or kNotJudged. For an
+/// output with kNotJudged, faint_of() is called. It returns the error if a tolerance applies to this output all the
+/// same, kCancels, or kNotJudged if no face around the output has an area.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
@@ -214,7 +216,7 @@ struct RightOutput {
   Vec3d direction;          ///< the direction that source.right() returns
   bool is_hidden = false;   ///< the result of source.hides()
   bool has_normal = false;  ///< tells whether the normal is long enough to judge by
-  bool has_area = false;    ///< whether a face around the output is drawn: faces without area are not drawn
+  bool has_area = false;    ///< tells whether a face around the output has an area; faces without area are not drawn
 };
 
 /// The true normals of all placed outputs, in 25 bytes each.
@@ -261,8 +263,8 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
 }
 
 /// Returns the errors of all placed outputs. shown(first, normals) writes the rendered normals of outputs from number
-/// `first` on, and `right` has the true normals. If `each` is not empty, it gets the error of every output in degrees,
-/// NaN for outputs that are not judged.
+/// `first` on, and `right` has the true normals. If `each` is not empty, it receives the error of every output in
+/// degrees, or NaN for an output that is not judged.
 template <class Source, class Shown>
 [[nodiscard]] MotionError error_at(const Source& source, const PlacedPart& placed, bool is_flat, std::size_t segment,
                                    double t, const Shown& shown, const RightOutputs& right,
@@ -328,33 +330,34 @@ template <class Source, class Shown>
   return all;
 }
 
-/// The table that keeps single errors, and the subject that they belong to.
+/// The table that stores the error of every sample, and the subject to which the errors belong.
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr if errors are not kept
   std::size_t subject = 0;
-  bool are_watched = false;  ///< whether each_sample uses the outputs
+  bool are_watched = false;  ///< tells whether each_sample uses the outputs
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
-/// A measured sample.
+/// A sample that was measured, as each_sample() receives it.
 struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
   const PlacedPart& placed;
   std::span<const double> largest;  ///< the result of largest_control_normals()
-  std::span<const double> next;     ///< the places of the next samples in the segment
+  std::span<const double> next;     ///< positions of the next samples in the segment, from 0 to 1
   const RightOutputs& right;        ///< of all outputs
   const MotionError& error;
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };
 
-/// Appends the errors at a sample to the table. A vertex with several outputs gets the worst of their errors.
+/// Appends the errors at a sample to the table, in degrees. A vertex with several outputs gets the largest of their
+/// errors.
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of the segments of a subject, and fills in its errors. Calls each_sample(measured sample) for
-/// every sample. Errors: as the segments return them.
+/// Measures all samples of a subject's segments, and writes the errors into the subject. Calls each_sample(measured
+/// sample) for every sample. Errors: as the segments return them.
 template <class Source, class Segments, class EachSample>
 [[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
                              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {

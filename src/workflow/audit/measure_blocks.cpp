@@ -17,11 +17,12 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The number of blocks that are measured at a time, for each thread: enough to keep all threads busy, and few enough to
-// keep the results small.
+// The number of blocks for each thread that are measured before their results are added up. The number is large enough
+// to keep all threads busy, and small enough to keep the results small.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
-// The most samples of a segment that are measured by blocks. The errors of a block take 20 kB for each sample.
+// The largest number of samples in a segment that are measured by blocks. The errors of a block take 20 kB for each
+// sample.
 constexpr std::size_t kMostSamples = 128;
 
 // A block: some outputs, and the faces from which their normals are computed.
@@ -66,7 +67,7 @@ struct Scratch {
   std::vector<double> degrees;
 };
 
-// Adds up the normals of the faces around each element at time t, and the lengths of these normals.
+// Adds up the normals of the faces around each element at time t, and also the lengths of these face normals.
 void add_up_at(const Block& block, double t, Scratch& scratch, PlanesOf4& result) {
   scratch.triangles.normals(t, scratch.faces);
   sums_around(scratch.faces, block.faces, block.face_ends, result);
@@ -76,7 +77,8 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// Raises each length to the largest one in these segments, like largest_control_normals() in measure.h.
+// Replaces the length of each element by its largest length in these segments, like largest_control_normals() in
+// measure.h.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
@@ -99,7 +101,7 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
   }
 }
 
-// Replaces each number by the largest that any peer has, with one exchange for all numbers.
+// Replaces each number by the largest one that any peer process has, with one exchange for all numbers.
 void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) {
   if (run.peers == nullptr) return;
   std::vector<double> all;
@@ -113,7 +115,8 @@ void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) 
   }
 }
 
-// Computes the normals that a viewer stores at a keyframe, and later interpolates, from the true normals.
+// Computes the normals that a viewer stores at a keyframe and interpolates afterwards. They are the true normals,
+// rounded.
 void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {
@@ -125,7 +128,7 @@ void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   }
 }
 
-// Bounds the change of an element's normal if the positions are rounded to float32.
+// Returns a bound of the change of an element's normal if the positions are rounded to float32.
 double rounding_at(const Segment& segment, double t, const Block& block, std::size_t e) {
   double sum = 0;
   for (std::uint32_t i = e == 0 ? 0 : block.face_ends[e - 1]; i < block.face_ends[e]; ++i) {
@@ -137,7 +140,8 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// Returns the normal that a viewer renders for an element. It is interpolated between the stored normals at both ends.
+// Returns the normal that a viewer renders for an element, interpolated between the normals that it stores at both
+// ends.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
@@ -195,7 +199,8 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
   std::vector<std::vector<double>> largest;  // of each block; an element between two blocks is in both
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
-  // Segments that are in memory at the same time share the normals at the keyframes between them.
+  // The segments that are in memory at the same time are examined together, because neighbours share a keyframe and its
+  // normals.
   const std::size_t at_once = segments.stream.keeps_all() ? std::max<std::size_t>(segments.of_motion.size(), 1) : 1;
   const Status looked =
       SegmentRun::look_over(segments.stream, segments.keys(), segments.looked_at(), at_once, [&](IndexRange some) {

@@ -1,8 +1,8 @@
-/// The loop of an audit for motions without stored normals whose faces are all triangles. It has the same results as
-/// measure(), but takes less time because it works block by block.
+/// The loop of an audit for motions without stored normals whose faces are all triangles. The loop has the same results
+/// as measure(), but takes less time because it works block by block.
 ///
-/// A block has some outputs with their elements and faces. Its positions are gathered once for each segment and stay in
-/// cache over all samples, and its normals and angles are computed in SIMD lanes
+/// A block has some outputs with their elements and faces. The positions of a block are gathered once for each segment
+/// and stay in the cache over all samples. The normals and angles of a block are computed in SIMD lanes
 /// (analysis/quality/kernels/shown_angles.h). Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_MEASURE_BLOCKS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_MEASURE_BLOCKS_H_
@@ -18,12 +18,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns true if measure_blocks() can be used: it needs triangles with area weights, a rule that interpolates
-/// linearly or not at all, and few enough samples that the memory of a segment stays small.
+/// Returns true if measure_blocks() can be used. It needs triangles with area weights, a rule that interpolates
+/// linearly or not at all, and so few samples that the errors of one segment take little memory.
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
 
-/// A function that names a moment and a vertex for people, like at() of a source (measure.h).
+/// A function that returns the place of a moment and a vertex as messages name it, like at() of a source (measure.h).
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
 /// The segments of a subject in a motion, in the form that measure() needs.
@@ -35,7 +35,7 @@ struct SegmentsOfRun {
   [[nodiscard]] auto keys() const {
     return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
   }
-  /// Returns the segments from which facts about all segments are derived.
+  /// Returns the segments that the run reads to find which vertices move and how long normals get.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
   /// Returns the segments to measure. Shards divide only a sequence, which is a single subject.
   [[nodiscard]] IndexRange rest() const noexcept {
@@ -57,7 +57,7 @@ struct SegmentsOfRun {
   }
 };
 
-/// Measures all samples of these segments, as measure() does for normals that a viewer computes at keyframes. The
+/// Measures all samples of these segments, as measure() does if a viewer computes the normals at keyframes itself. The
 /// outputs of the part must be in the order of their elements. Errors: as the stream and the run return them.
 [[nodiscard]] Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule,
                                     const FindPlace& at, AuditSubject& subject);

@@ -99,8 +99,8 @@ class SequenceSource {
     return stored_normal(normals_, keyframe, output);
   }
 
-  // Turns a direction by the offset that the author's normal has from the geometry at a keyframe, but by no larger
-  // angle than in keyframe 0.
+  // Turns a direction by the angle between the author's normal and the geometry at a keyframe. If that angle is larger
+  // than in keyframe 0, the direction is turned only by the angle of keyframe 0.
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));
@@ -167,8 +167,7 @@ Status check_normals(const Motion& motion, const StoredNormals& normals) {
   return Success{};
 }
 
-// Lists each vertex once for each normal that it shows. Corners of one element with the same stored normals share one
-// output.
+// Lists each vertex once for each of its normals. Corners of one element with the same stored normals share one output.
 std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups& groups, const StoredNormals& normals,
                                        const std::vector<bool>& moves, AuditRule rule, bool stored) {
   const auto corners = motion.topology.corners();
@@ -200,7 +199,7 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-// Finds the vertices that move. If peers (other processes) examine the other segments, examines only those of this run.
+// Finds the vertices that move. If peer processes examine the other segments, examines only the segments of this run.
 Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());
@@ -224,7 +223,7 @@ Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   return moves;
 }
 
-// Groups segments by subject: a sequence is one subject, and each target is one.
+// Groups the segments by subject. A sequence is one subject, and each target is a subject.
 std::vector<std::vector<std::size_t>> segments_of_subjects(const Motion& motion) {
   const bool is_targets = motion.kind == MotionKind::kTargets;
   std::vector<std::vector<std::size_t>> subjects(is_targets ? motion.segments.size() : 1);
@@ -397,8 +396,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   }
   if (result.subjects.empty()) result.errors.clear();
   if (run.shard) {
-    // This shard reads only its own keyframes if it has peers, and the checksums cover these. Without peers, it reads
-    // all keyframes for the facts about the whole motion.
+    // If this shard has peers, it reads only its own keyframes, and the checksums cover only these keyframes. Without
+    // peers, it reads all keyframes, to find facts about the whole motion.
     const Shard read = run.peers != nullptr ? *run.shard : Shard{};
     const Status status = seen.finish(keyframes_of_shard(motion, read), run.checksums);
     if (!status) return status.error();

@@ -1,5 +1,5 @@
-/// Measures the error that a skin itself adds. It turns even true normals away from the normals of the skinned surface,
-/// and no morph target can correct that. Private to workflow.
+/// Measures the error that a skin adds. The skin turns even true normals away from the normals of the skinned surface,
+/// and no morph target can correct this error. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_SKINNING_ERROR_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_SKINNING_ERROR_H_
 
@@ -13,12 +13,13 @@ namespace chronormal::inline internal {
 
 class SkinningErrors {
  public:
-  /// Judges a sample that the source has placed. Compares the true normal n(w), transformed by the skin and without the
-  /// author's offset, with the sum over the faces of the skinned positions. Mirrored faces keep their outer side. Skips
-  /// a sample if n(w) is below kVanished of its largest length, or if the faces of the skinned surface nearly cancel.
+  /// Judges a sample at which the source is placed. Compares the true normal n(w), transformed by the skin and without
+  /// the author's offset, with the sum of face normals of the skinned positions. Mirrored faces keep their outer side.
+  /// Skips a vertex if its n(w) is below kVanished of its largest length, or if the face normals of the skinned surface
+  /// nearly cancel.
   void add_sample(const BlendSource& source, const MeasuredSample& sample);
 
-  /// Returns nothing if the source has no skin.
+  /// Returns the error of all samples, or nothing if the source has no skin.
   [[nodiscard]] const std::optional<SkinningError>& all() const noexcept { return all_; }
 
  private:

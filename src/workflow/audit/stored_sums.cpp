@@ -1,4 +1,5 @@
-// Stores deltas as dense rows for groups of outputs, and multiplies them by the weights of several moments at once.
+// Stores deltas as dense rows for groups of outputs, and multiplies the deltas by the weights of several moments at
+// once.
 #include "workflow/audit/stored_sums.h"
 
 #include <algorithm>
@@ -76,7 +77,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
     if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
 }
 
-// by_target has the weights in the order (targets, sets of weights).
+// Adds up one group of outputs. by_target has the weights in the order (targets, sets of weights).
 void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);

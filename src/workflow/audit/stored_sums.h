@@ -1,8 +1,8 @@
 /// Adds up the stored normals of some outputs and their deltas, as the specification requires or as a viewer stores
 /// them. Private to workflow.
 ///
-/// The deltas of many targets do not fit into the cache, so the sum at one set of weights takes as long as reading all
-/// deltas. So the sums at several sets are computed in one pass.
+/// The deltas of many targets do not fit into the cache, so computing the sums for one set of weights takes as long as
+/// reading all deltas. For this reason the sums for several sets are computed in one pass.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_STORED_SUMS_H_
 
@@ -19,23 +19,25 @@ namespace chronormal::inline internal {
 
 class StoredSums {
  public:
-  static constexpr std::size_t kAtOnce = 4;  ///< this many sets of weights take hardly longer than one set
+  /// Sums of this many sets of weights take hardly longer than the sum of one set.
+  static constexpr std::size_t kAtOnce = 4;
 
-  /// Creates an empty store; shading and outputs must outlive it. `involved` lists targets in ascending order: a set of
-  /// weights has a value for each of them, and all other targets always have weight 0.
+  /// Creates an empty store. shading and outputs must outlive the store. `involved` lists targets in ascending order. A
+  /// set of weights has a value for each of these targets, and all other targets always have weight 0.
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
              const Viewer& viewer = {});
 
-  /// Computes the sum of the normal and of weight times delta over the targets, for every output at each set of
-  /// weights, in float32 and in the order of targets, as viewers do. Discards earlier results. A delta of zero is
-  /// skipped, even if its weight is infinite or NaN. Uses all threads.
+  /// Computes the sum of the normal and of weight times delta over the targets, for every output and each set of
+  /// weights. Adds in float32 and in the order of targets, as viewers do. Discards earlier results. Skips deltas of
+  /// zero, even if their weight is infinite or NaN. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 
-  /// Returns the sums at one of the sets of weights, three for each output; empty if the set is not known.
+  /// Returns the sums for one of the sets of weights, three numbers for each output. Returns an empty span if the set
+  /// is not known.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
-  /// Writes the unit normals, rounded to float, that are rendered for the sums of outputs from number `first` on. A
-  /// normal is zero, infinite or NaN if its sum is.
+  /// Writes the unit normals, rounded to float, that a viewer renders for the sums of outputs from number `first` on.
+  /// If a sum is zero, infinite or NaN, its normal is as well.
   void shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
@@ -60,7 +62,7 @@ class StoredSums {
   std::vector<Vec3f> kept_normals_;  // one for each output; empty if the viewer uses the normals as stored
   std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
-  std::size_t stride_;       // number of sums of a set, rounded up to whole groups
+  std::size_t stride_;       // number of floats for one set of weights, rounded up to whole groups
   std::vector<float> sums_;  // (sets, stride)
 };
 

@@ -13,8 +13,8 @@ bool keep_alike(const Viewer& a, const Viewer& b, bool is_skinned) noexcept {
          a.octahedral_base == b.octahedral_base;
 }
 
-// Returns true if a viewer adds up normals in float32 and renders them by the specification, so that BlendSource has
-// its results already.
+// Returns true if a viewer adds up normals in float32 and renders them by the specification. BlendSource has already
+// computed the normals of such a viewer.
 bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
@@ -33,7 +33,7 @@ struct SeenByViewer {
   }
 };
 
-// Returns the diagonal of the box around the base.
+// Returns the diagonal of the box around the base positions.
 double size_of(const GltfShading& shading) noexcept {
   Vec3d low, high;
   for (std::size_t v = 0; v < shading.set.topology.vertex_count(); ++v) {
@@ -45,7 +45,7 @@ double size_of(const GltfShading& shading) noexcept {
   return length(high - low);
 }
 
-// Returns the largest distance between the two places of a vertex.
+// Returns the largest distance of a vertex between two lists of positions.
 double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
@@ -79,15 +79,15 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
     weights_[h](sample.segment, sample.t, now);
-    is_judged[h] = is_still && now == now_[h];  // with the result of the previous sample
+    is_judged[h] = is_still && now == now_[h];  // the result of the previous sample still holds
     now_[h] = std::move(now);
   }
   placed_ = source.placed();
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play the same weights and store normals in the same way render the same. So one of them is judged
-    // for all; this list has the errors that are known already.
+    // Viewers that play the same weights and store normals in the same way render the same normals. One of them is
+    // judged for all of them. This list has the errors that are known already.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;

@@ -1,7 +1,7 @@
 /// Judges the normals that viewers render, at the same samples as the audit by the specification. Private to workflow.
 ///
-/// Viewers that play the same weights have the same positions and true normals, which are computed once. Viewers that
-/// also store normals and deltas in the same way render the same.
+/// Viewers that play the same weights have the same positions and true normals, which are computed once. If they also
+/// store normals and deltas in the same way, they render the same normals.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
 
@@ -27,20 +27,20 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// `weights` has a function for each viewer, which writes the weights that it plays for the involved targets, as in
-  /// BlendSource. shading and part must outlive the object. is_skinned is true if a skin moves the part; viewers apply
-  /// skins in different ways.
+  /// Creates the judge. `weights` has a function for each viewer. It writes the weights that the viewer plays for the
+  /// involved targets, as in BlendSource. shading and part must outlive the object. is_skinned is true if a skin moves
+  /// the part, since viewers apply skins in different ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
-  /// Judges every viewer at a sample that the source has placed. A viewer that renders the same as the source gets the
-  /// error of the source.
+  /// Judges every viewer at a sample at which the source is placed. A viewer that renders the same normals as the
+  /// source gets the error of the source.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
 
-  /// Returns the weights that each viewer plays at the last sample.
+  /// Returns the weights that each viewer played at the last sample.
   [[nodiscard]] std::span<const std::vector<double>> now() const noexcept { return now_; }
 
-  /// Moves out the errors, one for each viewer.
+  /// Moves the errors of all viewers out of the object.
   [[nodiscard]] std::vector<ViewerError> take() { return std::move(errors_); }
 
  private:
@@ -52,7 +52,7 @@ class ViewerErrors {
   std::vector<Weights> weights_;
   std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
-  RightOutputs right_;                      // true normal of each output as viewers with another skin rule see it
+  RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them
   double size_ = 0;                         // size of the mesh
   std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones; empty until needed
   std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any

@@ -26,7 +26,7 @@
 
 namespace chronormal::inline internal {
 
-/// The errors in one segment, and the errors at its ends alone.
+/// The errors in one segment, and the errors at both ends of the segment alone.
 struct SegmentErrors {
   std::size_t segment = 0;
   MotionError error, at_keys;
@@ -35,28 +35,28 @@ struct SegmentErrors {
 using AuditRun = RecordedRun<SegmentErrors>;
 using AuditShard = ShardOf<Audit, SegmentErrors>;
 
-/// Audits the share of a sequence's segments that belongs to the run. Facts about the whole motion (which vertices
-/// move, how long a normal gets) are needed by every shard. Each shard derives them from all segments, or, with peers,
-/// from its own segments and maximize(). Errors: also kUsage for single errors of a run that is divided, or for
-/// targets, and for known segments of another audit; errors of run.keep.
+/// Audits the share of a sequence's segments that belongs to the run. Every shard needs facts about the whole motion,
+/// such as which vertices move and how long a normal gets. A shard finds these facts in all segments, or, if it has
+/// peers, in its own segments and with maximize(). Errors: also kUsage if single errors are requested of a divided run
+/// or of targets, or if known segments belong to another audit; errors of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 
-/// Joins the shards of one audit into the result of one run. Errors: as join() returns them. There must be at least one
-/// shard.
+/// Joins the shards of one audit. The result equals that of an audit in one run. There must be at least one shard.
+/// Errors: as join() returns them.
 [[nodiscard]] Result<Audit> merge(std::vector<AuditShard> shards);
 
-/// A judged sample of a subject. Views are valid during the call.
+/// A judged sample of a subject. Spans and references are valid during the call.
 struct AuditSample {
   std::size_t subject_index = 0;  ///< its future index in Audit::subjects
   const AuditSubject& subject;    ///< errors not filled in yet
   std::size_t segment = 0;        ///< index in the subject, or in the motion
   double t = 0;                   ///< t within the segment
-  double at = 0;                  ///< weight or time
+  double at = 0;                  ///< the weight, or the time in seconds
   const JudgedPart& part;
-  std::span<const double> largest;  ///< per element of the part: length of the largest control normal
+  std::span<const double> largest;  ///< for each element of the part, the length of its largest control normal
   const MotionError& error;
-  std::span<const float> degrees;               ///< per output of the part; NaN if not judged
+  std::span<const float> degrees;               ///< for each output of the part, its error; NaN if it is not judged
   std::span<const double> weights;              ///< weights of all targets of a glTF file
   std::span<const std::vector<double>> played;  ///< for a glTF file, the weights that each viewer plays
 };
@@ -76,20 +76,21 @@ struct AuthorOfMesh {
 /// The meshes of an audited file, keyed by index.
 using KnownAuthors = std::map<std::size_t, std::shared_ptr<AuthorOfMesh>>;
 
-/// Audits a file. If options.author is the file of an earlier audit in `known`, uses what that audit found out about
-/// the author; otherwise stores in `known` what this audit finds out. Both audits must have the same weighting and weld
+/// Audits a file. If options.author is the file of an earlier audit in `known`, uses the facts about the author that
+/// the earlier audit found. Otherwise stores these facts in `known`. Both audits must use the same weighting, and weld
 /// the same points.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options, KnownAuthors& known);
 
-/// Run the audits of workflow/audit.h and report each sample, subject after subject. Tracks with the same keys are
-/// reported only once, as the first of them. If the watch is empty, nothing is reported.
+/// Run the audits of workflow/audit.h and report each sample, subject by subject. Tracks with the same keys are
+/// reported once, as the first of these tracks. If the watch is empty, no sample is reported.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch, KnownAuthors* known = nullptr);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 
-/// Returns the groups of corners that share a normal in the audit of a motion: corners joined by smooth edges, which
-/// the stored normals of keyframe 0 determine if there are any. Errors: as NormalGroups and the stream return them.
+/// Returns the groups of corners that share a normal in the audit of a motion. Corners are in one group if smooth edges
+/// join them. If keyframe 0 has stored normals, these determine which edges are smooth. Errors: as NormalGroups and the
+/// stream return them.
 [[nodiscard]] Result<NormalGroups> audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal
