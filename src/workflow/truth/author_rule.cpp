@@ -14,17 +14,18 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
-constexpr double kOff = 0.001;        // degrees: beyond, a normal does not follow the rule
-constexpr double kNothingLeft = 180;  // degrees, if both sides of a sheet add up to zero
+constexpr double kOff = 0.001;        // degrees: a normal that is farther from its sum does not follow the rule
+constexpr double kNothingLeft = 180;  // degrees: the distance if both sides of a sheet add up to zero
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
-// The candidates are sums over the element's own corners or over the whole point, and over triangles or quads, each by
-// every weighting.
+// The number of candidates. A candidate adds up triangles or quads, over the element's own corners or over its whole
+// point, by one of the weightings.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
 
 double degrees_between(const Vec3d& a, const Vec3d& b) { return angle_between(a, b) * kDegreesPerRadian; }
 
-// Returns the base (nullopt), and up to most - 1 of the targets that store normals, at even steps.
+// Lists the base (nullopt), and at most most - 1 of the targets that store normals, evenly spaced in the order of
+// targets.
 std::vector<std::optional<std::size_t>> keys_to_ask(const GltfShading& shading, std::size_t most) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   std::vector<std::optional<std::size_t>> keys = {std::nullopt};
@@ -37,7 +38,7 @@ StoredKey key_of(const GltfShading& shading, std::optional<std::size_t> target) 
   return target ? StoredKey(shading, *target) : StoredKey(shading);
 }
 
-// The side of the surface that the author shows at each element: the side of the stored base normal.
+// The sides of the surface that the author shows. At each element, this is the side of the stored base normal.
 class Sides {
  public:
   Sides(const GltfShading& shading, std::span<const std::uint32_t> vertex_of) : other_(vertex_of.size()) {
@@ -59,7 +60,8 @@ class Sides {
   std::vector<char> other_;
 };
 
-// Returns the edges around an element, one to each neighbouring point. for_edges(visit) must visit all of them.
+// Returns the edges around an element, one edge to each neighbouring point. for_edges(visit) must visit all of these
+// edges.
 template <class ForEdges>
 std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges& for_edges) {
   std::vector<OffsetEdge> edges;
@@ -75,7 +77,7 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and how many of them follow no candidate
+  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and those among them that follow no candidate
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -86,7 +88,7 @@ struct Distances {
   }
 };
 
-// Returns the value below which this share of the values lies.
+// Returns the value that this share of the values lies below. Changes the order of the values.
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -94,7 +96,8 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// Changes to a rule around normals that do not follow it, so that they do.
+// Changes a rule around normals that do not follow the rule. A change is made only if these normals then follow the
+// changed rule.
 class Mending {
  public:
   Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)
@@ -115,7 +118,8 @@ class Mending {
                   [&](std::size_t e) { off_[e] = off(static_cast<std::uint32_t>(e), false); });
   }
 
-  // Lets an element add up all corners at its point, if its normals follow that sum but not the sum of its own corners.
+  // Makes an element add up all corners at its point, if its stored normals follow that sum but not the sum of its own
+  // corners.
   void choose_whole_points() {
     parallel_each(off_.size(), kAskedAtOnce, [&](std::size_t i) {
       if (whole_[i] != 0 || !(off_[i] > kOff)) return;
@@ -126,7 +130,7 @@ class Mending {
     });
   }
 
-  // Joins triangles to polygons, and splits polygons, if that brings normals nearer to the sums.
+  // Joins triangles to polygons, and splits polygons, if more stored normals then follow their sums.
   void mend_polygons() {
     constexpr std::size_t kSweeps = 8;
     bool any = true;
@@ -140,7 +144,7 @@ class Mending {
 
   [[nodiscard]] std::vector<bool> whole_points() const { return {whole_.begin(), whole_.end()}; }
 
-  // Returns the median distance over all elements.
+  // Returns the median over all elements of the angle between stored normal and sum, in degrees.
   [[nodiscard]] double distance() const {
     std::vector<float> all;
     for (std::size_t e = 0; e < off_.size(); ++e)
@@ -190,8 +194,9 @@ class Mending {
     return unit(sum);
   }
 
-  // Returns the largest angle between the stored normals of an element and its sums, in degrees. At keys, only the part
-  // counts that the offset in the base does not explain. If no key turns the element, returns the angle in the base.
+  // Returns the largest angle between the stored normals of an element and its sums, in degrees. At keys, the offset
+  // that the stored normal has in the base is applied first. If no key turns the element, returns the angle in the
+  // base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
     // Counts each corner of a polygon once, even if several triangles of the polygon meet there.
@@ -243,8 +248,8 @@ class Mending {
     return false;
   }
 
-  // Makes the best polygon that begins with this triangle, if it is better than the present polygons. Returns true if
-  // it is.
+  // Makes the best polygon that begins with this triangle. Changes nothing and returns false if no polygon is better
+  // than the present ones.
   bool mend_at(std::size_t t, std::size_t end) {
     constexpr std::size_t kLongest = 130;
     std::size_t best = 0, most = 0;
@@ -264,8 +269,8 @@ class Mending {
     return best > 0;
   }
 
-  // Returns by how many more elements nearby would follow their sums if a run of triangles were one polygon. Elements
-  // that only come nearer to their sums do not count, since that may be chance.
+  // Returns by how many more elements would follow their sums if a run of triangles were one polygon. Elements that
+  // only come nearer to their sums do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
     std::vector<std::pair<std::size_t, std::size_t>> before;  // the polygons that the run dissolves
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
@@ -300,7 +305,8 @@ class Mending {
   std::vector<char> whole_;  // one for each element
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
-  std::size_t budget_ = 400000;  // elements that may still be tried; bounds the cost of normals that no polygon mends
+  // Elements that may still be tried; bounds the time for normals that no polygon corrects.
+  std::size_t budget_ = 400000;
 };
 
 // The candidates of a mesh, compared with its stored normals.
@@ -338,7 +344,7 @@ class Candidates {
     std::size_t paired = 0;
     for (std::size_t t = 0; t < shading.set.topology.face_count(); t += quads.triangle_count(t))
       paired += quads.triangle_count(t) == 2 ? 2U : 0U;
-    constexpr double kMostly = 0.75;  // the rest are caps and poles, where quads are rare
+    constexpr double kMostly = 0.75;  // the other faces are caps and poles, where quads are rare
     is_of_quads_ = static_cast<double>(paired) > kMostly * static_cast<double>(shading.set.topology.face_count());
   }
 
@@ -347,9 +353,10 @@ class Candidates {
   [[nodiscard]] static Weighting weighting_of(std::size_t c) { return kWeightings[c % kWeightings.size()].weighting; }
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
-  // Returns the candidate at the smallest distance: by keys, or else by the base. The distance of a candidate is the
-  // angle that this share of the normals does not exceed. A distance beyond `clear` times that of area is not accepted;
-  // area is taken instead if or_area is true. Returns nothing if no distance of at most `follows` is accepted.
+  // Returns the candidate with the smallest distance, measured at keys, or else in the base. The distance of a
+  // candidate is the angle in degrees that this share of the normals does not exceed. If the smallest distance is above
+  // `clear` times the distance of weighting by area, no candidate is accepted, except weighting by area if or_area is
+  // true. Returns nothing if no candidate with a distance of at most `follows` is accepted.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -387,13 +394,13 @@ class Candidates {
     return std::nullopt;
   }
 
-  // Returns true if the keys do not tell candidates apart, so that nothing contradicts the quads from which the file
-  // was cut.
+  // Returns true if the keys do not tell candidates apart. Then the quads from which the file was cut are as good as
+  // any other candidate.
   [[nodiscard]] bool are_quads_as_good() const {
     return is_of_quads_ && keys_.silent > keys_.told[0].size() && 2 * keys_.silent_off < keys_.silent;
   }
 
-  // Returns true if all examined elements follow a candidate exactly, so that no rule needs to change.
+  // Returns true if all examined elements follow a candidate exactly. Then the rule needs no changes.
   [[nodiscard]] bool do_all_follow(std::size_t c) const {
     if (keys_.silent_off > 0 || of_base_.silent_off > 0) return false;
     const AuthorSums& sums = of_kinds_[sums_of_kind_[c / kWeightings.size()]];
@@ -414,7 +421,7 @@ class Candidates {
   [[nodiscard]] double spread() const { return spread_; }
 
  private:
-  // Returns true if some point has several elements, each with a part of the faces around it.
+  // Returns true if some point has several elements, which divide the faces around the point among them.
   [[nodiscard]] bool is_any_point_shared() const {
     std::vector<std::uint32_t> element(shading_.point_of_vertex.size(), kNoVertex);
     for (const std::uint32_t v : shading_.set.topology.corners()) {
@@ -426,8 +433,8 @@ class Candidates {
     return false;
   }
 
-  // Returns for each place whether the two sides of a sheet meet there, whose normals would cancel; empty if there is
-  // no such place.
+  // Tells for each place whether the two sides of a sheet meet there, where their normals would cancel. Returns an
+  // empty list if there is no such place.
   [[nodiscard]] std::vector<bool> places_with_sides() const {
     std::vector<bool> result;
     if (shading_.place_of_vertex.empty()) return result;
@@ -441,7 +448,7 @@ class Candidates {
     return result;
   }
 
-  // Returns about `most` elements whose normals a key turns, at even steps.
+  // Lists about `most` elements whose normals a key turns, evenly spaced among all of these elements.
   [[nodiscard]] std::vector<std::uint32_t> elements_to_ask(std::optional<std::size_t> target, std::size_t most) const {
     const StoredKey key = key_of(shading_, target);
     std::vector<std::uint32_t> elements;
@@ -465,8 +472,8 @@ class Candidates {
                                      [](Distances& sum, const Distances& each) { sum.add(each); }));
   }
 
-  // Returns the angle in degrees between the stored normal of an element and its normal by one candidate; 0 if one of
-  // them does not exist.
+  // Returns the angle in degrees between the stored normal of an element and its normal by one candidate. Returns 0 if
+  // one of the two normals does not exist.
   [[nodiscard]] double distance_of(std::uint32_t e, const StoredKey* key, const AuthorSums& of,
                                    Weighting weighting) const {
     const auto of_base = [&](std::uint32_t v) { return base_.position(v); };
@@ -519,10 +526,11 @@ class Candidates {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<AuthorSums> of_kinds_;
-  std::vector<std::size_t> sums_of_kind_;  // whole points are the same as own corners if no point has several elements
+  std::vector<std::size_t> sums_of_kind_;  // if no point has several elements, a whole point is the same as own corners
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
-  std::vector<std::vector<std::uint32_t>> followers_;  // for each key, the elements that must all follow a rule
+  // For each key, the elements that are examined to see if all of them follow a rule.
+  std::vector<std::vector<std::uint32_t>> followers_;
   Distances of_base_, keys_;
   bool is_of_quads_ = false;
   double distance_ = 0, spread_ = 0;
@@ -563,8 +571,8 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    // If a tenth of the normals follow a rule exactly, it is the rule of the mesh, even if most of the mesh was cut or
-    // bent later.
+    // If a tenth of the normals follow a rule exactly, that rule is the rule of the mesh, even if most of the mesh was
+    // cut or bent later.
     constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
     std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {

@@ -1,21 +1,23 @@
 /// Finds which sums of face normals the normals of a mesh follow. Private to workflow.
 ///
-/// The tool that made a mesh weighted polygons or triangles in its own way, which its stored normals show. The normals
-/// of targets at weight 1 decide, with the offset of the base applied: a flat base or a cube has the same normals by
-/// all rules, but its targets do not. The base decides only if no target tells.
+/// The tool that made a mesh weighted polygons or triangles in its own way, and the stored normals show this way. The
+/// normals of targets at weight 1 are compared first, with the offset of the base applied: a flat base or a cube has
+/// the same normals by all rules, but its targets do not. The base is used only if no target tells rules apart.
 ///
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
-///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees: elsewhere all agree
+///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees; at all other
+///                  normals the candidates agree
 ///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored normal
 ///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
-///                  triangles by area, even if much of the mesh was bent by hand; among several, the one that three
-///                  quarters of the normals follow exactly, if any does. Else the candidate with the
-///                  smallest median, if that is at most a degree, and two thirds of the median of triangles by area;
-///                  else triangles by area, which are exact at every time
+///                  triangles by area, even if much of the mesh was bent by hand; among several such candidates, the
+///                  one that three quarters of the normals follow exactly, if there is one. Otherwise the candidate
+///                  with the smallest median, if that is at most a degree, and at most two thirds of the median of
+///                  triangles by area. Otherwise triangles by area, which can be computed exactly at every time
 ///
-/// The rule is mended around the normals that do not follow it: triangles in a row become larger polygons, quads are
-/// split, and elements add up their whole point (both sides of what only looks like a sheet, too), if that makes a
-/// normal follow exactly. Changes that only bring normals nearer are not made, since that may be chance.
+/// The rule is changed around normals that do not follow it, if the change makes a normal follow exactly. Triangles in
+/// a row become larger polygons, quads are split, and elements add up their whole point (also both sides of faces that
+/// look like the two sides of a sheet but are not). Changes that only bring normals nearer to the sums are not made,
+/// since that may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 
@@ -29,12 +31,12 @@ namespace chronormal::inline internal {
 
 struct AuthorRule {
   Weighting weighting = Weighting::kArea;
-  bool is_followed = false;      ///< false: nothing is known of a rule, and area is as good as another
-  bool any_polygons = false;     ///< some triangles count as parts of polygons
-  bool any_whole_point = false;  ///< some elements add up more than the corners that show them
-  std::size_t telling = 0;       ///< stored normals that tell rules apart
-  double distance = 0;           ///< degrees, the median of the candidate that was found
-  double spread = 0;             ///< degrees, the median of the largest angle between candidates at these normals
+  bool is_followed = false;      ///< if false, no rule was found, and weighting by area is as good as another rule
+  bool any_polygons = false;     ///< true if some triangles count as parts of polygons
+  bool any_whole_point = false;  ///< true if some elements add up more than the corners that show them
+  std::size_t telling = 0;       ///< the number of stored normals that tell rules apart
+  double distance = 0;           ///< the median distance of the candidate that was found, in degrees
+  double spread = 0;             ///< the median, in degrees, of the largest angle between candidates at these normals
 
   [[nodiscard]] bool is_plain() const noexcept {
     return weighting == Weighting::kArea && !any_polygons && !any_whole_point;
@@ -46,9 +48,9 @@ struct FoundRule {
   AuthorSums sums;  ///< empty if the rule is plain, and no target stores normals
 };
 
-/// Finds the rule of a mesh. Its groups must have their corners, and its deltas of normals must be kept. O(corners) for
-/// each candidate, base and target, but examines some tens of thousands of normals at most. Uses all cores; the result
-/// has the same bits on any number of threads.
+/// Finds the rule of a mesh. The groups of the shading must have their corners, and its deltas of normals must be kept.
+/// Takes O(corners) for each candidate, base and target, but examines some tens of thousands of normals at most. Uses
+/// all cores. The result has the same bits on any number of threads.
 [[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

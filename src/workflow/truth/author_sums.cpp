@@ -7,7 +7,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the outline of some consecutive triangles; empty unless they fill an outline without a vertex inside.
+// Returns the outline of some consecutive triangles, or an empty list if they do not fill an outline that has no vertex
+// inside.
 std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first, std::size_t count) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Edge> edges;
@@ -21,7 +22,7 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
   for (const auto& [from, to] : edges)
     if (!std::binary_search(edges.begin(), edges.end(), Edge(to, from))) border.emplace_back(from, to);
   if (border.size() != count + 2) return {};
-  // The outline begins at the first corner of the first triangle, if that corner is on it.
+  // The outline begins at the first corner of the first triangle, if that corner lies on the outline.
   const std::uint32_t start = triangles.face(first)[0];
   const auto leaves = [&border](std::uint32_t from) {
     return std::lower_bound(border.begin(), border.end(), Edge(from, 0));
@@ -127,7 +128,8 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
       whole_at[list].push_back(e);
     }
   }
-  // Calls add(element, corner) for each corner of a polygon that an element adds up. Returns true if there is one.
+  // Calls add(element, corner) for each corner of a polygon that some element adds up. Returns true if there is such a
+  // corner.
   const auto for_corners = [&](std::size_t t, const auto& add) {
     const auto loop = polygons.corners(t);
     bool any = false;

@@ -1,16 +1,17 @@
 /// The sums of face normals that an author's normals follow. Private to workflow.
 ///
-/// An authoring tool adds up the normals of *polygons* around a vertex, weighted in its own way. A glTF file has
-/// triangles, in the order in which the polygons were cut:
+/// An authoring tool adds up the normals of *polygons* around a vertex, and weights them in its own way. A glTF file
+/// has triangles, in the order in which the polygons were cut:
 ///
 ///     quad         (a, b, c), (a, c, d)     consecutive, with the shared edge at places 0, 2 and 0, 1
 ///     larger       any number of consecutive triangles, in whatever order, that fill an outline with no vertex inside
 ///
-/// The pattern of quads is strict because two triangles that share any other edge are often halves of two neighbouring
-/// quads. An element adds up either the faces whose corners show its normal, or all faces around the point: some tools
-/// give the corners of flat faces their own normal, but still count these faces for the other corners.
+/// Only pairs in this order become quads, because two triangles that share any other edge are often halves of two
+/// neighbouring quads. An element adds up either the faces whose corners show its normal, or all faces around its
+/// point: some tools give the corners of flat faces their own normal, but still count these faces for the other
+/// corners.
 ///
-/// The sums are chosen by comparing them with the normals that the file stores (author_rule.h).
+/// Which of these sums to use is found by comparing them with the normals that the file stores (author_rule.h).
 ///
 /// Shapes     elements are those of GltfShading; positions are those of all its vertices
 /// Threads    const functions may run at once
@@ -40,9 +41,9 @@ struct AuthorSum {
   double terms = 0;  ///< the sum of the lengths of its terms
   double areas = 0;  ///< the sum of the lengths of its face normals, each twice the area of the face
 
-  /// Returns the sum with its direction unchanged. Its length becomes that of a sum by area whose faces all have the
-  /// same direction. If the terms cancel to less than a twentieth, the length is smaller: it goes to zero as the
-  /// direction is lost.
+  /// Returns the sum with the length of a sum by area whose faces all have the same direction. The direction of the sum
+  /// stays. If the terms cancel so far that the sum is shorter than a twentieth of them, the length becomes smaller,
+  /// and reaches zero where the direction is lost.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -55,18 +56,19 @@ class Polygons {
  public:
   explicit Polygons(const Topology& triangles);
 
-  /// Joins `count` triangles from `first` on to one polygon. Other polygons that contain some of these triangles are
-  /// dissolved, and their other triangles become single. Returns false, and changes nothing, if the outline of the
+  /// Joins `count` triangles from `first` on to one polygon. Each other polygon that contains one of these triangles is
+  /// taken apart, and its other triangles become single. Returns false, and changes nothing, if the outline of the
   /// triangles is not a polygon around all of their vertices.
   bool join(std::size_t first, std::size_t count);
-  /// Makes quads of all pairs that follow the pattern, within the parts of the mesh. Returns their number.
+  /// Makes quads of all pairs of triangles that have the order of a cut quad, within the parts of the mesh. Returns the
+  /// number of quads.
   std::size_t join_quads(std::span<const GltfPart> parts);
 
   /// Returns the polygon that a triangle belongs to, named by the polygon's first triangle.
   [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
     return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
   }
-  /// Returns the number of triangles of the polygon that begins with this one.
+  /// Returns the number of triangles of the polygon whose first triangle has this index.
   [[nodiscard]] std::size_t triangle_count(std::size_t polygon) const noexcept {
     return count_.empty() ? 1 : count_[polygon];
   }
@@ -82,9 +84,9 @@ class Polygons {
   // All four lists are empty until triangles are joined.
   std::vector<std::uint32_t> first_,
       count_;  // first triangle of each triangle's polygon; number of triangles of a polygon
-  // The place of a larger polygon's corners in loops_, by its first triangle.
+  // For a larger polygon, by its first triangle, the place of its corners in loops_.
   std::vector<std::uint32_t> loop_of_;
-  std::vector<std::uint32_t> loops_;  // a larger polygon has two corners more than triangles
+  std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles
   std::size_t joined_ = 0;
 };
 
@@ -92,14 +94,16 @@ class Polygons {
 class AuthorSums {
  public:
   AuthorSums() = default;
-  /// Prepares sums over the corners that show an element's normal. If `whole_point` is set for an element, prepares the
-  /// sum over all corners at its point. If `wanted` is not empty, elements that are not set in it get no corners.
+  /// Prepares sums over the corners that show an element's normal. For elements that are set in `whole_point`, prepares
+  /// sums over all corners at their points instead. If `wanted` is not empty, elements that are not set in `wanted` get
+  /// no corners.
   AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
              const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
 
   [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
 
-  /// Returns the sum of an element; position(vertex) gives the positions. The sum is zero if it is only rounding error.
+  /// Returns the sum of an element. position(vertex) must return the position of a vertex. The sum is zero if it is
+  /// only rounding error.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
     return at(element, position, weighting_);
@@ -112,8 +116,8 @@ class AuthorSums {
     return result;
   }
 
-  /// Calls visit(i, sum) for the i-th of some elements, in order; visit() must not compute sums itself. One call for
-  /// about kElementsOfBlock elements takes a fraction of the time of a call for each element.
+  /// Calls visit(i, sum) for the i-th of some elements, in order. visit() must not compute sums itself. One call for
+  /// about kElementsOfBlock elements takes a fraction of the time of single calls of at().
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
     for_each(elements, position, visit, weighting_);
@@ -174,7 +178,7 @@ class AuthorSums {
     }
   }
 
-  /// Calls visit(vertex) for the vertices whose positions an element needs; for some more than once.
+  /// Calls visit(vertex) for the vertices whose positions an element needs. Some vertices are visited more than once.
   template <class Visit>
   void for_vertices(std::uint32_t element, const Visit& visit) const {
     for (std::uint32_t i = offsets_[element]; i < offsets_[element + 1]; ++i)

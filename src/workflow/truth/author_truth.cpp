@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kFramesOfBlock = 256;
 constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a smaller angle to the sum is no offset
 
-// Returns the angle by which rounding may turn a stored normal, in radians: some exporters store bytes.
+// Returns the angle by which rounding may turn a stored normal, in radians. It is not zero if the normals look like
+// bytes, which some exporters store.
 double rounding_of_stored(const GltfShading& shading) {
   constexpr double kSteps = 127, kNear = 1e-3;
   constexpr std::size_t kEnough = 16;
@@ -28,7 +29,7 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// A finder of the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
+// Finds the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)
@@ -43,7 +44,7 @@ class AuthorTruth::Finder {
         stale_(shading_) {}
 
   void find() {
-    // If a key follows the rule that was found, it is right, even if it looks stale compared with plain sums of
+    // A key that follows the rule that was found is not stale, even if it looks stale compared with plain sums of
     // triangles.
     if (!stale_.list().empty()) stale_.keep_common(StaleKeys(shading_, &truth_.sums_));
     parallel_each(z0_.size(), kFramesOfBlock, [&](std::size_t i) {
@@ -89,7 +90,7 @@ class AuthorTruth::Finder {
     });
   }
 
-  // Lists the edges around each element that has an offset, one to each of its neighbours.
+  // Lists the edges around each element that has an offset, one edge to each neighbouring point.
   void make_frames() {
     for (std::uint32_t e = 0; e < off_.size(); ++e) {
       if (off_[e] == 0 || z0_[e] == Vec3d{}) continue;
@@ -123,8 +124,8 @@ class AuthorTruth::Finder {
     });
   }
 
-  // Returns the offset of a stored normal, with its azimuth measured from an edge; nothing if no azimuth can be
-  // measured from that edge.
+  // Returns the offset of a stored normal, with its azimuth measured from an edge. Returns nothing if no azimuth can be
+  // measured from this edge.
   [[nodiscard]] std::optional<PlaneOffset> by_edge(const StoredKey& key, std::size_t n, std::uint32_t edge,
                                                    const Vec3d& z) const {
     const auto position = [&](std::uint32_t v) { return key.position(v); };
@@ -143,7 +144,7 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Returns true if the stored normal of a frame at a key can be used, and writes the unit sum there to z.
+  // Returns true if the stored normal of a frame's element at a key can be used. Writes the unit sum at that key to z.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;
@@ -207,13 +208,14 @@ class AuthorTruth::Finder {
   std::vector<std::uint32_t> vertex_of_;
   double tolerance_;
   StoredKey base_;
-  std::vector<Vec3d> z0_;  // sum of each element, flipped to the author's side
+  std::vector<Vec3d> z0_;  // sum of each element, on the side that the author shows
   std::vector<double> side_;
   std::vector<char> off_;
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // element of each frame
   std::vector<PlaneOffset> base_offsets_;  // offsets in the base, one for each edge
-  std::vector<double> differences_;        // between offsets by each edge and the base's; -1 if the edge cannot be used
+  // For each edge, how far offsets differ from the base's; -1 if the edge cannot be used.
+  std::vector<double> differences_;
 };
 
 AuthorTruth::AuthorTruth(const GltfShading& shading, Weighting weighting) : shading_(&shading) {
@@ -231,7 +233,7 @@ AuthorTruth::AuthorTruth(const GltfShading& shading, bool any_split) : shading_(
     finder.find();
     stale_ = finder.stale();
   }
-  if (is_plain()) sums_ = AuthorSums();  // not needed
+  if (is_plain()) sums_ = AuthorSums();  // sums by area need no lists
 }
 
 Vec3d AuthorTruth::turned_with(const Frame& frame, const Vec3d& z) { return turned(frame.base_z, z, frame.base_x); }

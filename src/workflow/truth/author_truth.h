@@ -1,17 +1,19 @@
 /// The normals that the author of a mesh would see, at any weights. Private to workflow.
 ///
 /// The truth is what the authoring tool renders. The tool adds up the normals of polygons by a rule (author_rule.h),
-/// with the result r(w). The author may have changed the result, by hand or by a modifier. This change is the *offset*,
-/// which moves along with the surface (offset_frame.h). Let o_0 be the offset of the base, and o_i the offset of target
-/// i at weight 1, as the file stores them. The truth at weights w has the offset o(w) = o_0 + sum of w_i (o_i - o_0),
-/// limited to a right angle from the sum. So the truth equals all stored normals at their weights, and equals r(w) if
-/// there is no offset.
+/// and the sum at weights w is called r(w). The author may have changed the normals after that, by hand or by a
+/// modifier. This change is the *offset*, which moves along with the surface (offset_frame.h). Let o_0 be the offset of
+/// the base, and o_i the offset of target i at weight 1, as the file stores them. The truth at weights w has the offset
+/// o(w) = o_0 + sum of w_i (o_i - o_0), limited to a right angle from the sum. For this reason the truth equals all
+/// stored normals at their weights, and equals r(w) if there is no offset.
 ///
-/// Azimuths are measured from the edge for which the offsets of an element differ least. If no edge can be used at
-/// every key, they are measured from a direction that turns along with the sum by the smallest rotation.
+/// An azimuth is the angle around the sum at which an offset points. Azimuths are measured from the edge for which the
+/// offsets of an element differ least between keys. If no edge can be used at every key, they are measured from a
+/// direction that turns along with the sum by the smallest rotation.
 ///
-/// Unknown    If no target stores normals that tell, the motion of an offset is unknown. Its rotation in the base then
-///            stays constant, so that the truth by area is exact.
+/// Unknown    If no target stores normals that tell rules apart, the motion of an offset is unknown. The truth then is
+/// the sum
+///            by area, rotated as in the base, and can be computed exactly.
 /// Stale      If the stored normals of a target are stale (stale_keys.h), its truth is r with the offset of the base.
 /// Degenerate If r(w) is zero, the truth is zero. If r is zero at a key, the offset there is that of the base.
 /// Threads    const functions may run at once
@@ -39,7 +41,7 @@ namespace chronormal::inline internal {
 
 class AuthorTruth {
  public:
-  /// The offsets of all elements that have one, in a pose.
+  /// The offsets in a pose, one for each element that has an offset.
   using Pose = std::vector<PlaneOffset>;
 
   static constexpr std::uint32_t kNone = GltfShading::kNoElement;
@@ -58,16 +60,16 @@ class AuthorTruth {
     PlaneOffset by;
   };
 
-  /// Finds the truth from all stored normals. The shading must outlive this object and keep its deltas of normals; its
-  /// groups need their corners only during this call. any_split is the result of split_by_keys().
+  /// Finds the truth from all stored normals. The shading must outlive this object and keep its deltas of normals. The
+  /// groups of the shading need their corners only during this call. any_split is the result of split_by_keys().
   explicit AuthorTruth(const GltfShading& shading, bool any_split = false);
-  /// Defines the truth as sums of triangles by a weighting, and uses stored normals only in the base.
+  /// Defines the truth as sums of triangles by this weighting, and uses only the stored normals of the base.
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
-  /// Returns the sums, which are empty if the truth is plain.
+  /// Returns the sums of face normals. They are empty if is_plain() is true.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
-  /// Returns true if the truth is n(w), weighted by area, with the offset of the base unchanged. Then it can be
+  /// Returns true if the truth is n(w), weighted by area, with the offset of the base unchanged. Such a truth can be
   /// computed exactly.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
   /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
@@ -85,16 +87,17 @@ class AuthorTruth {
   /// has an offset.
   [[nodiscard]] std::span<const std::vector<Change>> changes() const noexcept { return changes_; }
 
-  /// Return the offsets at the weights of all targets, and of one target alone.
+  /// Return the offsets at these weights of all targets, or at this weight of one target alone.
   [[nodiscard]] Pose pose(std::span<const double> weights) const;
   [[nodiscard]] Pose pose_alone(std::size_t target, double weight) const;
 
-  /// Returns the truth of an element in a pose, with the length of r(w). position(vertex) gives the positions.
+  /// Returns the truth of an element in a pose, with the length of r(w). position(vertex) must return the position of a
+  /// vertex.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, const Pose& pose) const {
     return turned_sum(element, sums_.at(element, position), position, pose);
   }
-  /// Adds the author's offset to r(w) of an element, and keeps its length.
+  /// Turns the sum r(w) of an element by the author's offset. Keeps the length of the sum.
   template <class PositionOf>
   [[nodiscard]] Vec3d with_offset(std::uint32_t element, const Vec3d& sum, const PositionOf& position,
                                   const Pose& pose) const {
@@ -106,7 +109,8 @@ class AuthorTruth {
     const Vec3d x = frame.edge == kNone ? turned_with(frame, z) : zero_azimuth(edges_[frame.edge], z, position);
     return size * internal::with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
   }
-  /// Call visit(i, truth) for the i-th of some elements, or visit(element, truth) for all elements, on all cores.
+  /// Call visit(i, truth) for the i-th of some elements, or visit(element, truth) for all elements, on all cores. The
+  /// calls are in no order.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Pose& pose,
                 const Visit& visit) const {
@@ -152,9 +156,9 @@ class AuthorTruth {
   bool any_split_ = false;
 };
 
-/// Finds the normals that the author of a mesh would see. If a weighting is requested, uses sums by this weighting
-/// instead. In the first case, vertices at one point whose normals differ at a key become separate elements. The
-/// shading must satisfy the preconditions of the constructor that takes it.
+/// Returns the truth of a mesh. If a weighting is requested, the truth consists of sums by this weighting. Otherwise it
+/// is found from the stored normals, and vertices at one point whose normals differ at a key become separate elements.
+/// The shading must satisfy the preconditions of the constructor of AuthorTruth.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

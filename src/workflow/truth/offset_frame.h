@@ -1,14 +1,14 @@
 /// Measures the offset that an author added to a sum of normals, in a frame that moves with the surface. Private to
 /// workflow.
 ///
-/// At a point with the unit sum z and an edge from there, a stored normal s has
+/// At a point with the unit sum z of face normals and an edge that leaves the point, a stored normal s has
 ///
 ///     alpha      the angle from z to s
 ///     mean       the mean angle between z and the edges around the point
-///     azimuth    of s around z, from the edge
+///     azimuth    the angle around z from the edge to s
 ///     offset     a point of a plane, alpha / mean from the origin, in the direction of the azimuth
 ///
-/// Blender stores custom normals in this way, and scales alpha as the edges rise or fall.
+/// Blender stores custom normals in this way, and scales alpha as the edges rise towards z or fall away from z.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_OFFSET_FRAME_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_OFFSET_FRAME_H_
 
@@ -26,7 +26,7 @@ struct PlaneOffset {
   double x = 0, y = 0;
 };
 
-/// An edge from a point to a neighbour, as vertices.
+/// An edge from a vertex to a neighbouring vertex.
 struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
@@ -45,7 +45,7 @@ template <class PositionOf>
   return count > 0 && sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-/// Returns the direction of azimuth 0: perpendicular to z, on the side to which the edge leaves its point. Returns zero
+/// Returns the direction of azimuth 0. It is perpendicular to z, on the side of z to which the edge leads. Returns zero
 /// if the edge has no such direction.
 template <class PositionOf>
 [[nodiscard]] Vec3d zero_azimuth(const OffsetEdge& edge, const Vec3d& z, const PositionOf& position) {
@@ -54,7 +54,7 @@ template <class PositionOf>
 }
 
 /// Returns true if azimuths can be measured from an edge. The edge must be longer than 1e-6 of the longest edge, and
-/// more than a degree from z.
+/// its direction must differ from z and -z by more than a degree.
 template <class PositionOf>
 [[nodiscard]] bool gives_azimuth(std::span<const OffsetEdge> edges, const OffsetEdge& edge, const Vec3d& z,
                                  const PositionOf& position) {
@@ -65,7 +65,8 @@ template <class PositionOf>
   return length(along) > kLeastLength * longest && length(cross(unit(along), z)) > kLeastSine;
 }
 
-/// Returns the offset of a normal; x is the direction of azimuth 0.
+/// Returns the offset of a normal. x is the direction of azimuth 0, and mean the mean angle between z and the edges, in
+/// radians.
 [[nodiscard]] inline PlaneOffset offset_of(const Vec3d& normal, const Vec3d& z, const Vec3d& x, double mean) {
   const Vec3d s = unit(normal), across = unit(s - dot(s, z) * z);
   if (s == Vec3d{} || x == Vec3d{} || across == Vec3d{}) return {};
@@ -73,7 +74,7 @@ template <class PositionOf>
   return {size * dot(across, x), size * dot(across, cross(z, x))};
 }
 
-/// Returns the unit normal with an offset, at most a right angle from z.
+/// Returns the unit normal that has this offset. The normal is at most a right angle from z.
 [[nodiscard]] inline Vec3d with_offset(const PlaneOffset& offset, const Vec3d& z, const Vec3d& x, double mean) {
   const double size = portable::hypot(offset.x, offset.y);
   if (size == 0 || x == Vec3d{}) return z;
@@ -84,8 +85,8 @@ template <class PositionOf>
 }
 
 /// Returns the angle in radians between a stored normal at a key and the base normal with its offset moved to that key.
-/// It tries all edges and returns the smallest angle. base and at_key give positions, z0 and z are the unit sums, s0
-/// and s the stored normals (in the base and at the key).
+/// Tries all edges and returns the smallest angle. base and at_key return positions, z0 and z are the unit sums, and s0
+/// and s are the stored normals, in the base and at the key.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: a vertex that turns less says little about a key
+constexpr double kTurns = 1 / kDegreesPerRadian;  // radians: a smaller turn of a vertex does not show if a key is stale
 
 double median_of(std::vector<float>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -21,7 +21,8 @@ double median_of(std::vector<float>& values) {
   return static_cast<double>(*middle);
 }
 
-// Finds the connected parts of the surface. Returns the number of the part for each vertex.
+// Finds the connected parts of the surface. Returns for each vertex the number of its part, and writes the number of
+// parts to `count`.
 std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size_t& count) {
   std::vector<std::uint32_t> parent(shading.point_of_vertex.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -45,7 +46,7 @@ std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size
   return result;
 }
 
-// Returns the sums by area over the faces of each vertex.
+// Returns for each vertex the sum by area of the normals of its faces.
 std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& key) {
   std::vector<Vec3d> sums(topology.vertex_count());
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -56,7 +57,7 @@ std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& k
   return sums;
 }
 
-// Returns, for each vertex, the sum of its element.
+// Returns for each vertex the sum of face normals of its element.
 std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums& sums, const StoredKey& key) {
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
   std::vector<Vec3d> of_elements(vertex_of.size()), result(shading.element_of_vertex.size());
@@ -144,7 +145,7 @@ bool split_by_keys(GltfShading& shading) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   if (targets.empty() || shading.groups.size() == 0) return false;
   const std::vector<std::uint32_t> vertex_of = vertices_of_elements(shading);
-  // Only vertices that share an element with other vertices can get an element of their own.
+  // Only vertices that share an element with other vertices can be split off.
   std::vector<std::uint32_t> sharing;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v) {
     const std::uint32_t e = shading.element_of_vertex[v];
@@ -156,7 +157,8 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  std::vector<std::uint32_t> first_of = vertex_of;  // for each class, the vertex with which others are compared
+  // For each class, the vertex with which its other vertices are compared.
+  std::vector<std::uint32_t> first_of = vertex_of;
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
     // Lists, for each class that this key splits, the first vertex of each new class.

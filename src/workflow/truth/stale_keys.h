@@ -3,15 +3,15 @@
 /// Another program may have moved vertices after the normals of a target were computed, or may have stored no normals.
 /// A target is *stale* on a connected part of the mesh if both conditions hold:
 ///
-///     Its normals are no nearer to the true ones than the base normals. If the base normals are turned like the faces
-///     around their vertices, the median angle from these to the stored normals is at least three quarters of the
-///     median turn.
+///     Its normals are no nearer to the true ones than the base normals. To test this, the base normals are turned like
+///     the faces around their vertices. The median angle from these turned normals to the stored normals of the target
+///     must be at least three quarters of the median turn.
 ///     Its normals do not turn like the surface. Over the part, the turns of normals and surface, as axes times sines,
 ///     have a correlation below a half.
 ///
 /// The first condition alone would also find targets whose author weights faces differently. Vertices around which the
-/// surface turns by less than a degree do not count. Connected parts are judged as a whole, since exporters drop small
-/// deltas.
+/// surface turns by less than a degree do not count. A connected part is judged as a whole, since exporters drop small
+/// deltas of single vertices.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STALE_KEYS_H_
 
@@ -33,8 +33,8 @@ struct StaleKey {
 class StaleKeys {
  public:
   StaleKeys() = default;
-  /// Judges all targets that store normals, compared with the given sums of elements, or with sums by area around each
-  /// vertex if `sums` is nullptr. O(corners) for each target, on all cores.
+  /// Judges all targets that store normals. Compares their normals with the given sums of elements, or, if `sums` is
+  /// nullptr, with sums by area around each vertex. Takes O(corners) for each target, on all cores.
   explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
   /// Keeps only those parts of targets that `others` find stale as well.
   void keep_common(const StaleKeys& others);
@@ -48,14 +48,15 @@ class StaleKeys {
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  std::vector<std::vector<bool>> stale_;  // for each target and each part, whether it is stale; empty if no part is
-  std::vector<bool> is_all_stale_;        // for each target
+  // For each target and part of the mesh, whether the target is stale there; empty if it is stale nowhere.
+  std::vector<std::vector<bool>> stale_;
+  std::vector<bool> is_all_stale_;  // for each target
   std::vector<StaleKey> list_;
 };
 
-/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ, because
-/// an edge may be hard in a single target. Ignores stale keys. The groups must have their corners. Returns true if any
-/// element was split.
+/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ. This
+/// happens if an edge is hard in a single target. Ignores stale keys. The groups must have their corners. Returns true
+/// if any element was split.
 bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -10,7 +10,8 @@ Vec3d vector_of(const std::vector<float>& values, std::size_t vertex) noexcept {
   return {v[0], v[1], v[2]};
 }
 
-// Returns the weight of a correction target in the pose in which only `target` has a weight, of 1.
+// Returns the weight of a correction target in the pose in which `target` has weight 1 and all other targets have
+// weight 0.
 double weight_at_key(const GltfExtraTarget& extra, std::size_t target) {
   double weight = 0;
   for (const auto& term : extra.linear) weight += term.i == target ? term.a : 0;
@@ -18,8 +19,8 @@ double weight_at_key(const GltfExtraTarget& extra, std::size_t target) {
   return weight;
 }
 
-// Calls visit(target, weight) for all targets that change normals in the pose in which only `target` has a weight, of
-// 1.
+// Calls visit(target, weight) for all targets that change normals in the pose in which `target` has weight 1 and all
+// other targets of the author have weight 0.
 template <class Visit>
 void for_shown_at_key(const GltfShading& shading, std::size_t target, const Visit& visit) {
   if (!shading.normal_deltas[target].empty()) visit(target, 1.0);

@@ -1,8 +1,8 @@
 /// The author's normals that a file stores, for the base and for each target at weight 1. Private to workflow.
 ///
 /// A bake distributes the normals of a target over the deltas of the target and the deltas of correction targets that
-/// follow its weight. If the mark of the bake states that their sums are still the author's normals, this code adds
-/// them up again.
+/// follow its weight. If the mark of the bake states that the sums of these deltas are still the author's normals, this
+/// code adds up the deltas again.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 
@@ -29,7 +29,7 @@ class StoredKey {
     const float* const p = (moved_.empty() ? shading_->set.base : moved_).data() + 3 * std::size_t{vertex};
     return {p[0], p[1], p[2]};
   }
-  /// Returns the rendered normal of a vertex, of any length.
+  /// Returns the normal of a vertex as a viewer renders it. The normal has any length.
   [[nodiscard]] Vec3d normal(std::uint32_t vertex) const noexcept;
   /// Returns whether the target changes the stored normal of the vertex.
   [[nodiscard]] bool turns(std::uint32_t vertex) const noexcept;
@@ -47,12 +47,12 @@ class StoredKey {
   std::vector<Part> parts_;   // the target and the correction targets that follow it
 };
 
-/// Lists the targets whose stored normals are the author's, ascending. The list is empty if an earlier bake has
-/// replaced these normals.
+/// Lists the targets whose stored normals are the author's, in ascending order. The list is empty if an earlier bake
+/// has replaced these normals.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 
-/// Returns a vertex of each element, or GltfShading::kNoElement if no vertex shows the element. All vertices of an
-/// element store the same normal.
+/// Returns for each element one of its vertices, or GltfShading::kNoElement if no vertex shows the element. All
+/// vertices of an element store the same normal.
 [[nodiscard]] std::vector<std::uint32_t> vertices_of_elements(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal
