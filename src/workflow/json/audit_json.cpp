@@ -25,7 +25,8 @@ Json place_json(const AuditPlace& place, const char* moment) {
 
 const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
-// Adds the average number of torn edges per sample, beyond 10, 20 and 40 degrees, and the largest number at one sample.
+// Adds the average number of torn edges in a sample, for tears beyond 10, 20 and 40 degrees, and the largest number in
+// one sample.
 void add_torn(const MotionError& error, Json& json) {
   if (error.samples == 0) return;
   Json average = Json::array();
@@ -165,12 +166,12 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
   return json;
 }
 
-// Returns the text for one input. Subjects are converted one by one, so that they are never all in memory as JSON
-// objects.
+// Returns the text for one input. Converts subjects one by one, so that the JSON objects of all subjects are never in
+// memory together.
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));
-  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // only for a single input, not for one of several
+  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // only here; audit_object() is for lists of inputs
   return with_items(
       is_indented ? json_text(json) : json.dump(-1, ' ', false, Json::error_handler_t::replace), "subjects",
       audit.subjects.size(), [&](std::size_t i) { return subject_json(audit.subjects[i]); }, is_indented);

@@ -10,13 +10,14 @@
 
 namespace chronormal::inline internal {
 
-/// The version of the JSON of audits. 2: `viewers` for `hosts`; torn edges.
+/// The version of the JSON of audits. Version 2 renamed `hosts` to `viewers`, and added torn edges.
 inline constexpr int kAuditSchema = 2;
 
-/// Returns all findings about one input, without the fields that every command begins with.
+/// Returns an object with all findings about one input. Leaves out the fields with which the JSON of every command
+/// begins.
 [[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
-/// Returns the text of audit_json() in one line.
+/// Returns the text of audit_json() as one line, for the container of a report.
 [[nodiscard]] std::string audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 }  // namespace chronormal::inline internal

@@ -9,8 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The version of the JSON of bakes. 3: `viewers` for `hosts` and `candidates` for `choices`; kinds of poses; torn
-// edges.
+// The version of the JSON of bakes. Version 3 renamed `hosts` to `viewers` and `choices` to `candidates`, and added
+// kinds of poses and torn edges.
 constexpr int kSchema = 3;
 
 Json common_json(const BakeReport& report) {
@@ -33,11 +33,12 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// Names of the kinds of poses in JSON: animations and static poses, single targets, and poses that a program sets.
+// Names of the kinds of poses in JSON: the animations and static poses of the file, each target alone, and poses that a
+// program may set.
 constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {
-  Json torn = Json::array();  // average number over poses, beyond 10, 20 and 40 degrees
+  Json torn = Json::array();  // the average number of torn edges in a pose, beyond 10, 20 and 40 degrees
   for (const std::size_t tears : errors.tears)
     torn.push_back(errors.poses > 0 ? static_cast<double>(tears) / static_cast<double>(errors.poses) : 0);
   return {{"mean_degrees", errors.mean},

@@ -56,7 +56,8 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   return schemes;
 }
 
-// Writes the cheapest scheme. The key exists if there was a tolerance, and is null if no scheme is within it.
+// Writes the cheapest scheme. The key exists if the caller gave a tolerance. Its value is null if no scheme is within
+// the tolerance.
 void put_cheapest(Json& json, const Comparison& c) {
   if (!c.tolerance) return;
   json["tolerance_degrees"] = *c.tolerance;

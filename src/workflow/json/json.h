@@ -1,9 +1,10 @@
-/// Makes JSON from the results of inspect, audit, compare, bake and query: the output of the program for --json, for
-/// callers that have the results but not the program. docs/cli.md lists the fields.
+/// Makes JSON from the results of inspect, audit, compare, bake and query. The text is the output of the program for
+/// --json. This header is for callers that have the results but do not run the program. docs/cli.md lists the fields.
 ///
-/// Text       indented by two, with a line end; bytes in names that are not UTF-8 become U+FFFD, and numbers that are
-///            infinite or NaN become null.
-/// Threads    everything here is pure.
+/// Text       Lines are indented by two spaces, and the text ends with a line end. Bytes in names that are not UTF-8
+/// become
+///            U+FFFD. Numbers that are infinite or NaN become null.
+/// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_JSON_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_JSON_H_
 
@@ -23,21 +24,21 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] std::string inspect_json(const Inspected& input);
 
-/// Returns the text of an audit. input is the name of the audited file; `passed` says whether the audit is within
-/// limits.
+/// Returns the text of an audit. input is the name of the audited file. The field `passed` tells whether the audit is
+/// within the limits.
 [[nodiscard]] std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 struct NamedComparison {
   std::string name;
   Comparison comparison;
-  TargetNames targets = {};  ///< if the motion is a set of targets
+  TargetNames targets = {};  ///< set if the motion is a set of targets
 };
 
-/// Returns the text of comparisons. `several` writes a list of inputs, even if there is only one. Without times the
-/// text is the same on every run. inputs must not be empty.
+/// Returns the text of comparisons. If several is true, writes a list of inputs even if there is only one input. If
+/// with_times is false, the text is the same on every run. inputs must not be empty.
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
 
-/// Returns the text of the figures of a face. `input` is the name of the file of the face.
+/// Returns the text of the figures of a face. `input` is the name of the file that has the face.
 [[nodiscard]] std::string face_figure_json(const std::string& input, const FaceFigure& figure);
 
 struct NamedBlendComparison {
@@ -64,21 +65,21 @@ struct BeforeAndAfter {
 
 /// Facts about a bake that are reported with its result.
 struct BakeReport {
-  std::string input, output;  ///< names
+  std::string input, output;  ///< the names of the files
   std::optional<std::string> drivers_file;
   std::optional<BeforeAndAfter> audit;
-  std::vector<std::string> notes = {};  ///< on the input, from Input::notes()
+  std::vector<std::string> notes = {};  ///< notes on the input, from Input::notes()
 };
 
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Returns the text that lists the targets, bytes and errors of each candidate for each mesh, as --encode smallest
-/// compares them.
+/// Returns the text that lists, for each mesh, the targets, bytes and errors of every candidate. The option --encode
+/// smallest compares these figures.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
-/// Returns the text of an answer; input is the name of the file. Columns are arrays with the same names as in a .npz
-/// file.
+/// Returns the text of an answer. input is the name of the file. Each column is an array with the name that it has in a
+/// .npz file.
 [[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::inline internal

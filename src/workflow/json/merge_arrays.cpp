@@ -1,4 +1,4 @@
-// Joins the rows of arrays that shards of samples wrote into one array, and finds missing rows.
+// Joins the arrays that shards of samples wrote into one array, and finds missing rows.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -25,7 +25,8 @@ struct ShardRows {
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  // Returns true if the shapes agree. If the checksums match, the shapes do too, unless somebody forged the parts.
+  // Returns true if the shapes of both arrays agree. Arrays with matching checksums have the same shape, unless
+  // somebody forged the parts.
   [[nodiscard]] bool is_like(const ShardRows& other) const {
     return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
@@ -56,7 +57,7 @@ Result<ShardRows> open_rows(const std::string& path) {
   return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
-// Checks that every row is in exactly one of the shards. The shards must be in order.
+// Checks that every row is in exactly one of the shards. The shards must be in the order of their rows.
 Status check_rows(const std::vector<ShardRows>& all) {
   const std::uint64_t count = all.front().place.total;
   std::uint64_t next = 0;
@@ -99,7 +100,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   for (const ShardRows& rows : all) {
     std::uint32_t sum = 0;
     std::uint64_t at = 0;
-    // Reads the bytes of a part up to offset `end`, and copies them to the output if is_copied.
+    // Reads the bytes of a part up to offset `end`. Copies them to the output if is_copied is true.
     const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
       while (at < end) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));

@@ -11,23 +11,23 @@
 
 namespace chronormal::inline internal {
 
-using Json = nlohmann::ordered_json;  // fields stay in the order of the documentation
+using Json = nlohmann::ordered_json;  // keeps fields in the order of the documentation
 
-/// Returns the object of a command with the fields that every command begins with.
+/// Returns an object that has only the fields with which the JSON of every command begins.
 [[nodiscard]] Json json_of_command(const char* command, int schema = 1);
 
-/// Returns the text, indented, with a final line end. Names in files need not be UTF-8: invalid bytes become U+FFFD.
+/// Returns the text, indented, with a final line end. Names in files need not be UTF-8, so invalid bytes become U+FFFD.
 [[nodiscard]] std::string json_text(const Json& json);
 
-/// Inserts objects into a text in place of its empty list `name`, which must come before any other list of this name.
-/// Creates the objects one by one, so that a million objects are never in memory together. If is_indented is true, the
-/// list must be a member of the outermost object, and is formatted as by json_text(); otherwise all objects are on one
-/// line.
+/// Inserts objects into a text in place of its empty list `name`. This list must come before any other list of that
+/// name. Creates the objects one by one, so that a million objects are never in memory together. If is_indented is
+/// true, the list must be a member of the outermost object, and is formatted as by json_text(). Otherwise all objects
+/// are on one line.
 [[nodiscard]] std::string with_items(std::string text, const std::string& name, std::size_t count,
                                      const std::function<Json(std::size_t)>& item, bool is_indented);
 
-/// Writes which curves were cut into which pieces, and the largest angle by which they bend. Writes nothing if no curve
-/// was cut.
+/// Writes which curves were cut into how many pieces, and the largest angle by which they bend. Writes nothing if no
+/// curve was cut.
 void put_path(Json& json, const std::optional<CutPath>& cut);
 
 template <class T>

@@ -1,5 +1,5 @@
-// Writes and reads parts as JSON. The members of a struct are a list of numbers, in their order. Sums keep their bits,
-// because the shortest text of a double is read back as the same double.
+// Writes and reads parts as JSON. A struct becomes a list of its members in their order. Sums keep their bits, because
+// the shortest text of a double is read back as the same double.
 #include "workflow/json/parts.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this number
 
-// A reader for the numbers of a list, one after the other.
+// Reads the numbers of a list, one after the other.
 class Numbers {
  public:
   explicit Numbers(JsonView list) : list_(std::move(list)) {}
@@ -68,7 +68,8 @@ SchemeTally read_tally(Numbers numbers) {
   return tally;
 }
 
-// Writes an error. Most bins of the fine histogram are empty, so only the others are written, each with its number.
+// Writes an error. Most bins of the fine histogram are empty, so only the other bins are written, each as its number
+// and its count.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,
                error.sum,
@@ -187,7 +188,7 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
-// Writes which curves were cut, in the format of parts.
+// Writes into how many pieces curves were cut, in the format of parts.
 void put_cut(Json& json, const std::optional<CutPath>& cut) {
   if (!cut) return;
   json["path"] = path_name(cut->path.kind);
@@ -214,7 +215,7 @@ std::optional<CutPath> read_cut(const JsonView& part) {
   return cut;
 }
 
-// Calls each(view) for the items of a list that may be missing.
+// Calls each(view) for the items of a list. If the object has no such list, does nothing.
 template <class Each>
 void each_item(const JsonView& object, const char* key, const Each& each) {
   if (!object.has(key)) return;
@@ -327,7 +328,7 @@ AuditShard read_audit(const JsonView& part) {
   return shard;
 }
 
-// The parts that were read, and their common fields. One of the two lists is empty.
+// The parts that were read, and the fields that are equal in all of them. One of the two lists is empty.
 struct ReadParts {
   std::string name;
   std::optional<double> tolerance;
@@ -335,7 +336,7 @@ struct ReadParts {
   std::vector<AuditShard> audits;
 };
 
-// Returns the checksums of a part, together with checksums of its tolerance and of the name of its input.
+// Returns the checksums of a part. Adds checksums of its tolerance and of the name of its input.
 TaskChecksums checksums_of(const JsonView& part) {
   TaskChecksums checksums = read_task_checksums(part);
   NumberChecksum input, tolerance;

@@ -13,7 +13,7 @@ Json value_json(T value) {
   return value;
 }
 
-// Returns one value for each row, or one array for each row if the column is wide.
+// Returns an array with one value for each row. If the column has several numbers in each row, each value is an array.
 Json column_json(const QueryColumn& column) {
   Json rows = Json::array();
   std::visit(
@@ -28,7 +28,7 @@ Json column_json(const QueryColumn& column) {
   return rows;
 }
 
-// Writes counts as integers.
+// Writes whole numbers without a decimal point, since most facts are counts.
 Json fact_json(double value) {
   constexpr double kEveryInteger = 0x1p53;
   if (value == std::floor(value) && std::fabs(value) < kEveryInteger) return static_cast<std::int64_t>(value);
