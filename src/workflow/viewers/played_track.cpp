@@ -20,14 +20,15 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Returns the factors of Hermite interpolation for the value before, its tangent, the value after, and its tangent.
+// Returns the factors of Hermite interpolation at t. They belong to the value before, its tangent, the value after, and
+// its tangent, in this order.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
 }
 
-// Returns the index of the last sample, as gltfpack does: it rounds the number of samples, with a bias towards one
-// more.
+// Returns the index of the last sample, as gltfpack computes it. gltfpack rounds the number of samples, and more often
+// up than down.
 double index_of_last_sample(const TimeRange& animation) noexcept {
   constexpr double kBias = 0.8;
   return std::floor((animation.last - animation.first) * kViewerSampleRate + kBias);
@@ -89,9 +90,9 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // This viewer misreads the values of a single target as a spline with three values per key. It uses the first third
-    // of the array, which are in-tangents, as the keys. Beyond the end of the array there are no values, so the weight
-    // is 0.
+    // This viewer takes the values of a single target for a spline with three values per key. It uses the first third
+    // of the array, which has in-tangents, as if these were the keys. Beyond the end of the array there are no values,
+    // so the weight is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

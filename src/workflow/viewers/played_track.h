@@ -1,7 +1,8 @@
-/// The weights that a viewer plays from a track of a file, which may differ from those that glTF specifies. Private to
-/// workflow.
+/// Computes the weights that a viewer plays from a track of a file. They may differ from those that glTF specifies.
+/// Private to workflow.
 ///
-/// A track is not sampled in advance. A resampled track computes the two samples around the requested time.
+/// Some viewers sample a track again at fixed steps. For such a viewer, only the two samples around the requested time
+/// are computed.
 #ifndef CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 #define CHRONORMAL_WORKFLOW_VIEWERS_PLAYED_TRACK_H_
 
@@ -25,22 +26,22 @@ struct TimeRange {
 
 class PlayedTrack {
  public:
-  /// Creates a track from keys as GltfDocument::keys() returns them, and from the time range of the animation that the
-  /// track belongs to.
+  /// Creates a track from keys as GltfDocument::keys() returns them. `animation` is the time range of the animation to
+  /// which the track belongs.
   PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count,
               const TimeRange& animation);
 
-  /// Writes the weights that the viewer shows at a time. If the weights jump at that time, writes those just after the
-  /// jump, or just before it.
+  /// Writes the weights that the viewer shows at a time in seconds. If the weights jump at that time, writes the
+  /// weights just after the jump, or just before the jump if just_before is true.
   void at(double time, bool just_before, std::span<double> weights) const;
 
-  /// Returns true if the viewer plays the specified weights, except for rounding and dropped weights.
+  /// Returns true if the viewer plays the weights that glTF specifies, except for rounding and weights that it drops.
   [[nodiscard]] bool is_as_specified() const noexcept { return as_specified_; }
 
  private:
   // Computes one sample of a resampled track.
   void sample(double index, std::span<double> weights) const;
-  // Plays a cubic spline by the viewer's own rule.
+  // Computes the weights of a cubic spline by the viewer's own rule.
   void play_spline(double time, bool just_before, std::span<double> weights) const;
 
   Viewer viewer_;
@@ -49,7 +50,7 @@ class PlayedTrack {
   bool steps_;
   double first_, last_;  // the first and the last time of the samples
   double last_index_;    // the index of the last sample
-  GltfKeys keys_;        // set only for a spline that the viewer plays by its own rule
+  GltfKeys keys_;        // keys of a spline that the viewer plays by its own rule; empty for all other tracks
   gltf::WeightCurve curve_;
 };
 

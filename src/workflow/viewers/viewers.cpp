@@ -14,8 +14,8 @@
 namespace chronormal {
 namespace {
 
-// Returns the nearest 16-bit float; ties are rounded away from zero. A 16-bit float has a sign, 5 bits of exponent and
-// 10 bits of fraction; a float32 has 23 bits of fraction.
+// Returns the nearest 16-bit float. Rounds ties away from zero. A 16-bit float has a sign, 5 bits of exponent and 10
+// bits of fraction; a float32 has 23 bits of fraction.
 float half(float value) noexcept {
   constexpr std::uint32_t kInfinity = 0x7f800000, kLeastNormal = 0x38800000, kHalfOfLast = 1U << 12;
   constexpr float kLargest = 65504, kStep = 0x1p-24F;  // kStep: the step between numbers below 2^-14
@@ -29,8 +29,9 @@ float half(float value) noexcept {
 
 Vec3f half(const Vec3f& v) noexcept { return {half(v.x), half(v.y), half(v.z)}; }
 
-// Rounds to a signed integer that represents [-1, 1]; ties are rounded away from zero. Integers of 9 to 15 bits are
-// stored in 16 bits: their upper bits are repeated in the unused lower bits, so that 1 stays 1.
+// Rounds a number to a signed integer that represents [-1, 1], and returns the number that the integer stands for.
+// Rounds ties away from zero. Integers of 9 to 15 bits are stored in 16 bits. The upper bits are repeated in the unused
+// lower bits, so that 1 stays 1.
 float clamped(float value, int bits) noexcept {
   const int wide = bits <= 8 ? 8 : 16;
   const int lack = wide - bits;
@@ -62,7 +63,8 @@ Vec3d from_octahedral(const Octahedral& o) noexcept {
   return unit(Vec3d{o.x - std::copysign(fold, o.x), o.y - std::copysign(fold, o.y), z});
 }
 
-// Returns a direction after it was stored as two unsigned integers that represent [-1, 1], rounded down.
+// Returns a direction after it was stored in octahedral form. The form has two unsigned integers that represent [-1,
+// 1], rounded down.
 Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits) - 1;
@@ -71,7 +73,7 @@ Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({kept(o.x), kept(o.y)});
 }
 
-// Returns a direction after it was stored as two signed integers, rounded to nearest.
+// Returns a direction after it was stored in octahedral form. The form has two signed integers, rounded to nearest.
 Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits - 1) - 1;
@@ -79,8 +81,8 @@ Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
 }
 
-// Returns the first axis of Frisvad's frame of a unit vector, here with y up. The viewer applies the formula also to
-// vectors of other lengths, so this function does the same.
+// Returns the first axis of Frisvad's frame of a unit vector, here for a frame whose y axis points up. The viewer
+// applies the formula also to vectors of other lengths, so this function does the same.
 Vec3d first_axis(const Vec3d& n) noexcept {
   constexpr double kDown = -1 + 1.0 / (1 << 23);
   if (n.y < kDown) return {-1, 0, 0};
@@ -88,8 +90,8 @@ Vec3d first_axis(const Vec3d& n) noexcept {
   return {-n.z * n.x * a, -n.z, 1 - n.z * n.z * a};
 }
 
-// Returns the third axis of a vector's frame after the viewer has stored it as a quaternion of signed integers. The
-// viewer converts any frame as if it were orthonormal, so this function does the same.
+// Returns the third axis of a vector's frame after the viewer has stored the frame as a quaternion of signed integers.
+// The viewer converts any frame as if it were orthonormal, so this function does the same.
 Vec3d through_frame(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const Vec3d x = first_axis(v), y = cross(v, x);
