@@ -12,14 +12,14 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;                // elements in one block
-constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; so small that the sine is the angle
+constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; so small that the sine equals the angle
 constexpr double kClear = 2.0 / 3;
-constexpr double kFollows = 1;  // degrees
+constexpr double kFollows = 1;  // degrees: the largest distance of a weighting that the author may have used
 
 using Stored = std::span<const StoredNormal>;  // sorted by element
 
-// A small mesh to which some elements are copied, so that memory does not grow with the whole mesh. Each element has
-// its own copy of its faces: the element is one vertex of these faces, and no other element uses their other vertices.
+// A small mesh to which some elements are copied, so that memory does not grow with the whole mesh. Each element gets
+// its own copy of its faces. The element is one vertex of these faces, and no other element uses their other vertices.
 class Block {
  public:
   Block(const Topology& topology, VectorView<const float> positions, const NormalGroups& groups, Stored stored) {
@@ -51,7 +51,7 @@ class Block {
     groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
 
-  // Returns the normals of the elements by a weighting, one for each stored normal; (0, 0, 0) if an element has no
+  // Returns for each stored normal the normal that its element has by a weighting, or (0, 0, 0) if the element has no
   // normal.
   [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
     const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
@@ -146,7 +146,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   Distances all;
   const Stored sorted(stored);
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
-  // Handles a limited number of blocks at once, because their results need memory.
+  // The results of blocks take memory, so only some blocks are examined together.
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < blocks; first += kAtOnce) {
     std::vector<Distances> found(std::min(kAtOnce, blocks - first));

@@ -1,17 +1,19 @@
 /// Finds which weighting an author's normals follow. Private to workflow.
 ///
 /// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h), and the stored
-/// normals show how. The true normals follow the same weighting, so a difference from another weighting is no error of
-/// the file.
+/// normals show this way. The true normals follow the same weighting, so a difference from another weighting is not an
+/// error of the file.
 ///
-///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees: elsewhere all agree
+///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees; at all other normals
+///                the weightings agree
 ///     distance   of a weighting: the median, over the normals that tell, of the angle to the stored normal
 ///     detected   the weighting at the smallest distance, if that is at most a degree, and at most two thirds of the
-///                distance of area; otherwise area, which is exact at every time
+///                distance of area; otherwise area, which can be computed exactly at every time
 ///
-/// The distance is a median, so normals that an author bent by hand have no influence as long as most normals are as
-/// they were computed. Normals in 8 bits, and quads that were cut into triangles later, hardly change the distance
-/// compared with the limit of two thirds, if weightings differ by more than a degree. If no weighting fits, all have
+/// The distance is a median. For this reason normals that an author bent by hand have no influence as long as most
+/// normals are as the program computed them. Rounding to 8 bits, and quads that were cut into triangles later, change
+/// the distance little compared with the limit of two thirds, if weightings differ by more than a degree. If no
+/// weighting fits, all have about the same distance.
 /// about the same distance.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
@@ -30,18 +32,18 @@
 
 namespace chronormal::inline internal {
 
-/// A stored normal of a vertex, of any length but zero, and the vertex's element in NormalGroups.
+/// A stored normal of a vertex, and the vertex's element in NormalGroups. The normal has any length except zero.
 struct StoredNormal {
   std::uint32_t vertex = 0, element = 0;
   Vec3d normal;
 };
 
-/// The angles between the stored normals and the normals of one weighting, in degrees. The side of the surface does not
-/// count: opposite normals have the distance 0.
+/// The angles between the stored normals and the normals of one weighting, in degrees. Opposite normals have the
+/// distance 0, since an author may show either side of a surface.
 struct WeightingDistance {
-  std::size_t count = 0;  ///< how many stored normals have an element with a normal
+  std::size_t count = 0;  ///< the number of stored normals whose element has a normal
   double sum = 0, worst = 0;
-  std::uint32_t worst_at = 0;  ///< the vertex with the worst distance
+  std::uint32_t worst_at = 0;  ///< the vertex with the largest distance
   double of_telling = 0;       ///< the median over the normals that tell
 
   [[nodiscard]] double mean() const noexcept { return count > 0 ? sum / static_cast<double>(count) : 0; }
@@ -57,14 +59,15 @@ struct AuthoredWeighting {
   Weighting detected = Weighting::kArea;  ///< one of kWeightings
 };
 
-/// Compares stored normals with all weightings. `groups` must belong to the topology, and have corners. O(corners),
-/// seven times; uses all cores, and little memory besides the stored normals. The result has the same bits on any
-/// number of threads.
+/// Compares stored normals with all weightings. `groups` must belong to the topology, and have corners. Takes
+/// O(corners) for each of the seven weightings. Uses all cores, and little memory besides the stored normals. The
+/// result has the same bits on any number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// Compares the base normals of a mesh in the same way; without base normals, the result is area. The groups of the
-/// mesh must have their corners. If there are more than `most` normals, compares only `most` of them, at even steps.
+/// Compares the base normals of a mesh in the same way. The groups of the mesh must have their corners. If the mesh has
+/// no base normals, the detected weighting is area. If there are more than `most` normals, compares only `most` of
+/// them, evenly spaced.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
                                                         std::size_t most = static_cast<std::size_t>(-1));
 

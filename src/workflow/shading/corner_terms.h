@@ -1,8 +1,8 @@
-/// Computes the terms that corners of polygons add to the normals of elements, by a weighting. Private to workflow.
+/// Computes, by a weighting, the terms that corners of polygons add to the normals of elements. Private to workflow.
 ///
-/// Many corners are computed at once. The normal of a polygon is computed once for corners that are close together in
-/// the list, and lengths and angles are computed in SIMD lanes. The result has the same bits as a call of corner_term()
-/// for each corner.
+/// Many corners are computed at once. If corners of the same polygon are close together in the list, the normal of the
+/// polygon is computed once. Lengths and angles are computed in SIMD lanes. The result has the same bits as a call of
+/// corner_term() for each corner.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_CORNER_TERMS_H_
 
@@ -18,21 +18,22 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, with twice its area as
-/// length; e and f are the edges from the corner to the next and to the previous corner.
+/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, and its length is twice
+/// the area of the polygon. e and f are the edges from the corner to the next and to the previous corner.
 [[nodiscard]] Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
-/// The number of elements that are computed together: their corners fill lanes, and fit into the fastest cache.
+/// The number of elements that are computed together. It is large enough to fill SIMD lanes with their corners, and
+/// small enough for the fastest cache.
 inline constexpr std::size_t kElementsOfBlock = 128;
 
 class CornerTerms {
  public:
-  /// Returns an empty object that belongs to this thread and reuses its memory. It is valid until the next call in this
-  /// thread.
+  /// Returns an empty object that belongs to this thread and reuses its memory. The object is valid until the next call
+  /// of this function in this thread.
   [[nodiscard]] static CornerTerms& emptied(Weighting weighting);
 
-  /// Appends a corner of a polygon whose vertices are `loop`. A polygon must always have the same number, and no other
-  /// polygon may have it.
+  /// Appends a corner of a polygon. `loop` has the vertices of the polygon. `polygon` is a number that all calls use
+  /// for this polygon and for no other.
   template <class PositionOf>
   void add(std::uint32_t polygon, std::span<const std::uint32_t> loop, std::size_t corner, const PositionOf& position) {
     face_of_corner_.push_back(face_of(polygon, loop, position));
@@ -43,22 +44,23 @@ class CornerTerms {
     previous_.push_back(position(loop[corner == 0 ? last : corner - 1]) - here);
   }
 
-  /// Computes the terms of all corners that were appended. Call it once.
+  /// Computes the terms of all corners that were appended. Must be called once, after add() and before terms().
   void finish();
 
-  /// Return, in the order of appending, the terms, their lengths, and the lengths of the normals of their polygons.
+  /// Return the terms of all corners, the lengths of these terms, and the length of the normal of a corner's polygon.
+  /// Corners are numbered in the order of add().
   [[nodiscard]] std::span<const Vec3d> terms() const noexcept { return terms_; }
   [[nodiscard]] std::span<const double> lengths() const noexcept { return lengths_; }
   [[nodiscard]] double area(std::size_t corner) const noexcept { return areas_[face_of_corner_[corner]]; }
 
  private:
   struct Known {
-    std::uint64_t use = 0;  // the use of the object that made this entry
+    std::uint64_t use = 0;  // tells for which emptied() this entry was made
     std::uint32_t polygon = 0, face = 0;
   };
   static constexpr std::size_t kKnown = 512;
 
-  // Returns the index of a polygon in faces_.
+  // Returns the index of a polygon in faces_. Computes its normal if the normal is not known.
   template <class PositionOf>
   std::uint32_t face_of(std::uint32_t polygon, std::span<const std::uint32_t> loop, const PositionOf& position) {
     Known& known = known_[polygon % kKnown];
@@ -72,7 +74,8 @@ class CornerTerms {
   bool needs_edges_ = false;
   std::uint64_t use_ = 0;
   std::array<Known, kKnown> known_;
-  std::vector<Vec3d> faces_;  // normals of polygons, later the vectors that the weights of corners multiply
+  // Normals of polygons; finish() replaces them by the vectors that the weights of corners multiply.
+  std::vector<Vec3d> faces_;
   std::vector<double> areas_;
   std::vector<std::uint32_t> face_of_corner_;
   std::vector<Vec3d> terms_, next_, previous_;

@@ -118,7 +118,7 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
   return Success{};
 }
 
-// Renumbers classes of vertices in the order of their first vertices. The numbers in class_of_vertex may be in any
+// Renumbers classes of vertices in the order of their first vertices. The numbers in class_of_vertex may have any
 // order.
 Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t class_count) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
@@ -132,7 +132,7 @@ Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t 
   return points;
 }
 
-// Splits points whose vertices coincide in the base, but move differently in some target.
+// Splits points. Vertices that coincide in the base but have different deltas in some target become separate points.
 Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) {
   for (const BlendTarget& target : targets) {
     const std::size_t count = target.vertices.size();
@@ -144,7 +144,7 @@ Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) 
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     std::vector<std::uint32_t> classes = points.point_of_vertex;
-    std::size_t class_count = points.count;  // vertices of a class that move alike go to the same new class
+    std::size_t class_count = points.count;  // vertices of a class with equal deltas go to the same new class
     for (std::size_t n = 0; n < count; ++n) {
       if (n == 0 || key(order[n - 1]) < key(order[n])) ++class_count;
       classes[target.vertices[order[n]]] = static_cast<std::uint32_t>(class_count - 1);
@@ -163,8 +163,8 @@ Points set_apart(const Points& points, const std::vector<bool>& alone) {
   return to_points(classes, class_count);
 }
 
-// Groups vertices without stored normals by the crease angle: each class shares a normal. All other vertices stay
-// alone. `split` counts the vertices that a crease would split.
+// Groups vertices without stored normals by the crease angle. Each class of the result shares a normal. All other
+// vertices stay alone. `split` counts the vertices that a crease would split.
 Result<Points> smooth_points(const Motion& base, const Points& points, const std::vector<bool>& has_normal,
                              double crease_angle, std::size_t& split) {
   const Result<NormalGroups> groups = NormalGroups::by_crease_angle(base, set_apart(points, has_normal), crease_angle);
@@ -199,7 +199,7 @@ Result<Points> smooth_points(const Motion& base, const Points& points, const std
   return to_points(classes, class_count);
 }
 
-// Takes the points of vertices with stored normals from `stored`, and all others from `smooth`.
+// Takes the points of vertices with stored normals from `stored`, and the points of all other vertices from `smooth`.
 Points joined(const Points& stored, const Points& smooth, const std::vector<bool>& has_normal) {
   std::vector<std::uint32_t> classes = stored.point_of_vertex;
   for (std::size_t v = 0; v < classes.size(); ++v)
@@ -207,7 +207,7 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
   return to_points(classes, stored.count + smooth.count);
 }
 
-// Groups vertices into points whose vertices may share a normal.
+// Groups vertices into points. The vertices of a point may share a normal.
 Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
                               GltfShading& shading) {
   Motion base;  // gets the arrays of `shading` temporarily
@@ -232,7 +232,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
     has_none.flip();
     Result<Points> smooth = set_apart(points, has_none);
     if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
-    // Vertices with stored normals and vertices without never share a point, even at the same place.
+    // A vertex with a stored normal and a vertex without one never share a point, even at the same place.
     if (smooth)
       all = joined(set_apart(points, has_none), smooth.value(), has_normal);
     else
@@ -243,9 +243,9 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   return all;
 }
 
-// Splits points by the stored normals of their vertices. This uses the code of NormalGroups, which splits by the
-// normals of face corners: each vertex that shares its point, and has a face, gets a made-up face with all corners at
-// that vertex.
+// Splits points by the stored normals of their vertices. Uses the code of NormalGroups, which splits points by the
+// normals of face corners. For this purpose, each vertex that shares its point and has a face gets an invented face
+// with all corners at that vertex.
 Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
   std::vector<bool> has_face(points.point_of_vertex.size()), is_shared(points.count), is_taken(points.count);
   for (const std::uint32_t v : topology.corners()) has_face[v] = true;
@@ -283,7 +283,7 @@ Result<Points> split_by_normals(const Topology& topology, Points points, const s
   return points;
 }
 
-// Numbers points in the order of their first corners; points without faces come last.
+// Numbers points in the order of their first corners. Points without faces come last.
 void number_by_corners(const Topology& topology, Points& points) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   std::vector<std::uint32_t> number(points.count, kNone);
@@ -298,10 +298,10 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
-// Polygons that are back to back, with equal vertices and opposite sides: single triangles, or two consecutive
-// triangles that were cut from a quad.
+// Polygons that lie back to back: they have the same vertices and face opposite sides. A polygon is a single triangle,
+// or two consecutive triangles that were cut from a quad.
 struct Backs {
-  std::vector<std::uint32_t> polygon;  // the polygon of each triangle, named by its first triangle
+  std::vector<std::uint32_t> polygon;  // the polygon of each triangle, named by the first triangle of the polygon
   std::vector<std::uint32_t> back;     // for each triangle, the polygon on its back, or kNoFace
 
   [[nodiscard]] bool are_apart(std::uint32_t a, std::uint32_t b) const {
@@ -316,7 +316,7 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   const std::vector<BackToBack> triangles = find_backs(count, [&](std::uint32_t f, auto& loop) {
     for (const std::uint32_t v : topology.face(f)) loop.push_back(point(v));
   });
-  // A quad is named by its first triangle.
+  // A quad has the number of its first triangle.
   const std::vector<BackToBack> quads = find_backs(count, [&](std::uint32_t f, auto& loop) {
     if (f + 1 == count) return;
     const auto a = topology.face(f), b = topology.face(f + 1);
@@ -338,8 +338,8 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   return backs;
 }
 
-// Finds the corners at which a vertex shows one side of a sheet although its stored normal faces the other side.
-// Returns one value for each corner, or an empty list if there are no such corners.
+// Finds corners on one side of a sheet whose vertex has a stored normal that faces the other side. Returns one value
+// for each corner, or an empty list if there are no such corners.
 std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& points) {
   const Topology& topology = shading.set.topology;
   const auto corners = topology.corners();
@@ -433,7 +433,8 @@ Status check_mark(const GltfDocument& document, const GltfShading& shading) {
 }
 
 // Removes the mark of a bake if it is no longer true. Programs that compute new normals for every target keep the names
-// of correction targets, but not their deltas; a bake never writes a correction target without deltas.
+// of correction targets, but not their deltas. A bake never writes a correction target without deltas, so a target
+// without them shows that such a program has changed the file.
 void drop_mark_of_emptied_targets(GltfShading& shading) {
   if (!shading.mark || shading.mark->extras.empty()) return;
   for (const GltfExtraTarget& extra : shading.mark->extras)

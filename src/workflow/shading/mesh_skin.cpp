@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kEvenBlock = 1024;
 // The tolerance for axes of a matrix that should be perpendicular and equally long, relative to the square of the
-// scale. Matrices in files are rounded. Within this tolerance, an angle changes by at most half of this part of itself.
+// scale. Matrices in files are rounded. A matrix within this tolerance changes an angle by at most half of 1e-4 of the
+// angle.
 constexpr double kEven = 1e-4;
 
 bool keeps_angles(const std::array<Vec3d, 3>& columns) {
@@ -76,7 +77,7 @@ Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform
   Vec3d sum;
   for (std::size_t i = shares_->first[vertex]; i < shares_->first[vertex + 1]; ++i) {
     const NormalMatrix of_joint = normal_matrix(matrices_[shares_->all[i].joint]);
-    // The cofactors of a joint that mirrors point to the wrong side, so their sign changes.
+    // The cofactor matrix of a joint that mirrors gives normals that point to the wrong side, so their sign is changed.
     sum = sum + (of_joint.mirrored ? -shares_->all[i].share : shares_->all[i].share) * unit(of_joint(normal));
   }
   return unit(sum);

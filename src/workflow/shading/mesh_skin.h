@@ -2,11 +2,11 @@
 ///
 /// Viewers blend the joint matrices of a vertex by its weights, M = sum of w_j M_j. They transform the position by M,
 /// and the normal by the linear part L of M (docs/decisions/0022 lists viewers that differ). L is not the normal
-/// matrix: unless it only rotates and scales evenly, it does not take the true normal to the normal of the skinned
-/// surface. No target can correct this. So the error is measured between normals that L has transformed, and the error
-/// of L itself is reported separately.
+/// matrix. If L does more than rotate and scale evenly, it does not take the true normal to the normal of the skinned
+/// surface. No target can correct this. For this reason the error is measured between normals that L has transformed,
+/// and the error of L itself is reported separately.
 ///
-/// Copies     share the data of the file; each has its own pose.
+/// Copies     All copies share the data of the file. Each copy has its own pose.
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
@@ -31,36 +31,37 @@ namespace chronormal::inline internal {
 
 class MeshSkin {
  public:
-  /// Reads the skin of a node for the mesh of the shading, and poses it as the file does. The joints and shares of
-  /// `of_same_mesh` are reused instead of being read again. Errors: see GltfSkin
+  /// Reads the skin of a node for the mesh of the shading, and poses the joints as the file does. If `of_same_mesh` is
+  /// given, reuses its joints and shares instead of reading them again. Errors: see GltfSkin
   [[nodiscard]] static Result<MeshSkin> read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
 
-  /// Poses the joints as they are at a time. If they jump at that time, uses the pose just after the jump, or the pose
-  /// just before it if just_before is true. Returns true if the pose may have changed.
+  /// Poses the joints as they are at a time in seconds. If they jump at that time, uses the pose just after the jump,
+  /// or just before the jump if just_before is true. Returns true if the pose may have changed.
   bool pose(double time, bool just_before);
 
   /// Tells whether the joints move in the animation.
   [[nodiscard]] bool moves() const noexcept { return skin_->moves(); }
 
-  /// Returns the times of all keys that move joints, ascending.
+  /// Returns the times in seconds of all keys that move joints, in ascending order.
   [[nodiscard]] std::vector<double> key_times() const { return skin_->key_times(); }
 
-  /// Tells whether the blended matrix of each of these vertices only rotates and scales evenly in this pose, up to
-  /// differences too small to matter. Such a matrix keeps the angle between any two normals of the vertex.
+  /// Tells whether the blended matrix of each of these vertices only rotates and scales evenly in this pose.
+  /// Differences too small to matter are ignored. Such a matrix keeps the angle between any two normals of the vertex.
   [[nodiscard]] bool is_even(std::span<const std::uint32_t> vertices) const;
 
-  /// Returns the blended matrix of a vertex in this pose.
+  /// Returns the blended matrix of a vertex in the present pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
-  /// Returns the direction in which a viewer renders a vertex's normal (of any length) in this pose: a unit vector;
-  /// zero, infinite or NaN if it has no direction. matrix must be of_vertex(vertex).
+  /// Returns the direction in which a viewer renders a vertex's normal in the present pose. The normal has any length;
+  /// matrix must be of_vertex(vertex). The result is a unit vector, or zero, infinite or NaN if the rendered normal has
+  /// no direction.
   [[nodiscard]] Vec3d carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
                               const Vec3d& normal) const noexcept;
 
  private:
-  // The joints that each vertex follows, as indices into a skin's joints.
+  // The joints that each vertex follows, as indices into the list of a skin's joints.
   struct Shares {
     std::vector<std::size_t> first;  // (V + 1)
     std::vector<JointShare> all;

@@ -1,5 +1,6 @@
-// A name is split into words before a capital that follows a small letter, and at all characters that are not letters.
-// Words for a side (left, right) tell the two halves of a symmetric pair.
+// Draws random poses. The names of targets are split into words. A word ends before a capital that follows a small
+// letter, and at each character that is not a letter. Words for a side (left, right) tell the two halves of a symmetric
+// pair.
 #include "workflow/shading/rig_poses.h"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ constexpr std::array<std::string_view, 10> kEyes = {"eye",  "eyes", "brow",  "br
 enum class Side { kNone, kLeft, kRight };
 
 struct Name {
-  std::vector<std::string> words;  // ascending, without the words for a side
+  std::vector<std::string> words;  // in ascending order, without the words for a side
   Side side = Side::kNone;
 };
 

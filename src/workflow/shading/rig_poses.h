@@ -1,14 +1,15 @@
-/// Random poses for files without animations: poses that sliders, the capture of a face, or an avatar program may set.
-/// Private to workflow.
+/// Draws random poses for files without animations. A slider, the capture of a face, or an avatar program may set such
+/// poses. Private to workflow.
 ///
-///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1; each next target is drawn with a
+///     no poses given   1 to 7 targets at once, 4 on average, at weights from 0 to 1. Each next target is drawn with a
 ///                      probability that depends on how well its name goes together with the names drawn before
-///     poses given      a pose between two given poses, or between a given pose and rest
+///     poses given      a pose between two given poses, or between a given pose and the rest pose, which has weights 0
 ///
-/// Names go together if they are the left and the right of the same feature (8 times as often as any two), share a
-/// word, or both belong to the mouth or to the eyes (3 times: "jawOpen" and "mouthSmile_L").
+/// Two names go together if they are the left and the right of the same feature. Such targets are drawn together 8
+/// times as often as any two. Two names also go together if they share a word, or if both belong to the mouth or to the
+/// eyes (3 times as often, for example "jawOpen" and "mouthSmile_L").
 ///
-/// Threads    pure; the same poses on every system.
+/// Threads    All functions are pure, and give the same poses on every system.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_
 #define CHRONORMAL_WORKFLOW_SHADING_RIG_POSES_H_
 
@@ -24,13 +25,13 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the factor by which two targets are more likely to be active together than any two, judged by their names.
+/// Returns how many times as likely two targets are to be active together as any two targets, judged by their names.
 [[nodiscard]] double togetherness(const std::string& a, const std::string& b);
 
 class RigPoses {
  public:
-  /// Prepares to draw poses. Of target_count targets, only those in `targets` may be active. `names` has target_count
-  /// names, or is empty. `given` holds poses of target_count weights each.
+  /// Prepares to draw poses for target_count targets. Only the targets in `targets` may be active. `names` has
+  /// target_count names, or is empty. `given` holds poses of target_count weights each.
   RigPoses(std::span<const std::string> names, std::vector<std::size_t> targets, std::size_t target_count,
            PoseList given);
 
@@ -49,9 +50,8 @@ class RigPoses {
 /// Returns the poses of a file that give weights to this mesh.
 [[nodiscard]] PoseList poses_of_mesh(std::span<const RigPose> poses, const GltfMesh& mesh);
 
-/// Checks that the poses fit the file.
-/// Errors: kInvalidInput if a pose names a target that no mesh with targets has, or has another number of weights than
-/// the mesh has targets
+/// Checks that the poses fit the file. Errors: kInvalidInput if a pose names a target that no mesh with targets has, or
+/// if its number of weights differs from the number of targets of the mesh.
 [[nodiscard]] Status check_poses(std::span<const RigPose> poses, const GltfDocument& document);
 
 }  // namespace chronormal::inline internal

@@ -18,7 +18,7 @@ std::vector<SurfaceEdge> surface_edges(const GltfShading& shading) {
     const auto corners = topology.face(f);
     for (std::size_t c = 0; c < corners.size(); ++c) add(corners[c], corners[(c + 1) % corners.size()]);
   }
-  // Links the vertices of each element in a chain, so that each pair of neighbours in the chain is an edge.
+  // Links the vertices of each element in a chain. Each pair of neighbours in the chain becomes an edge.
   std::vector<std::uint32_t> last(shading.groups.size(), GltfShading::kNoElement);
   for (std::uint32_t v = 0; v < elements.size(); ++v) {
     if (elements[v] == GltfShading::kNoElement) continue;
@@ -27,7 +27,7 @@ std::vector<SurfaceEdge> surface_edges(const GltfShading& shading) {
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  edges.shrink_to_fit();  // halves the memory
+  edges.shrink_to_fit();  // frees the unused half of the memory
   return edges;
 }
 

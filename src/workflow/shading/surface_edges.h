@@ -1,8 +1,8 @@
 /// Lists the pairs of vertices between which a jump of the error is visible. Private to workflow.
 ///
-/// Normals are interpolated over faces. So two neighbours with the same error look right, while two neighbours with
-/// different errors show a fold that does not exist. The *tear* of a pair measures this jump as an angle, from the
-/// length of the difference of the two errors:
+/// Normals are interpolated over faces. If two neighbouring vertices have the same error, the surface between them
+/// looks right. If they have different errors, it shows a fold that does not exist. The *tear* of a pair of vertices
+/// measures the difference of their errors as an angle, from the length of the difference of the two error vectors:
 ///
 ///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s rendered and u true, both unit vectors
 #ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_
@@ -21,15 +21,16 @@ namespace chronormal::inline internal {
 /// A pair of vertices, the lower number first.
 using SurfaceEdge = std::array<std::uint32_t, 2>;
 
-/// Lists the edges of all faces, and the pairs of vertices at one point that share a normal (texture seams): each pair
-/// once, ascending. Vertices without a normal of their own are in no pair. O(corners log corners)
+/// Lists the edges of all faces, and the pairs of vertices that share a point and a normal (texture seams). The list
+/// has each pair once, in ascending order. Vertices without a normal of their own are in no pair. Takes O(corners log
+/// corners).
 [[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
 
-/// The numbers of tears beyond 10, 20 and 40 degrees.
+/// Counts the pairs of vertices with a tear beyond 10, 20 and 40 degrees.
 struct TearCounts {
   static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
 
-  /// The squared lengths of s - u that belong to these angles, (2 sin(angle / 2))^2.
+  /// The squared lengths of the difference of two error vectors at these angles, (2 sin(angle / 2))^2.
   static constexpr std::array<float, 3> kSquares = {0.030384494F, 0.12061476F, 0.46791112F};
 
   std::array<std::size_t, 3> beyond{};
@@ -37,8 +38,8 @@ struct TearCounts {
   void add(const TearCounts& other) noexcept {
     for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += other.beyond[k];
   }
-  /// Adds the tears between two vertices in some poses. a and b are planes (3, poses) of their errors s - u. A pose in
-  /// which an error is NaN adds no tear.
+  /// Adds the tears between two vertices in some poses. a and b have their errors s - u as planes, (3, poses). A pose
+  /// in which an error is NaN adds no tear.
   void add(const float* a, const float* b, std::size_t poses) noexcept {
     std::array<std::uint32_t, 3> counts{};
     for (std::size_t p = 0; p < poses; ++p) {

@@ -11,8 +11,7 @@ namespace {
 
 constexpr std::size_t kSamplesPerPiece = 16;
 
-// Counts the samples of a track: its keys and, if weights change between keys, every step-th of the samples between
-// them.
+// Counts the samples of a track: its keys and, if weights change between keys, every step-th sample between two keys.
 std::size_t count_samples(const WeightTrack& track, std::size_t step) {
   if (track.interpolation == GltfInterpolation::kStep || track.size() < 2) return track.size();
   return kSamplesPerPiece / step * (track.size() - 1) + 1;
@@ -119,7 +118,7 @@ std::vector<std::vector<double>> WeightUse::samples(std::size_t most, std::size_
   const std::size_t count = std::min(total, most);
   std::size_t track = 0, first = poses_.size();  // first: the index of the first sample of `track`
   for (std::size_t n = 0; n < count; ++n) {
-    // Chooses indices at even steps, both ends included, without overflow.
+    // Chooses evenly spaced indices, with both ends, and without overflow.
     const std::size_t index =
         count < 2 ? 0
                   : static_cast<std::size_t>(std::floor(static_cast<double>(n) * static_cast<double>(total - 1) /

@@ -16,25 +16,26 @@ namespace chronormal::inline internal {
 /// Weights of all targets, pose by pose.
 using PoseList = std::vector<std::vector<double>>;
 
-/// The keys of a track and its interpolation. A cubic spline with one key stays constant.
+/// The keys of a track, and how weights are interpolated between them. A cubic spline with one key stays constant.
 struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   GltfKeys keys;
   std::size_t targets = 0;
-  /// The number of pieces into which the curves of correction weights cut each gap of a LINEAR track. One piece is
-  /// enough if the corrected normals are quadratic between keys.
+  /// The number of pieces of equal length into which each gap between two keys of a LINEAR track is cut for the weights
+  /// of correction targets. One piece is enough if the corrected normals are quadratic between keys.
   std::size_t pieces_of_line = 1;
 
   [[nodiscard]] std::size_t size() const noexcept { return keys.times.size(); }
   [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;
-  /// Returns a tangent of a cubic spline, per second.
+  /// Returns a tangent of a cubic spline: the change of the weight in each second. Returns the tangent after the key if
+  /// out is true, and before the key otherwise.
   [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
-  /// Returns a weight between two keys as a cubic in Bernstein form; in a STEP track the cubic is constant. key + 1
-  /// must be less than size()
+  /// Returns the weight from a key to the next key as a cubic in Bernstein form. In a STEP track the cubic is constant.
+  /// key + 1 must be less than size().
   [[nodiscard]] std::array<double, 4> piece(std::size_t key, std::size_t target) const noexcept;
 };
 
-/// The weights that a mesh is given, by tracks and by single poses.
+/// The weights that the tracks and single poses of a file give to the targets of a mesh.
 class WeightUse {
  public:
   explicit WeightUse(std::size_t targets) : lowest_(targets, 0.0), highest_(targets, 0.0), moments_(targets) {}
@@ -43,10 +44,10 @@ class WeightUse {
   void add_track(const WeightTrack& track);
   void add_pose(std::vector<double> weights);
 
-  /// Returns true if both weights are nonzero at some instant. (Between keys of a cubic spline, a weight counts as
-  /// nonzero if any of its four coefficients is.) O(moments).
+  /// Returns true if both targets have a nonzero weight at some moment. Between keys of a cubic spline, a weight counts
+  /// as nonzero if any of its four coefficients is nonzero. Takes O(moments).
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const noexcept;
-  /// Returns a bound of |w_i|.
+  /// Returns a bound of |w_i|, the size of the weight of target i.
   [[nodiscard]] double largest(std::size_t i) const { return std::fmax(-lowest_[i], highest_[i]); }
   /// Return bounds of w_i: a lower bound of at most 0, and an upper bound of at least 0.
   [[nodiscard]] double lowest(std::size_t i) const { return lowest_[i]; }
@@ -55,11 +56,11 @@ class WeightUse {
 
   /// Returns the largest number of poses that samples() can return.
   [[nodiscard]] std::size_t sample_count() const noexcept;
-  /// Returns poses that the weights pass through: all keys, and fifteen poses between any two keys. If there are more
-  /// than `most`, returns `most` of them, at even steps.
+  /// Returns poses that the tracks pass through: all keys, and fifteen poses between any two neighbouring keys. Also
+  /// returns the single poses. If there are more than `most` poses, returns `most` of them, evenly spaced.
   [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
-  /// Returns poses like samples(), but keeps all keys as long as possible: it reduces the number of poses between two
-  /// keys to seven, three, one, and none.
+  /// Returns poses like samples(), but keeps all keys as long as possible. For this purpose, fifteen poses between two
+  /// keys become seven, three, one or none.
   [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:
