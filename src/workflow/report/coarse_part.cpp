@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t kNone = kNoReportElement;
 
-// The faces of a part. Each is a range of triangles.
+// The faces of a part. Each face is a range of consecutive triangles.
 struct Faces {
   explicit Faces(const ModelPart& part) {
     const std::size_t triangles = part.triangles.size() / 3;
@@ -29,13 +29,13 @@ struct Faces {
     return std::span(part.triangles).subspan(3 * first[face], 3 * (first[face + 1] - first[face]));
   }
 
-  std::vector<std::size_t> first;  // first triangle of each face, then the number of triangles
+  std::vector<std::size_t> first;  // the first triangle of each face, then the number of triangles
 };
 
 // A list of numbers for each element, stored one after the other.
 struct ListsOfElements {
   // Collects the lists. each(use) must call use(element, number) for all entries, in order. Entries whose element is
-  // kNone are left out.
+  // kNone are ignored.
   template <class Each>
   ListsOfElements(const ModelPart& part, const Each& each) : offsets(part.elements + 1) {
     each([&](std::uint32_t e, std::size_t) {
@@ -79,7 +79,7 @@ std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   return result;
 }
 
-// Lists the vertices that the true normal of each element needs in addition to the vertices of its triangles.
+// For each element, lists the vertices that its true normal needs in addition to the vertices of its triangles.
 ListsOfElements vertices_of_truths(const ModelPart& part) {
   const ModelTruth& truth = part.truth;
   const std::vector<std::uint32_t> polygon_of = polygons_of_corners(truth);
@@ -98,8 +98,8 @@ struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
 
-// Keeps the elements around the worst places, one ring after the other, until their faces have most_vertices vertices.
-// The elements of the worst places themselves are always kept.
+// Keeps the elements around the worst places, one ring of neighbours after the other, until their faces have
+// most_vertices vertices. The elements of the worst places themselves are always kept.
 Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size_t most_vertices) {
   const ModelPart& part = model.parts[number];
   const Faces faces(part);
@@ -134,7 +134,8 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Returns fewer triangles with vertices of the same mesh. Keeps the border of the triangles if possible.
+// Returns about most_triangles triangles in place of these, with vertices of the same mesh. Keeps the border of the
+// triangles if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};
@@ -144,7 +145,8 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   std::vector<std::uint32_t> result(triangles.size());
   std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                        kStride, most, kAnyError, meshopt_SimplifyLockBorder);
-  // The topology or the borders of a mesh may prevent simplification. Then another method keeps only the rough shape.
+  // The topology or the borders of a mesh may prevent simplification. In this case another method keeps only the rough
+  // shape.
   if (count > most + most / 2)
     count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                    kStride, most, kAnyError);
@@ -152,7 +154,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   return result;
 }
 
-// Numbers the kept items in their order.
+// Returns new numbers for the kept items, in their order, and kNone for all others.
 std::vector<std::uint32_t> numbers(const std::vector<bool>& kept) {
   std::vector<std::uint32_t> result(kept.size(), kNone);
   std::uint32_t count = 0;
@@ -173,8 +175,8 @@ void keep_vectors(const std::vector<bool>& kept, const std::vector<std::uint32_t
   for (std::uint32_t& v : vectors.vertices) v = number[v];
 }
 
-// Keeps the truth of kept elements, and renumbers its vertices and elements. The other members of the part must still
-// have the old numbers.
+// Keeps the true normals of kept elements, and renumbers their vertices and elements. The other members of the part
+// must still have the old numbers.
 void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, const std::vector<std::uint32_t>& element,
                 ModelPart& part) {
   ModelTruth& truth = part.truth;
@@ -218,7 +220,7 @@ void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, cons
   }
 }
 
-// Stores the number of each vertex: in the file, or in its primitive if there are several primitives.
+// Stores for each vertex its number in the file, or its number in its primitive if there are several primitives.
 void label(ModelPart& part) {
   if (!part.labels.empty()) return;
   for (const ModelPrimitive& primitive : part.primitives)

@@ -8,9 +8,10 @@
 
 namespace chronormal::inline internal {
 
-/// Reduces a part to about this many vertices. Half of them are around its worst places, where all triangles stay; the
-/// other half is for all other places, which become coarse. The neighbourhoods of worst places are kept even if they
-/// need more vertices. Updates numbers in the model. The part must have no coarse triangles yet.
+/// Reduces a part of a report to about this many vertices. Half of these vertices lie around its worst places, where
+/// all triangles stay. The other half is for all other places, where triangles become larger. The elements of the worst
+/// places are kept even if they need more vertices. Renumbers vertices and elements, also those of the worst places in
+/// the model. The part must have no coarse triangles yet.
 void make_coarse(ReportModel& model, std::size_t part, std::size_t most_vertices);
 
 }  // namespace chronormal::inline internal

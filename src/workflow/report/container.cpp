@@ -26,7 +26,7 @@ void pad(std::string& bytes, char with) {
   bytes.resize((bytes.size() + kAlignment - 1) / kAlignment * kAlignment, with);
 }
 
-// The arrays that follow the JSON, one after the other.
+// The bytes of the arrays that follow the JSON.
 class Arrays {
  public:
   template <class T>
@@ -41,11 +41,11 @@ class Arrays {
   Json add_or_null(const std::vector<T>& values) {
     return values.empty() ? Json() : add(values);
   }
-  // Adds vectors as {"indices", name}. The indices are null if all vertices have a vector.
+  // Adds vectors, and returns {"indices", name}. The indices are null if all vertices have a vector.
   Json add(const ModelVectors& vectors, const char* name) {
     return {{"indices", vectors.is_dense ? Json() : add(vectors.vertices)}, {name, add(vectors.values)}};
   }
-  // Adds vectors as a plain array if all vertices have a vector, and otherwise with their indices.
+  // Adds vectors. Returns a plain array if all vertices have a vector, and otherwise an object with their indices.
   Json add_keyframe(const ModelVectors& vectors) {
     return vectors.is_dense ? add(vectors.values) : add(vectors, "values");
   }
@@ -220,12 +220,12 @@ std::string gzipped(std::string_view bytes) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
-  // The header names a system. It is always Unix, so that all systems write the same bytes.
+  // The header of gzip names an operating system. The name is always Unix, so that all systems write the same bytes.
   gz_header header{};
   header.os = 3;
   deflateSetHeader(&stream, &header);
   std::string result;
-  // zlib counts bytes in 32 bits, so the text is compressed in blocks.
+  // zlib counts bytes in 32 bits, so the text is compressed block by block.
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;
   std::string block(kAtOnce, '\0');
   int state = Z_OK;

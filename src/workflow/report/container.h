@@ -1,4 +1,5 @@
-/// The container of a report: JSON, and the arrays that it names (docs/formats.md). Private to workflow.
+/// Writes the container of a report: a JSON object, followed by the arrays that the object refers to (docs/formats.md).
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_CONTAINER_H_
 #define CHRONORMAL_WORKFLOW_REPORT_CONTAINER_H_
 
@@ -9,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the container. `head` is the beginning of the JSON: the fields that do not belong to the model, as text, each
-/// followed by a comma.
+/// Writes the container. `head` is the beginning of the JSON text. It has the fields that do not belong to the model,
+/// each followed by a comma.
 [[nodiscard]] std::string write_container(const std::string& head, const ReportModel& model);
 
 /// Compresses the bytes with gzip.

@@ -9,7 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Keeps only the vectors that are not zero, or stores all of them densely if none is zero.
+// Returns only the vectors that are not zero, with their vertices. If no vector is zero, returns all of them without
+// vertices.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {
@@ -21,7 +22,8 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// Returns the normals and deltas as one viewer stores them; for the specification, these are all of the file.
+// Returns the normals and deltas of a mesh as one viewer stores them. For the specification, these are the values of
+// the file.
 ModelShown shown_by(const GltfShading& shading, const Viewer& viewer) {
   ModelShown shown;
   shown.keeps_halves = viewer.keeps_halves();
@@ -46,8 +48,9 @@ bool show_alike(const Viewer& a, const Viewer& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// Returns the normals as viewers store them, once for all viewers that store the same. The first entry is the
-// specification, with the names of all viewers that show the same; the others are for the other `viewers`.
+// Returns the normals of a mesh as viewers store them, with one entry for all viewers that store the same. The first
+// entry is the specification, with the names of all viewers that store the values of the file. The other entries are
+// for the other viewers in `viewers`.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Viewer> viewers) {
   const Viewer specification{.name = "specification", .title = ""};
   std::vector<Viewer> firsts = {specification};
@@ -69,8 +72,8 @@ std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Vie
   return result;
 }
 
-// Adds the polygons whose normals are summed up and, if elements sum up other corners than their own, the corners of
-// each element.
+// Adds the polygons whose normals are added up. If elements add up other corners than their own, also adds the corners
+// of each element.
 void add_sums(const AuthorTruth& truth, const GltfShading& shading, ModelTruth& result) {
   const AuthorSums& sums = truth.sums();
   result.first = {0};

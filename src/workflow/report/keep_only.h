@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Keeps group i of `width` consecutive values if kept[i] is true, and removes all others. Order is preserved. There
-/// may be fewer groups than entries of `kept`.
+/// Removes groups of `width` consecutive values. Group i stays if kept[i] is true. The order of the values is kept.
+/// `kept` may have more entries than there are groups.
 template <class T>
 void keep_only(const std::vector<bool>& kept, std::size_t width, std::vector<T>& values) {
   std::size_t count = 0;

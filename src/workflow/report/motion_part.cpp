@@ -1,5 +1,5 @@
-// Makes the part of a motion that does not come from a glTF file: keyframes, the normals that they store, and the
-// segments between them.
+// Makes the part of a motion that does not come from a glTF file. The part has the keyframes, their stored normals, and
+// the segments between keyframes.
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -17,8 +17,8 @@ const float* stored_at(const StoredNormals& normals, std::size_t keyframe, std::
   return normals.of_keyframes[keyframe].data() + 3 * corner;
 }
 
-// Returns true if two corners have the same stored normals at every keyframe. Returns true too if some keyframe has no
-// stored normals.
+// Returns true if two corners have the same stored normals at every keyframe, or if some keyframe has no stored
+// normals.
 bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_t a, std::size_t b) {
   if (normals.of_keyframes.size() != motion.keyframes.size()) return true;
   for (std::size_t k = 0; k < normals.of_keyframes.size(); ++k) {
@@ -37,7 +37,7 @@ ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &now[3 * v], &now[3 * v] + 3);
   }
-  // A vector with the number of its vertex takes 16 bytes, and a vector alone takes 12 bytes.
+  // A vector with the number of its vertex takes 16 bytes, and a vector without this number takes 12 bytes.
   result.is_dense = 4 * result.vertices.size() > 3 * vertices;
   if (result.is_dense) result = {true, {}, std::move(now)};
   return result;
@@ -81,7 +81,7 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
     ModelMotion::Scheme& scheme = motion.schemes.emplace_back();
     scheme.name = row.scheme;
     for (std::size_t i = 0; i < motion.at.size(); ++i) {
-      // Sample i of an audit is sample i % samples of its segment; the segments follow each other.
+      // Sample i of an audit is sample i % samples of its segment, because an audit judges segment after segment.
       const Quality& quality = row.samples[motion.segments[i] * samples + i % samples];
       scheme.worst.push_back(static_cast<float>(quality.max * kDegreesPerRadian));
       scheme.mean.push_back(static_cast<float>(quality.mean() * kDegreesPerRadian));
@@ -101,7 +101,7 @@ Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals
     std::uint32_t vertex = 0, element = 0, corner = 0;
   };
   std::vector<Shown> shown;
-  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the first corner with the same normal
+  std::vector<std::uint32_t> shown_by(corners.size());  // for each corner, the first corner that shows the same normal
   for (std::uint32_t e = 0; e < groups.value().size(); ++e) {
     const std::size_t first = shown.size();
     for (const std::uint32_t c : groups.value().corners(e)) {

@@ -19,8 +19,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// If a page is still too large, its size is reduced again by the factor kShare, down to kLeastShare of the first
-// attempt.
+// If a page is still too large, the size that its arrays may have is reduced again by the factor kShare. The smallest
+// size is kLeastShare of the first one.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
@@ -61,7 +61,7 @@ AuditOptions audit_options(const ReportOptions& options) {
 Status read_gltf(const GltfDocument& document, const ReportOptions& options, Report& report, ReportModel& model) {
   AuditOptions how = audit_options(options);
   how.viewers = {kViewers.begin(), kViewers.end()};
-  how.skins = false;  // a page has no joints
+  how.skins = false;  // a page cannot move joints
   WatchedMotions watched(how.viewers, options.viewers);
   Result<Audit> found = watched_audit(document, how, [&](const AuditSample& sample) { watched.add(sample); });
   if (!found) return found.error();
@@ -114,7 +114,7 @@ void plan(const GltfDocument& document, const ReportOptions& options, Report& re
     report.plan_message = planned.error().text();
 }
 
-// Returns the fields of a container that hold the JSON of commands, each followed by a comma.
+// Returns the fields of a container that hold the JSON of commands. Each field is followed by a comma.
 std::string head_of(const Report& report) {
   const auto line = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
   const auto in_one_line = [&](const std::string& text) { return line(Json::parse(text)); };
@@ -131,7 +131,8 @@ std::string head_of(const Report& report) {
   return fields;
 }
 
-// Returns the size of a page whose container is packed to this size, with base64 and the template.
+// Returns the size in bytes of a page with its template. The container has `packed` bytes after compression, and takes
+// more in base64.
 std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
   constexpr std::size_t kElement = 128;
   return options.template_bytes + kElement + (packed + 2) / 3 * 4;
@@ -140,7 +141,7 @@ std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
 // Writes the container. If the page would be too large, thins out the model first.
 std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
-  // This first run shows how well the arrays compress. A part of the arrays may compress worse.
+  // The whole model shows how well its arrays compress. Some of the arrays alone may compress worse.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
   if (packed <= options.most_bytes) return container;
   const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());

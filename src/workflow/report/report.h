@@ -4,17 +4,19 @@
 ///     Result<Report> found = report(input.value(), {});
 ///     write_output("face.html", report_page(found.value(), page_template).value(), false);
 ///
-/// The report is one container of bytes (docs/formats.md): the mesh, its motions, its stored normals, the samples that
-/// audit() judged with the worst and the average error of each, the worst places, and as JSON the results of audit, the
-/// plan of bake and compare. The page computes the true and the rendered normals at any moment in between from the same
-/// positions and normals, so that its numbers at the worst places are the numbers of the audit.
+/// The report is a container of bytes (docs/formats.md). It has the mesh, its motions and its stored normals. It also
+/// has the samples that audit() judged, with the worst and the average error of each sample, and the worst places. Its
+/// JSON has the results of audit and compare, and the plan of bake. The page computes the true and the rendered normals
+/// at any moment from the same positions and normals, so its numbers at the worst places equal the numbers of the
+/// audit.
 ///
-/// Worst      at most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace; no two of a
-///            mesh are within kPlaceDistance of each other.
-/// Thinned    a page above the size limit is thinned out, and states this. First keyframes and samples between the
-///            worst places are dropped, then triangles far from these places become fewer and are not judged. All data
-///            that the normals around a worst place depend on is kept unchanged.
-/// Threads    uses all cores; gives the same bytes on any number of them.
+/// Worst      At most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace. No two of a
+/// mesh
+///            are within kPlaceDistance of each other.
+/// Thinned    A page above the size limit is thinned out, and states what is left out. First, keyframes and samples
+///            between the worst places are removed. Then triangles far from these places become fewer, and are not
+///            judged. All data on which the normals around a worst place depend stay unchanged.
+/// Threads    Uses all cores, and gives the same bytes on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_H_
 
@@ -35,20 +37,20 @@
 
 namespace chronormal::inline internal {
 
-inline constexpr std::size_t kMostReportBytes = 30000000;  ///< size limit of a page with its template
+inline constexpr std::size_t kMostReportBytes = 30000000;  ///< in bytes; the size limit of a page with its template
 inline constexpr std::size_t kMostWorstPlaces = 20;
-inline constexpr double kLeastPlace = 0.001;  ///< degrees; a place with a smaller error is not a worst place
-/// Least distance between worst places, as a share of the mesh's diagonal.
+inline constexpr double kLeastPlace = 0.001;  ///< in degrees; a vertex with a smaller error is not a worst place
+/// The least distance between worst places, as a share of the diagonal of the mesh.
 inline constexpr double kPlaceDistance = 0.04;
 
 struct ReportOptions {
   std::string animation = {};               ///< see AuditOptions
   std::optional<std::size_t> samples = {};  ///< see AuditOptions
   std::optional<Weighting> weighting = {};  ///< see AuditOptions
-  std::vector<Viewer> viewers = {};         ///< viewers of glTF files to show besides the specification
-  bool plan = true;                         ///< glTF: with the candidates of bake for each mesh
+  std::vector<Viewer> viewers = {};         ///< the viewers of glTF files that the page shows besides the specification
+  bool plan = true;                         ///< for a glTF file, adds the plan: the candidates of bake for each mesh
   std::size_t most_bytes = kMostReportBytes;
-  std::size_t template_bytes = 0;  ///< size of the page without the report
+  std::size_t template_bytes = 0;  ///< the size of the page without the report, in bytes
   /// A function that is called with the current step ("auditing", "comparing", "planning") and its progress.
   std::function<void(std::string_view what, std::size_t done, std::size_t total)> progress = {};
 };
@@ -57,8 +59,8 @@ struct ReportOptions {
 struct ReportPlace {
   std::size_t part = 0, motion = 0, sample = 0, vertex = 0;  ///< indices in Report::parts and below
   double degrees = 0;
-  std::string label;   ///< the name in terms of the file: "mesh 0, primitive 1, vertex 5051"
-  std::string moment;  ///< "jawOpen at 0.55", "talk at 1.25 s"
+  std::string label;   ///< the name of the vertex, such as "mesh 0, primitive 1, vertex 5051"
+  std::string moment;  ///< the moment as text, such as "jawOpen at 0.55" or "talk at 1.25 s"
 };
 
 /// A mesh in the report.
@@ -68,35 +70,35 @@ struct ReportPart {
 };
 
 struct Report {
-  std::string input;  ///< name of the input without folders
+  std::string input;  ///< the name of the input without folders
   Audit audit;        ///< errors of the input; for a glTF file, with all viewers
   std::optional<GltfBake> plan;
   std::string plan_message;                   ///< why a requested plan is missing
-  std::optional<NamedComparison> comparison;  ///< errors of schemes, on vertices, unless the input is glTF
+  std::optional<NamedComparison> comparison;  ///< the errors of schemes at vertices, unless the input is a glTF file
   std::vector<ReportPart> parts;
-  std::vector<ReportPlace> worst;    ///< worst first
-  std::vector<std::string> thinned;  ///< descriptions of the data that was left out, one sentence each
-  std::string container;             ///< the bytes
+  std::vector<ReportPlace> worst;    ///< the worst places, the largest error first
+  std::vector<std::string> thinned;  ///< describes the data that were left out, one sentence for each kind
+  std::string container;             ///< the bytes of the container
 };
 
 /// Makes the report of an input that was opened with KeepShading::kAll. The container has keyframes in float32, from
-/// which a page computes; the numbers of the audit and of the schemes include residuals too. Needs about three times
-/// the memory of the container, besides the memory of an audit. Errors: of audit(); kInvalidInput if no motion can be
-/// judged.
+/// which a page computes normals. The numbers of the audit and of the schemes also use the residuals of positions
+/// beyond float32. Needs about three times the memory of the container, besides the memory of an audit. Errors: those
+/// of audit(); kInvalidInput if no motion can be judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
 /// The mark that a template contains exactly once, and that the report replaces.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
-/// Checks that a template contains the mark exactly once. Errors: kInvalidInput if not.
+/// Checks that a template contains the mark exactly once. Errors: kInvalidInput if it does not.
 [[nodiscard]] Status check_report_template(std::string_view page_template);
 
-/// Fills a template. The container, compressed and in base64, becomes a script element in place of the mark. In base64,
-/// no name from a file can end the element. Errors: those of check_report_template().
+/// Fills a template. A script element with the container, compressed and in base64, replaces the mark. In base64, no
+/// name from a file can end the element. Errors: those of check_report_template().
 [[nodiscard]] Result<std::string> report_page(const Report& report, std::string_view page_template);
 
-/// Returns the contents of the report as JSON for programs. `output` is the name of the written file, and `bytes` its
-/// size.
+/// Returns the contents of the report as JSON, for programs that do not read the page. `output` is the name of the
+/// written file, and `bytes` its size.
 [[nodiscard]] std::string report_json(const Report& report, const std::string& output, std::size_t bytes);
 
 }  // namespace chronormal::inline internal

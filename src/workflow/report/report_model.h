@@ -1,5 +1,5 @@
-/// A report before it becomes bytes: the parts, their motions and the worst places, as in docs/formats.md. Private to
-/// workflow.
+/// A report before it becomes bytes. It has the parts, their motions and the worst places, in the form of
+/// docs/formats.md. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 
@@ -20,17 +20,17 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1);
 
-/// Vectors of some vertices, in ascending order, or of all vertices if dense.
+/// Vectors of some vertices, in ascending order of the vertices, or of all vertices if is_dense is true.
 struct ModelVectors {
   bool is_dense = false;
-  std::vector<std::uint32_t> vertices;  ///< empty if dense
+  std::vector<std::uint32_t> vertices;  ///< the vertices that have a vector; empty if is_dense is true
   std::vector<float> values;            ///< (n, 3)
 
   [[nodiscard]] std::size_t size() const noexcept { return values.size() / 3; }
   [[nodiscard]] std::uint32_t vertex(std::size_t i) const noexcept {
     return is_dense ? static_cast<std::uint32_t>(i) : vertices[i];
   }
-  /// Makes the vectors dense if every vertex of the mesh has a vector.
+  /// Drops the list of vertices if every vertex of the mesh has a vector.
   void drop_vertices_of(std::size_t vertex_count) {
     is_dense = vertex_count > 0 && vertices.size() == vertex_count;
     if (is_dense) vertices.clear();
@@ -46,54 +46,58 @@ struct ModelShown {
   std::vector<ModelVectors> targets;  ///< deltas
 };
 
-/// The author's offset from the sum of an element, in a frame that the surface carries (truth/offset_frame.h).
+/// The author's offset of an element: how the author's normal differs from the sum of face normals. It is measured in a
+/// frame that moves with the surface (truth/offset_frame.h).
 struct ModelOffset {
   std::uint32_t element = 0;
-  bool is_other_side = false;                  ///< the author shows the other side of the sum
-  std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: from the element to its neighbours
+  bool is_other_side = false;                  ///< true if the author shows the side opposite to the sum
+  std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: each edge leads from the element to a neighbour
   std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
-  std::array<double, 6> turned = {};           ///< without a reference: z and x of the base
+  std::array<double, 6> turned = {};           ///< z and x of the base, if there is no reference
   std::array<float, 2> base = {};
 };
 
-/// The true normals of a glTF mesh if they are more than sums over its triangles (truth/author_truth.h).
+/// The data for the true normals of a glTF mesh, if these are more than sums over its triangles (truth/author_truth.h).
 struct ModelTruth {
-  /// The changes of offsets by a target at weight 1: indices into the list of offsets, and a vector for each.
+  /// The changes of offsets by a target at weight 1. Each change has an index in the list of offsets, and a vector in
+  /// the plane of the offset.
   struct Changes {
     std::vector<std::uint32_t> offsets;
     std::vector<float> values;  ///< (n, 2)
   };
 
-  std::vector<std::uint32_t> first, corners;  ///< corners of polygons; empty if triangles are added up
-  /// (n, 2): pairs of a corner of a polygon, ascending, and the element that adds it up. Empty if each corner counts
-  /// for its own vertex.
+  /// The corners of polygons, and the first corner of each polygon; empty if triangles are added up.
+  std::vector<std::uint32_t> first, corners;
+  /// (n, 2) Pairs of a corner of a polygon and the element that adds up this corner, in ascending order of corners.
+  /// Empty if each corner counts for its own vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
-  std::vector<Changes> changes;  ///< changes of each target; empty without offsets
+  std::vector<Changes> changes;  ///< for each target, its changes of offsets; empty if there are no offsets
 
   [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };
 
-/// Weights at all samples as some viewers play them, (S, n), for the targets whose weight is not always 0.
+/// The weights that some viewers play at all samples, (S, n). Only the n targets whose weight is not always 0 are
+/// listed.
 struct ModelWeights {
   std::vector<std::string> viewers;
-  std::vector<std::uint32_t> targets;  ///< (n), ascending
+  std::vector<std::uint32_t> targets;  ///< (n), in ascending order
   std::vector<float> values;
 };
 
 struct ModelMotion {
   AuditSubject subject;  ///< errors not filled in
   std::size_t subject_index = 0;
-  std::vector<double> at;               ///< (S)
-  std::vector<std::uint32_t> segments;  ///< (S) for motions that are not glTF
-  std::vector<double> t;                ///< (S) for motions that are not glTF
-  std::vector<ModelWeights> weights;    ///< glTF; the first is the specification
-  std::vector<float> worst, mean;       ///< (S) degrees
-  std::vector<double> least;            ///< (E) the length below which a normal has no direction
-  /// The errors of a scheme other than the one that the audit judged.
+  std::vector<double> at;               ///< (S) the weight, or the time in seconds
+  std::vector<std::uint32_t> segments;  ///< (S) the segment of each sample; empty for glTF
+  std::vector<double> t;                ///< (S) the position in the segment, from 0 to 1; empty for glTF
+  std::vector<ModelWeights> weights;    ///< the weights for glTF; the first entry is the specification
+  std::vector<float> worst, mean;       ///< (S) errors in degrees
+  std::vector<double> least;            ///< (E) the length below which an element's normal has no direction
+  /// The errors of a scheme other than the scheme that the audit judged.
   struct Scheme {
     std::string name;
-    std::vector<float> worst, mean;  ///< (S)
+    std::vector<float> worst, mean;  ///< (S) errors in degrees
   };
   std::vector<Scheme> schemes;
 };
@@ -103,7 +107,7 @@ struct ModelPrimitive {
   bool is_flat = false;
 };
 
-/// The largest error of a vertex, and its moment.
+/// The largest error of a vertex, in degrees, and its motion and sample.
 struct ModelPeak {
   float degrees = 0;
   std::uint32_t motion = 0, sample = 0;
@@ -113,25 +117,26 @@ struct ModelPart {
   std::string name;
   std::optional<std::size_t> mesh;
   std::vector<ModelPrimitive> primitives;
-  std::vector<std::uint32_t> labels;  ///< (V) number of each vertex in the file; empty if the numbers are the same
+  /// (V) the number of each vertex in the file; empty if the report has the same numbers.
+  std::vector<std::uint32_t> labels;
   std::vector<std::uint32_t> triangles, faces, coarse;
-  std::vector<std::uint32_t> backs;  ///< corners of triangles whose vertex shows the other side of a sheet
+  std::vector<std::uint32_t> backs;  ///< the corners of triangles whose vertex shows the other side of a sheet
   std::size_t elements = 0;
-  std::vector<std::uint32_t> element;  ///< (V)
+  std::vector<std::uint32_t> element;  ///< (V) the element of each vertex
   Weighting weighting = Weighting::kArea;
   std::vector<float> positions, normals;  ///< (V, 3); normals may be empty
-  // Members for glTF files.
+  // The next members are for glTF files.
   std::vector<std::string> target_names;
   std::vector<ModelVectors> targets;  ///< deltas of positions
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // The next members are for motions that are not glTF. Each keyframe has values, not deltas; vertices that are left
-  // out are as in keyframe 0.
+  // The next members are for motions that are not glTF. A keyframe has values instead of deltas. A vertex that a
+  // keyframe does not list is as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;
-  std::vector<std::uint32_t> segments;  ///< (n, 2) keyframes at both ends
+  std::vector<std::uint32_t> segments;  ///< (n, 2) the keyframes at both ends
 
   std::vector<ModelMotion> motions;
   std::vector<ModelPeak> peaks;  ///< (V)

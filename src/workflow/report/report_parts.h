@@ -1,5 +1,5 @@
-/// Builds the parts of a report from an input: one for each judged mesh of a glTF file, or one for any other motion.
-/// Private to workflow.
+/// Builds the parts of a report from an input. There is a part for each judged mesh of a glTF file, or one part for any
+/// other motion. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_PARTS_H_
 
@@ -20,26 +20,26 @@
 
 namespace chronormal::inline internal {
 
-/// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are those that the author
-/// intended, or sums by the requested weighting. Errors: those of GltfDocument.
+/// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are the normals that the
+/// author intended, or sums by the requested weighting. Errors: those of GltfDocument.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);
 
-/// The vertices of a motion in a report. If a vertex of the file shows several normals, the report has a vertex for
-/// each.
+/// The vertices that a report has for a motion. If a vertex of the file shows several normals, the report has a vertex
+/// for each of these normals.
 struct MotionVertices {
-  std::vector<std::uint32_t> labels;             ///< their vertices in the file, ascending
+  std::vector<std::uint32_t> labels;             ///< the vertex of the file for each vertex, in ascending order
   std::vector<std::uint32_t> elements, corners;  ///< the element of each vertex, and a corner that shows it
-  std::vector<std::uint32_t> of_corner;          ///< for each corner of the motion, the vertex that it shows
+  std::vector<std::uint32_t> of_corner;          ///< for each corner of the motion, its vertex in the report
   std::size_t element_count = 0;
 };
 
-/// Finds the vertices. Errors: as NormalGroups returns them.
+/// Finds the vertices of a report. Errors: those of NormalGroups.
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// Builds the part of a motion that is not a glTF file. `comparison` has the results of schemes for this motion, made
-/// with keep_samples at the samples of the audit.
+/// Builds the part of a motion that is not a glTF file. `comparison` has the errors of schemes in this motion. It must
+/// have been made with keep_samples, at the samples of the audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
                                     const Comparison& comparison, WatchedPart watched);
 

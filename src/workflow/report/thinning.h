@@ -1,13 +1,15 @@
-/// Leaves out parts of a report that would make it too large. Private to workflow.
+/// Leaves out data of a report that would make the report too large. Private to workflow.
 ///
-///     keyframes   of segments, evenly over the motion; worst places keep their keyframes, and the segments beside them
-///     samples     of glTF files, evenly over each motion; worst places keep their samples
-///     triangles   far from the worst places become fewer, by quadrics (Garland and Heckbert 1997, as in
-///                 meshoptimizer), and are not judged; those around the worst places stay, as long as half of the
-///                 vertices suffice
+///     keyframes   Some segments are left out, evenly over the motion. Worst places keep the keyframes of their
+///     segments
+///                 and of the segments beside these.
+///     samples     In glTF files, samples are left out, evenly over each motion. Worst places keep their samples.
+///     triangles   Triangles far from the worst places become fewer, by quadrics (Garland and Heckbert 1997, as in
+///                 meshoptimizer), and are not judged. Triangles around the worst places stay, as long as half of the
+///                 vertices suffice.
 ///
-/// An element is judged if all parts that its true normal depends on are left: its faces and polygons with all of their
-/// vertices, and its edges. So the normals of a worst place do not change.
+/// An element is judged only if all data on which its true normal depends are left: its faces and polygons with all of
+/// their vertices, and its edges. For this reason the normals of a worst place do not change.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 #define CHRONORMAL_WORKFLOW_REPORT_THINNING_H_
 
@@ -20,8 +22,8 @@ namespace chronormal::inline internal {
 /// Returns the size of all arrays in bytes.
 [[nodiscard]] std::size_t bytes_of(const ReportModel& model);
 
-/// Thins out a model until its arrays have about this many bytes, if the required parts allow it, and lists in
-/// model.thinned what was left out. A model may be thinned out once.
+/// Leaves out data of a model until its arrays have about this many bytes, or until only required data are left. Lists
+/// in model.thinned what was left out. May be called once for a model.
 void thin_out(ReportModel& model, std::size_t most_bytes);
 
 }  // namespace chronormal::inline internal

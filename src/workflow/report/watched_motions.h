@@ -1,5 +1,5 @@
-/// Collects the samples of an audit for a report: the data that locate each sample, its errors, and the largest error
-/// of each vertex. Private to workflow.
+/// Collects the samples of an audit for a report: the moment of each sample, its errors, and the largest error of each
+/// vertex. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 #define CHRONORMAL_WORKFLOW_REPORT_WATCHED_MOTIONS_H_
 
@@ -18,29 +18,30 @@ namespace chronormal::inline internal {
 /// The motions of one mesh.
 struct WatchedPart {
   std::vector<ModelMotion> motions;
-  std::vector<ModelPeak> peaks;  ///< peaks of vertices, if any were judged
+  std::vector<ModelPeak> peaks;  ///< the largest error of each vertex; empty if no vertex was judged
 };
 
 class WatchedMotions {
  public:
-  /// Starts with no motion. `audited` lists the viewers of the audit, and `kept` those whose weights the report
-  /// contains. vertex_of_corner has the report's vertex for each corner and must outlive this object; if it is empty,
-  /// the report has the vertices of the audit.
+  /// Creates an object without motions. `audited` lists the viewers of the audit, and `kept` the viewers whose weights
+  /// the report contains. vertex_of_corner has the report's vertex for each corner, and must outlive this object. If it
+  /// is empty, the report has the vertices of the audit.
   WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 
   void add(const AuditSample& sample);
 
-  /// Moves out the parts, keyed by mesh. An input that is not glTF has one part, with the key nullopt.
+  /// Moves the parts out of this object. The key is the index of the mesh. An input that is not glTF has one part, with
+  /// the key nullopt.
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
-  // The weights of a motion, sample after sample, without zeros. A file with many targets has a motion for each target,
-  // in which all other weights are 0.
+  // The weights of a motion, sample by sample, without zeros. Zeros are left out because a file with many targets has a
+  // motion for each target, in which all other weights are 0.
   class Weights {
    public:
     void add(std::span<const double> of_sample);
-    // Moves out the weights, and leaves this object empty.
+    // Returns the weights, and leaves this object empty.
     [[nodiscard]] ModelWeights take();
 
    private:
@@ -53,7 +54,7 @@ class WatchedMotions {
     std::size_t samples_ = 0;
   };
 
-  // The weights that one viewer plays in the motion that the audit reports at present.
+  // The weights that one viewer plays in the motion that the audit is reporting.
   struct Played {
     const Viewer* viewer = nullptr;
     bool is_kept = false, is_specified = true;

@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A face as a range of consecutive triangles in part.triangles. The triangles of a polygon form a fan.
+// A face: a range of consecutive triangles in part.triangles. The triangles of a polygon form a fan.
 struct ReportFace {
   std::size_t first = 0, end = 0;
 
@@ -49,7 +49,7 @@ Vec3d value_at(const std::vector<float>& values, std::size_t i) {
           static_cast<double>(values[3 * i + 2])};
 }
 
-// Returns the vector of a vertex, or nothing if it has none.
+// Returns the vector of a vertex, or nothing if the vertex has no vector.
 std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex) {
   if (vectors.is_dense) return value_at(vectors.values, vertex);
   const auto found = std::lower_bound(vectors.vertices.begin(), vectors.vertices.end(), vertex);
@@ -57,7 +57,7 @@ std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex
   return value_at(vectors.values, static_cast<std::size_t>(found - vectors.vertices.begin()));
 }
 
-// Returns the positions of a vertex at both ends of the straight path on which a worst place lies.
+// Returns the positions of a vertex at both ends of the straight path on which the vertex of a worst place moves.
 std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample,
                              std::uint32_t vertex) {
   if (motion.weights.empty()) {
@@ -80,7 +80,7 @@ std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, s
   return {from, to};
 }
 
-// Returns a motion that consists of one face alone.
+// Returns a motion that consists only of this face.
 Motion motion_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample, const ReportFace& face) {
   const std::vector<std::uint32_t> corners = face.corners(part);
   const auto count = static_cast<std::uint32_t>(corners.size());

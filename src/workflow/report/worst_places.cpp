@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the diagonal of the box around a mesh.
+// Returns the length of the diagonal of the box around a mesh.
 double diagonal_of(const std::vector<float>& positions) {
   Vec3d low, high;
   for (std::size_t v = 0; 3 * v < positions.size(); ++v) {

@@ -1,4 +1,4 @@
-/// The worst places of all parts of a report. Private to workflow.
+/// Finds the worst places of all parts of a report. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_WORST_PLACES_H_
 #define CHRONORMAL_WORKFLOW_REPORT_WORST_PLACES_H_
 
@@ -8,8 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Finds at most kMostWorstPlaces places, worst first. Goes through all vertices from the largest error down, and skips
-/// vertices within kPlaceDistance of an earlier place. Numbers of parts and vertices are those before thinning.
+/// Finds at most kMostWorstPlaces places, and returns the largest error first. Goes through all vertices from the
+/// largest error down, and skips vertices within kPlaceDistance of an earlier place. Parts and vertices have their
+/// numbers before thinning.
 [[nodiscard]] std::vector<ReportPlace> find_worst_places(const std::vector<ModelPart>& parts);
 
 }  // namespace chronormal::inline internal
