@@ -1,4 +1,4 @@
-// Verifies the file of an interrupted run: the header, and row after row by its checksum.
+// Verifies the file of an interrupted run. Compares the header, and the checksum of each row.
 #include "workflow/sample/continued_samples.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Computes the normals of a motion at one moment after the other.
+// Computes the normals of a motion at given moments, one moment after the other.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -26,8 +26,8 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-// The largest distance between a local t and a step that counts as equal. The command line allows at most a million
-// steps, so neighbouring steps are at least 1e-6 apart.
+// A local t this near to a step counts as equal to the step. The command line allows at most a million steps, so
+// neighbouring steps are at least 1e-6 apart.
 constexpr double kLargestStepError = 1e-7;
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
@@ -47,7 +47,7 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
-// Makes a keyframe from computed positions. Refuses positions beyond float32.
+// Makes a keyframe from computed positions. Returns an error if a position is too large for float32.
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
@@ -180,7 +180,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  // Normals without a direction are counted by the code that writes them.
+  // The code that writes the normals counts the normals without a direction.
   curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
@@ -205,7 +205,7 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // Drift is never negative, so the first element counts as the worst until another one has more drift.
+  // Drift is never negative, so the first element is the worst until another element has more drift.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;
@@ -270,8 +270,8 @@ Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {
   const Result<TargetWeight> own = options_.scheme.empty() ? TargetWeight{} : one_target_of(weights);
   if (!own) return own.error();
   if (Status status = stream_->hold_all(); !status) return status.error();
-  // Computes base + sum of w (target - base) without loss of digits if base and targets are far apart: the base gets
-  // the factor 1 - sum of w, which is exactly zero for a single target of weight 1.
+  // Computes base + sum of w (target - base). To lose no digits if base and targets are far apart, the base gets the
+  // factor 1 - sum of w, which is exactly zero for a single target of weight 1.
   Twofold rest{1, 0};
   for (const double weight : weights) rest = rest + Twofold{-weight, 0};
   LongSums positions(3 * motion_->topology.vertex_count());

@@ -1,4 +1,4 @@
-// Chooses the names of sample files, and writes poses into the files as they are computed.
+// Chooses the names of sample files, and writes each pose into a file as soon as it is computed.
 #include "chronormal/workflow/sample.h"
 
 #include <algorithm>
@@ -44,8 +44,8 @@ bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || form
 Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
                      const std::vector<double>& in_a_row, std::size_t i) {
   if (!moments.times.empty()) {
-    // Consecutive moments form a run, and its first moment determines how the segment is prepared. All shards look for
-    // that first moment, so the result does not depend on the share.
+    // Consecutive moments form a run. The first moment of the run determines how the segment is prepared. All shards
+    // look for that first moment, so the result does not depend on the share.
     std::size_t first = i;
     while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
     return sampler.at_time(moments.times[i], in_a_row[first]);
@@ -55,7 +55,7 @@ Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments
   return sampler.at_rest();
 }
 
-// Checks the moments as far as possible before anything is computed.
+// Checks all that can be checked of the moments before a normal is computed.
 Status check_moments(const Motion& motion, const SampleOptions& options, const Moments& moments) {
   assert(moments.times.empty() || moments.weights.empty());
   for (const double time : moments.times) {
@@ -89,14 +89,15 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  // Begins the file, so that the row of the share's first moment comes next. With peers, this is the shared file.
-  // `header` is the header of a .npy file.
+  // Begins the file, so that the row of the share's first moment comes next. With peers, the file is shared by all
+  // processes. `header` is the header of a .npy file.
   [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SegmentRun& run, std::size_t outputs,
                              std::string_view header) {
     const IndexRange share = run.share();
     const bool is_first = is_first_process(run);
     const std::vector<std::uint64_t> shape = {run.peers ? moments.count() : share.count, outputs, 3};
-    const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);  // bytes, of each output
+    // Bytes before the share, for each output.
+    const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);
     if (!npz_) {
       checksum_ = checksum_of(header);
       if (run.peers == nullptr) return file_->append(header);
@@ -122,7 +123,7 @@ class ArrayFile {
     return Success{};
   }
 
-  // Appends a row. In a .npy file with a journal, the row also gets a record.
+  // Appends a row. If there is a journal, a row of a .npy file also gets a record in the journal.
   [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose, std::size_t zeros,
                               Journal* journal) {
     if (!npz_) {
@@ -138,15 +139,15 @@ class ArrayFile {
                     : npz_->append(positions_, bytes_of(pose.positions));
   }
 
-  // Continues a .npy file whose bytes so far have this checksum.
+  // Continues a .npy file. `checksum` is the checksum of the bytes that the file has.
   void go_on(std::uint32_t checksum) { checksum_ = checksum; }
   // Returns the checksum of all bytes of a .npy file so far.
   [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
   // Writes the text of a part after the last row.
   [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
 
-  // Returns the checksums of the rows that this process wrote. The first process uses those of all others to end the
-  // file.
+  // Returns the checksums of the rows that this process wrote. To end the file, the first process needs the checksums
+  // of all other processes.
   [[nodiscard]] std::array<std::uint32_t, 2> checksums() const {
     if (!npz_) return {};
     return {npz_->checksum(normals_), npz_->checksum(positions_)};
@@ -157,7 +158,7 @@ class ArrayFile {
     npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
-  // Ends the file in all processes except the first.
+  // Ends the file in a process that is not the first.
   [[nodiscard]] Status seal() { return file_->seal(); }
   [[nodiscard]] Status finish_joined() { return file_->finish(); }
 
@@ -172,16 +173,16 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // on the heap, so that the address that npz_ keeps stays valid
+  std::unique_ptr<OutputFile> file_;  // on the heap, since npz_ keeps the address
   std::optional<NpzOutput> npz_;
-  std::size_t normals_ = 0, positions_ = 0;  // indices of arrays in npz_
-  Origin origin_ = {};                       // origin of the positions
-  std::optional<std::uint64_t> at_;          // next row's place in the .npy file of all peers
-  std::uint32_t checksum_ = 0;               // checksum of a .npy file without peers
+  std::size_t normals_ = 0, positions_ = 0;  // the indices of arrays in npz_
+  Origin origin_ = {};                       // the origin of the positions
+  std::optional<std::uint64_t> at_;          // the offset of the next row in the .npy file that all peers share
+  std::uint32_t checksum_ = 0;               // the checksum of a .npy file that has no peers
   std::string storage_;
 };
 
-// A guard that finally removes a partial output without rows, because there is nothing to continue.
+// Removes a partial output that has no rows when the run ends, because such a file has no work to continue.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;
@@ -215,7 +216,7 @@ std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const 
   return write_obj(topology, packed(pose.positions), packed(normals), face_of_corner, origin);
 }
 
-// Begins the output file. With peers, the first process creates it, and all others open it.
+// Begins the output file. If there are peers, the first process creates the file, and all other processes open it.
 Result<OutputFile> begin_file(const SampleOutput& output, const SegmentRun& run) {
   if (run.peers != nullptr && !is_first_process(run)) return OutputFile::join(output.path, run.peers->broadcast(""));
   Result<OutputFile> file = OutputFile::create(output.path, output.force);
@@ -230,7 +231,7 @@ Status finish_all(std::vector<OutputFile>& meshes) {
   return Success{};
 }
 
-// The message of a process to the first one after it has written all of its rows.
+// The message that a process sends to the first process after it has written all of its rows.
 struct Written {
   SampleSummary summary;
   std::uint64_t positions = 0;
@@ -256,8 +257,8 @@ struct Written {
   }
 };
 
-// Waits until all processes have written their files, and then gives the files their names. In the first process,
-// returns after all processes have done so.
+// Waits until all processes have written their files, and then gives the files their names. The first process returns
+// after all other processes have named their files.
 Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, ArrayFile* arrays,
                                         std::vector<OutputFile>& meshes) {
   const bool is_first = is_first_process(run);
@@ -285,7 +286,7 @@ Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, Arra
   return own.summary;
 }
 
-// Returns the text at the end of a shard's part. `array` is the checksum of all bytes before it.
+// Returns the text at the end of a shard's part. `array` is the checksum of all bytes before this text.
 Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                 const SegmentRun& run, const NormalSampler& sampler, std::uint32_t array,
                                 KeyframeChecksums& seen) {
@@ -310,7 +311,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
   SampleOutput checked = output;
-  if (journal != nullptr) checked.force = true;  // an interrupted run may have written OUT just before its end
+  if (journal != nullptr) checked.force = true;  // an interrupted run may have written OUT just before it ended
   const Result<std::vector<std::string>> names = sample_files(checked, kind, count, run);
   if (!names) return names.error();
   if (Status status = check_moments(motion, options, moments); !status) return status.error();
@@ -329,7 +330,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
   std::size_t written = 0;        // number of rows that an earlier run wrote
-  std::uint32_t written_sum = 0;  // checksum of the header and of these rows
+  std::uint32_t written_sum = 0;  // the checksum of the header and of these rows
   const auto end = [&](std::uint32_t array) {
     return is_part ? end_of_part(motion, options, moments, run, sampler, array, seen) : std::string();
   };
@@ -374,7 +375,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  std::vector<OutputFile> meshes;  // without names until all are complete, since their names may be those of keyframes
+  std::vector<OutputFile> meshes;  // get their names when all are complete, since these may be names of keyframes
   run.skip(written);
   const auto keys = [&](std::size_t i) {
     return moments.times.empty() ? Motion::SegmentKeys{}
@@ -430,7 +431,7 @@ Result<SampleFormat> make_sample_format(std::string_view name) {
 
 Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times) {
   std::vector<double> counts(times.size(), 1);
-  std::size_t later = 0;  // segment of the next time
+  std::size_t later = 0;  // the segment of the next time
   for (std::size_t i = times.size(); i-- > 0;) {
     const Result<Instant> instant = find_instant(motion, times[i]);
     if (!instant) return instant.error();

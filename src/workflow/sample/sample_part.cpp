@@ -1,4 +1,4 @@
-// Writes and reads the end of a part, and finds the keyframes that the part depends on.
+// Writes and reads the text at the end of a part, and finds the keyframes on which the part depends.
 #include "workflow/sample/sample_part.h"
 
 #include <limits>

@@ -1,9 +1,10 @@
-/// The end of the .npy file of a shard of samples, after its elements, where NumPy does not look:
+/// The text at the end of the .npy file that a shard of samples writes. The text follows the elements of the array,
+/// where NumPy does not look:
 ///
 ///     {"chronormal_part":6,"command":"sample","first":10,"total":40,"array":305441741,"checksums":{"keyframe 0":7,
 ///     ...},"checksum":"1a2b3c4d"}
 ///
-/// It is one line. Private to workflow.
+/// The text is one line. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_SAMPLE_PART_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_SAMPLE_PART_H_
 
@@ -18,25 +19,25 @@
 
 namespace chronormal::inline internal {
 
-/// A limit for the length of this text in bytes: a keyframe takes less than 40 bytes.
+/// The largest length of this text in bytes. A keyframe takes less than 40 bytes.
 inline constexpr std::uint64_t kLongestEndOfPart = std::uint64_t{1} << 28;
 
 struct SamplePart {
-  std::uint64_t first = 0;  ///< index of the first row among all rows
-  std::uint64_t total = 0;  ///< number of rows of all shards
-  std::uint32_t array = 0;  ///< the checksum of the bytes before this text: the header, and all rows
+  std::uint64_t first = 0;  ///< the index of this part's first row among all rows
+  std::uint64_t total = 0;  ///< the number of rows of all shards
+  std::uint32_t array = 0;  ///< the checksum of the bytes before this text: of the header, and of all rows
   TaskChecksums checksums = {};
 
   [[nodiscard]] std::string text() const;
-  /// Reads the text at the end of a file; `name` is the name of the file. Errors: kInvalidInput.
+  /// Reads the text at the end of a file. `name` is the name of the file for messages. Errors: kInvalidInput.
   [[nodiscard]] static Result<SamplePart> read(std::string_view text, const std::string& name);
 };
 
 /// Returns a checksum of the options and the moments.
 [[nodiscard]] std::uint32_t checksum_of_options(const SampleOptions& options, const Moments& moments);
 
-/// Returns the keyframes that the moments of a shard depend on, and the keyframes with which the next shard begins. The
-/// moments must belong to the motion.
+/// Returns the keyframes on which the moments of a shard depend, and the keyframes with which the next shard begins.
+/// The moments must belong to the motion.
 [[nodiscard]] std::set<std::size_t> keyframes_of_moments(const Motion& motion, const Moments& moments,
                                                          const Shard& shard);
 

@@ -1,4 +1,4 @@
-// Prepares a scheme block by block, evaluates or plays all blocks, and checks names.
+// Prepares a scheme for each block of elements, and evaluates or plays all blocks.
 #include "workflow/sample/scheme_normals.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-/// Normals by a scheme, for all elements of a segment: at any t, or played step by step. Private to workflow.
+/// Computes the normals that a scheme gives for all elements of a segment, at any t or in steps of playback. Private to
+/// workflow.
 #ifndef CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_SAMPLE_SCHEME_NORMALS_H_
 
@@ -16,8 +17,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the scheme with this name. Errors: kUsage if there is none, or if it needs edges and the elements are not
-/// faces.
+/// Returns the scheme with this name. Errors: kUsage if no scheme has this name, or if the scheme needs edges and the
+/// elements are not faces.
 [[nodiscard]] Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind kind);
 
 /// The target of a segment, and the weight at which it is evaluated.
@@ -26,14 +27,14 @@ struct TargetWeight {
   double weight = 0;
 };
 
-/// Returns the only target of a pose, or the first target if all weights are 0. Errors: kUsage if several targets have
-/// a weight, or the weight is outside [0, 1].
+/// Returns the only target that has a weight in a pose, or the first target if all weights are 0. Errors: kUsage if
+/// several targets have a weight, or if the weight is outside [0, 1].
 [[nodiscard]] Result<TargetWeight> one_target_of(std::span<const double> weights);
 
 class SchemeNormals {
  public:
-  /// Prepares the scheme on all cores. groups is nullptr for faces. The name must be known, and the positions, the
-  /// topology and the groups must outlive the object.
+  /// Prepares the scheme on all cores. groups is nullptr if the elements are faces. The name must be the name of a
+  /// scheme. The positions, the topology and the groups must outlive the object.
   SchemeNormals(const Segment& segment, const NormalGroups* groups, const std::string& name);
   SchemeNormals(const SchemeNormals&) = delete;
   SchemeNormals& operator=(const SchemeNormals&) = delete;
@@ -41,9 +42,9 @@ class SchemeNormals {
   /// Writes the unit normals at t in [0, 1]. result must have as many elements as the segment.
   void unit_normals(double t, VectorView<float> result) const;
 
-  /// Writes the unit normals at t = index / steps, reached by `index` steps of playback from t = 0. Every
-  /// anchor_interval-th step is recomputed from t; if it is 0, no step is. The scheme must have a sequential form. A
-  /// smaller index than before starts again at t = 0.
+  /// Writes the unit normals at t = index / steps, as playback reaches them in `index` steps from t = 0. Every
+  /// anchor_interval-th step is recomputed from t; if anchor_interval is 0, no step is recomputed. The scheme must have
+  /// a sequential form. If index is smaller than in the last call, starts again at t = 0.
   void played_normals(std::size_t index, std::size_t steps, std::size_t anchor_interval, VectorView<float> result);
 
  private:
@@ -56,7 +57,7 @@ class SchemeNormals {
   Segment segment_;
   std::vector<ControlNormals> control_normals_;
   std::vector<Block> blocks_;
-  std::size_t played_ = 0;  // steps since the playbacks began; 0 if there are no playbacks
+  std::size_t played_ = 0;  // the number of steps that the playbacks have made; 0 if there are no playbacks
 };
 
 }  // namespace chronormal::inline internal
