@@ -1,6 +1,6 @@
-/// One pass over the segments of a motion, which compare, audit, sample, inspect and query share. A run decides which
-/// segments it handles, keeps their keyframes in memory, and passes results on; the commands decide what to compute for
-/// a segment, and how to add up results.
+/// Goes once through the segments of a motion. The commands compare, audit, sample, inspect and query all use this
+/// loop. A run decides which segments it handles, keeps their keyframes in memory, and passes results on. The commands
+/// decide what to compute for a segment, and how to add up results.
 ///
 ///     SegmentRun run;                           // one process does everything; or:
 ///     run.shard = Shard{0, 8};                  // the first of eight shares, for --shard 1/8
@@ -8,7 +8,7 @@
 ///     run.begin(motion.segments.size());
 ///     run.over(stream, segment_keys(motion), run.share(), at_once, [&](IndexRange segments) -> Status { ... });
 ///
-/// A RecordedRun also has a result for each segment. It skips the segments whose results an earlier run has kept
+/// A RecordedRun also has a result for each segment. It skips segments for which an earlier run has kept a result
 /// (--resume), passes each new result to the journal, and collects all results for the part of a shard.
 ///
 /// Results are added up segment by segment in the order of the motion, so that their bits depend neither on the number
@@ -42,7 +42,7 @@ namespace chronormal::inline internal {
 class Journal;
 
 /// Returns a function that maps a segment of the motion to its keyframes, for SegmentRun::over(). The motion must
-/// outlive it.
+/// outlive the function.
 [[nodiscard]] inline auto segment_keys(const Motion& motion) {
   return [&motion](std::size_t segment) { return motion.segments[segment]; };
 }
@@ -50,32 +50,32 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work. Without a value, the run does all work, and does not write a part for merge.
+  /// The share of the work. If there is no value, the run does all work, and writes no part for `merge`.
   std::optional<Shard> shard = {};
   /// The processes that have the other shares, or nullptr if this process does not communicate with others.
   const Peers* peers = nullptr;
-  /// The limit on the memory of results, taken from the files of the motion.
+  /// Limits the memory of results, relative to the size of the motion's files.
   Expansion expansion = Expansion::unlimited();
   Progress progress = {};
-  /// The journal for rows of samples; a RecordedRun has `keep` instead.
+  /// The journal for rows of samples. A RecordedRun has `keep` instead.
   Journal* journal = nullptr;
-  /// The checksums of everything that a shard depends on, for its part.
+  /// The checksums of all data on which a shard depends, for its part.
   TaskChecksums checksums = {};
 
-  /// Begins a run over this many segments, each of which counts as this many steps of progress.
+  /// Begins a run over this many segments. In reports of progress, each segment counts as this many steps.
   void begin(std::size_t segments, std::size_t steps = 1) noexcept {
     total_ = segments;
     steps_ = steps;
     done_ = 0;
   }
-  /// Skips segments that are already done.
+  /// Counts this many segments as done, because an earlier run has done them.
   void skip(std::size_t segments) noexcept { done_ += segments; }
   /// Returns the segments that this process computes.
   [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
-  /// Returns the range of this process among `total` items.
+  /// Returns the range of items, among `total`, that belongs to this process.
   [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
-  /// Returns the items to examine for facts about all items. If peers examine the others, these are only the items of
-  /// this process.
+  /// Returns the items that this process examines for facts about all items. If peers examine the other items, these
+  /// are only the items of this process.
   [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
     return peers != nullptr ? share_of(total) : IndexRange{0, total};
   }
@@ -84,14 +84,14 @@ struct SegmentRun {
     if (peers != nullptr) peers->maximize(numbers);
   }
 
-  /// Reports progress: this many more segments are done, and this many steps of the next segment.
+  /// Reports progress: this many more segments are done, and also this many steps of the segment after them.
   void tell(std::size_t segments, std::size_t steps = 0) {
     done_ += segments;
     if (progress) progress(done_ * steps_ + steps, share().count * steps_);
   }
 
-  /// Processes segments that are in memory, in order: calls work(segments) for `at_once` segments at a time, and
-  /// reports progress. Errors: as work returns them.
+  /// Processes segments that are in memory, in order. Calls work(segments) for at most `at_once` segments at a time,
+  /// and reports progress after each call. Errors: as work returns them.
   template <class Work>
   [[nodiscard]] Status over(IndexRange segments, std::size_t at_once, const Work& work) {
     return in_waves(segments, at_once, [&](IndexRange some) -> Status {
@@ -100,8 +100,8 @@ struct SegmentRun {
       return status;
     });
   }
-  /// Processes the segments of a stream in the same way. For each wave, holds all keyframes from the first to the last
-  /// that keys(segment) names for its segments. Errors: also those of the stream.
+  /// Processes the segments of a stream in the same way. Before each call of work, holds in memory all keyframes from
+  /// the first to the last that keys(segment) returns for these segments. Errors: also those of the stream.
   template <class Keys, class Work>
   [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
                             const Work& work) {
@@ -110,7 +110,7 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// Processes segments in the same way, but reports no progress. It is called before the run, to find facts about all
+  /// Processes segments as over() does, but reports no progress. This is called before the run, to find facts about all
   /// segments.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
@@ -144,17 +144,18 @@ template <class Found>
 struct RecordedRun : SegmentRun {
   /// The results of the first segments of the share, if an earlier run has them.
   std::vector<Found> known = {};
-  /// Called for each computed segment, in order; may be empty. It stores the result, so that a later run can have it
-  /// among `known`. An error that it returns ends the run.
+  /// A function that is called for each computed segment, in order; may be empty. The function stores the result, so
+  /// that a later run can have the result among `known`. An error that the function returns ends the run.
   std::function<Status(const Found&)> keep = {};
-  /// The result of each segment of a shard, including the known ones.
+  /// The results of all segments of a shard, also of the known segments.
   std::vector<Found> found = {};
 
-  /// Returns true if this run cannot keep data of all segments at once. Options that need such data are then refused.
+  /// Returns true if this run cannot keep data of all segments at once. Commands then refuse options that need such
+  /// data.
   [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
 
   /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage if the known segments are
-  /// not the first of the share, or if fits(result) is false for one of them; the message names `task`, such as
+  /// not the first of the share, or if fits(result) is false for one of them. The message names `task`, for example
   /// "audit".
   template <class Fits, class Add>
   [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
@@ -180,7 +181,7 @@ struct RecordedRun : SegmentRun {
     return {own.first + known.size(), own.count - known.size()};
   }
 
-  /// Takes the result of the next segment: passes it to keep and to add(). Errors: those of keep.
+  /// Takes the result of the next segment, and passes it to keep and to add(). Errors: those of keep.
   template <class Add>
   [[nodiscard]] Status take(Found result, const Add& add) {
     if (Status kept = keep ? keep(result) : Success{}; !kept) return kept;
@@ -190,7 +191,7 @@ struct RecordedRun : SegmentRun {
   }
 };
 
-/// The result of one shard: the sums over its segments, and the result of each segment.
+/// The result of one shard: the sums over its segments, the result of each segment, and the checksums of its data.
 template <class Whole, class Found>
 struct ShardOf {
   Whole whole;
@@ -198,9 +199,9 @@ struct ShardOf {
   TaskChecksums checksums;
 };
 
-/// Sorts the segments of shards, which may come in any order, into the order of the motion, which has total(whole)
-/// segments. Errors: kUsage if are_of_one(a, b) is false for two shards, which then do not belong to one task; kUsage
-/// if a segment is not in exactly one shard. Messages call the task by `tasks`.
+/// Sorts the results of all segments into the order of the motion. The shards may be in any order, and the motion has
+/// total(whole) segments. Errors: kUsage if are_of_one(a, b) is false, because the two shards then belong to different
+/// tasks; kUsage if a segment is not in exactly one shard. Messages use `tasks` as the plural name of the task.
 template <class Whole, class Found, class AreOfOne>
 [[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
                                               const AreOfOne& are_of_one, const char* tasks) {

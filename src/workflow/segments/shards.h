@@ -1,6 +1,6 @@
-/// Shares of a task, for many machines that divide one motion. Each machine computes its share, and merge
-/// (workflow/json/parts.h) joins the results. The joined result has the same bits as that of a single machine. Also
-/// declares how processes that compute together communicate. Private to workflow and the program.
+/// Divides a task into shares, so that many machines can work on one motion. Each machine computes its share, and merge
+/// (workflow/json/parts.h) joins the results. The joined result has the same bits as the result of a single machine.
+/// Also declares how processes that compute together communicate. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_SHARDS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_SHARDS_H_
 
@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// A share of a task: number `index`, from 0, of `count` shares. The default is the whole task.
+/// A share of a task. The shares have the numbers 0 to count - 1. The default is the whole task.
 struct Shard {
   std::size_t index = 0, count = 1;
 
@@ -31,14 +31,14 @@ struct Shard {
   [[nodiscard]] bool is_all() const noexcept { return count == 1; }
 };
 
-/// Processes that do one task together, each for its own shard. They exchange texts and numbers through the program,
-/// for example by MPI. Every process makes the same calls in the same order. A process that fails makes no more calls,
-/// and its program must end the other processes.
+/// The processes that do one task together. Each process has its own shard. They exchange texts and numbers through the
+/// program, for example by MPI. Every process makes the same calls in the same order. A process that fails makes no
+/// more calls, and its program must end the other processes.
 struct Peers {
-  /// Waits until every process has called this. Returns the texts of all shards, in order, in the process of the first
-  /// shard, and nothing in all others.
+  /// Waits until every process has called this function. In the process of the first shard, returns the texts of all
+  /// shards, in order. In all other processes, returns nothing.
   std::function<std::vector<std::string>(const std::string& own)> gather;
-  /// Returns the text of the first process in every process.
+  /// Returns in every process the text that the first process passes.
   std::function<std::string(const std::string& of_first)> broadcast;
   /// Replaces each number by the largest number that any process has at the same index. All processes must pass the
   /// same count.
@@ -46,11 +46,12 @@ struct Peers {
 };
 
 /// Checksums of all data on which the result of a shard depends, by name ("the faces", "the options", "keyframe 3"). If
-/// two shards of one task have a checksum of the same name, it is equal.
+/// two shards of one task both have a checksum with some name, the two checksums are equal.
 ///
-/// A shard lists the keyframes that it has read. If they are few (MotionStream::keeps_all()), these are all keyframes.
-/// Otherwise they are those that its segments need, the first and the last keyframe, and the keyframe with which the
-/// next shard begins: so each two neighbouring shards have a keyframe in common.
+/// A shard lists the keyframes that it has read. If the stream keeps all keyframes in memory
+/// (MotionStream::keeps_all()), these are all keyframes. Otherwise they are the keyframes of its segments, the first
+/// and the last keyframe, and the keyframe with which the next shard begins. For this reason two neighbouring shards
+/// have a keyframe in common.
 using TaskChecksums = std::map<std::string, std::uint32_t, std::less<>>;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Checksums by which parts of one task are told from parts of another. They are computed while a shard reads
-/// keyframes. Private to workflow.
+/// Computes checksums that show if two parts belong to the same task. They are computed while a shard reads keyframes.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 
@@ -26,44 +26,44 @@ namespace chronormal::inline internal {
 
 class KeyframeChecksums {
  public:
-  /// Registers with the stream, which must outlive this object.
+  /// Creates an object for a stream. The stream must outlive the object.
   explicit KeyframeChecksums(MotionStream& stream) : stream_(stream) {}
   KeyframeChecksums(const KeyframeChecksums&) = delete;
   KeyframeChecksums& operator=(const KeyframeChecksums&) = delete;
   ~KeyframeChecksums() { (void)stream_.watch({}); }
 
-  /// Starts to compute checksums. Errors: here and for each hold, kFailed for a keyframe that is read again with
-  /// different positions.
+  /// Starts to compute checksums of the keyframes that the stream reads. Errors: here and in each later hold() of the
+  /// stream, kFailed if a keyframe is read again with different positions.
   [[nodiscard]] Status begin();
 
-  /// Reads the needed keyframes that are missing, and adds the checksums of the keyframes and of the rest of the
-  /// motion. Errors: as the stream returns them.
+  /// Reads the needed keyframes that have not been read yet. Adds the checksums of the needed keyframes, and of all
+  /// other data of the motion, to the result. Errors: as the stream returns them.
   [[nodiscard]] Status finish(std::set<std::size_t> needed, TaskChecksums& result);
 
  private:
   [[nodiscard]] Status take(std::size_t keyframe, std::span<const float> positions);
 
   MotionStream& stream_;
-  std::mutex mutex_;  // keyframes that are read ahead are reported by another thread
+  std::mutex mutex_;  // another thread reports keyframes that are read ahead
   std::map<std::size_t, std::uint32_t> of_keyframe_;
 };
 
-/// The version of all parts, and the message for a part that does not end with its checksum.
+/// The version of all parts, and the message for a part whose checksum is wrong.
 inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
     "the shard is damaged, since its checksum is wrong; run this shard again";
 
-/// Complains about a part of another version.
+/// Records an error if a part has another version.
 void check_part_version(const JsonView& part);
 
 /// Reads the member "checksums" of a part.
 [[nodiscard]] TaskChecksums read_task_checksums(const JsonView& part);
 
-/// The parts seen so far, which must belong to one task by their checksums.
+/// The parts of one task that were read so far. Their checksums show that they belong together.
 class KnownParts {
  public:
-  /// Adds a part. Errors: kUsage, with the name of the part as the place, if it and an earlier part belong to different
-  /// tasks.
+  /// Adds a part. Errors: kUsage if this part and an earlier part belong to different tasks; the place of the error is
+  /// the name of this part.
   [[nodiscard]] Status add(const std::string& part, const TaskChecksums& checksums);
 
  private:
