@@ -1,5 +1,5 @@
-// Answers the query `cones`: a cone around every normal of a face, and bounds of meshlets that hold for the whole
-// deformation.
+// Answers the query `cones`. It returns a cone that contains every normal of a face during a motion, and bounds of
+// meshlets for culling that hold for the whole motion.
 
 #include "chronormal/analysis/cones.h"
 
@@ -17,14 +17,15 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostTriangles = 512;  // meshoptimizer's limit for a meshlet
-constexpr float kConeWeight = 0.5F;          // meshlets whose faces point in similar directions are culled more often
+constexpr std::size_t kMostTriangles = 512;  // the limit of meshoptimizer for a meshlet
+// Prefers meshlets whose faces point in similar directions, since these are culled more often.
+constexpr float kConeWeight = 0.5F;
 
 // Returns the half angle of a cone in degrees, rounded up.
 double degrees_of(const NormalCone& cone) { return half_angle(cone) * kDegreesPerRadian * (1 + 0x1p-48); }
 
 struct Meshlets {
-  std::vector<std::uint32_t> faces, offsets = {0};  // meshlet after meshlet
+  std::vector<std::uint32_t> faces, offsets = {0};  // the faces of all meshlets, one meshlet after the other
 
   [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t m) const {
@@ -32,8 +33,8 @@ struct Meshlets {
   }
 };
 
-// Builds meshlets with meshoptimizer and finds the faces in them. meshoptimizer returns only the corners of triangles,
-// and may rotate the corners.
+// Builds meshlets with meshoptimizer. Also finds their faces, because meshoptimizer returns only the corners of
+// triangles and may rotate these corners.
 Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   const std::span<const std::uint32_t> corners = motion.topology.corners();
   const std::vector<float>& positions = motion.keyframes.front().positions;
@@ -62,7 +63,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
       const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
       const unsigned* const global = &vertices[meshlet.vertex_offset];
       const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
-      // If several faces have the same corners, each is taken once.
+      // If several faces have the same corners, each of these faces is used once.
       auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
       while (taken[found->second] != 0) ++found;
       taken[found->second] = 1;
@@ -73,7 +74,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
   return result;
 }
 
-// Makes a table with the columns of meshopt_Bounds and a row for each segment and meshlet.
+// Makes a table with the columns of meshopt_Bounds, and with a row for each meshlet in each segment.
 QueryTable meshlet_table(const Motion& motion, const Meshlets& meshlets, std::span<const SegmentPart> parts,
                          const QueryProgress& progress) {
   const std::vector<std::vector<ClusterBounds>> found =

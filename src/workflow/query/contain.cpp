@@ -16,7 +16,8 @@ struct Passed {
   Crossing crossing;
 };
 
-// Returns the positions of points at a time of the motion: relative to its origin and in float32, like its vertices.
+// Returns the positions of points at a time of the motion. `share` is the part of the motion that has passed, from 0 to
+// 1. The positions are relative to the origin of the motion and in float32, as the positions of its vertices.
 std::vector<float> places_at(const PointPaths& points, const std::array<double, 3>& origin, double share) {
   std::vector<float> places(points.from.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -26,7 +27,8 @@ std::vector<float> places_at(const PointPaths& points, const std::array<double, 
   return places;
 }
 
-// Returns true if the faces of a closed mesh face inwards. Its volume is then negative by much more than rounding.
+// Returns true if the faces of a closed mesh face inwards. The volume of such a mesh is negative by much more than
+// rounding errors.
 bool is_inside_out(const Topology& topology, const std::vector<float>& positions) {
   const auto place = [&](std::uint32_t vertex) {
     const auto coordinate = [&](std::size_t axis) {

@@ -13,12 +13,12 @@
 namespace chronormal {
 namespace {
 
-// An interval of t. Its beginning and its end are each known to lie between two numbers.
+// An interval of t. The beginning of the interval lies between two known numbers, and so does the end.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-// A face, vertex or corner that shows its front, and the interval in which it does.
+// A face, vertex or corner that shows its front, and the interval of t in which it does.
 struct Front {
   std::size_t element = 0;
   Interval when;
@@ -30,7 +30,7 @@ struct Found {
   std::size_t always_front = 0, always_back = 0;
 };
 
-// Clips an interval to a part; returns false if nothing is left.
+// Shortens an interval to the part of it that lies in a part of a segment. Returns false if nothing is left.
 bool cut(Interval& when, const SegmentPart& part) {
   if (when.from[0] >= part.t1 || when.to[1] <= part.t0) return false;
   for (double& t : when.from) t = std::max(t, part.t0);
@@ -45,7 +45,8 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
     if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
-    // One interval ends and the next begins if a face turns to its edge and back, without showing the other side.
+    // If a face turns edge-on and back without showing its other side, one interval ends there and the next interval
+    // begins.
     if (is_front) {
       when.to = {change.lower, change.upper};
       close();
@@ -56,7 +57,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (is_front) close();
 }
 
-// Returns the view in one segment. A moving eye moves at constant speed over the whole motion.
+// Returns the view in one segment. A moving eye moves at constant speed from the first to the last time of the motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   if (view.from == view.to) return view;
   return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),
@@ -68,8 +69,8 @@ void add_facing(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
 }
 
-// Finds when outputs face the viewer. Vertices at the same point with the same normal have the same result, computed
-// once.
+// Finds when outputs face the viewer. Vertices at the same point with the same normal have the same result, which is
+// computed once.
 Found facing_of_outputs(const Segment& segment, const View& view, const AskedOutputs& outputs,
                         const SegmentPart& part) {
   std::vector<std::optional<Facing>> facings(outputs.element_count());
@@ -102,14 +103,14 @@ Found facing_of(const Segment& segment, const View& view, bool with_silhouettes,
   return found;
 }
 
-// Returns the number of bytes that these rows take in the answer.
+// Returns the number of bytes that the rows for these intervals and silhouettes take in the answer.
 std::uint64_t bytes_of_fronts(const Found& found) {
   constexpr std::uint64_t kBytesPerFront = 2 * sizeof(std::int64_t) + 4 * sizeof(double);
   constexpr std::uint64_t kBytesPerSilhouette = 5 * sizeof(std::int64_t) + 4 * sizeof(double);
   return kBytesPerFront * found.fronts.size() + kBytesPerSilhouette * found.silhouettes.size();
 }
 
-// The columns that hold segments and times.
+// The columns of an answer that have segments and times.
 struct WhenColumns {
   std::vector<std::int64_t> segments;
   std::array<std::vector<double>, 4> ends;
@@ -138,7 +139,7 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const bool are_faces = elements.kind == ElementKind::kFaces;
   if (silhouettes && !are_faces)
     return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes can only be listed for faces; leave --elements out"};
-  // Makes the eye relative to the origin of the motion, like the vertices.
+  // The eye gets a position relative to the origin of the motion, as the vertices have.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
   if (view.is_eye) {

@@ -1,4 +1,5 @@
-/// The loop that all queries share, with one result for each part of a segment, and limits on the size of an answer.
+/// The loop over parts of segments that all queries use, and limits on the size of an answer. A part is the range of t
+/// in one segment about which the caller asks.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
@@ -23,8 +24,8 @@ namespace chronormal::inline internal {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
 
-/// Checks that the limit allows an answer with rows of bytes_per_row bytes: one for every face, vertex or corner of
-/// every part. Errors: of Expansion::check().
+/// Checks that the answer is within the limit if every face, vertex or corner has a row for every part. A row takes
+/// bytes_per_row bytes. Errors: those of Expansion::check().
 [[nodiscard]] inline Status check_rows(std::size_t rows_of_part, std::string_view what,
                                        std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
                                        const QuerySpan& span) {
@@ -33,11 +34,11 @@ namespace chronormal::inline internal {
                                   "the answer for every " + std::string(what) + " of every segment");
 }
 
-/// The vertices or corners whose normals are requested. Each has a vertex, and an element: the faces that determine its
-/// normal.
+/// The vertices or corners about whose normals the caller asks. Each output has a vertex, and an element. The element
+/// is the group of faces that determine its normal.
 class AskedOutputs {
  public:
-  /// Groups the corners of a motion by the options. Errors: of make_groups()
+  /// Groups the corners of a motion by the options. Errors: those of make_groups().
   [[nodiscard]] static Result<AskedOutputs> make(const Motion& motion, const ElementOptions& options) {
     Result<NormalGroups> groups = make_groups(motion, options);
     if (!groups) return groups.error();
@@ -50,7 +51,7 @@ class AskedOutputs {
   [[nodiscard]] std::uint32_t vertex(std::size_t output) const noexcept {
     return groups_.outputs_are_vertices() ? static_cast<std::uint32_t>(output) : topology_->corners()[output];
   }
-  /// The faces of an element; none for isolated vertices.
+  /// Returns the faces of an element. Isolated vertices have no faces.
   [[nodiscard]] std::span<const std::uint32_t> faces(std::size_t element) const noexcept {
     return groups_.faces(element);
   }
@@ -62,14 +63,14 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// A check that an answer of unknown length stays within the limit of its span while it grows. The written answer may
-/// be slightly larger, so the writer checks it once more.
+/// Checks that an answer stays within the limit while it grows, for answers whose length is not known before. The
+/// written answer may be slightly larger, so the writer checks the size once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part, number `done` of `total`. Errors: those of Expansion::check(), as soon as the sum
-  /// is too large.
+  /// Adds the bytes of another part, which is number `done` of `total`. Errors: those of Expansion::check(), as soon as
+  /// the sum is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(bytes_,
@@ -82,8 +83,8 @@ class RowsInBounds {
 };
 
 /// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. Each round
-/// handles as many parts as there are threads, and then checks the sum of bytes_of(result) against the limit. Errors:
-/// those of RowsInBounds::add().
+/// handles as many parts as there are threads. After each round, the sum of bytes_of(result) is compared with the
+/// limit. Errors: those of RowsInBounds::add().
 template <class T, class Answer, class BytesOf>
 [[nodiscard]] Result<std::vector<T>> for_bounded_parts(std::span<const SegmentPart> parts, const QuerySpan& span,
                                                        const QueryProgress& progress, const Answer& answer,
@@ -105,8 +106,8 @@ template <class T, class Answer, class BytesOf>
   return results;
 }
 
-/// Calls answer(part) for every part, like for_bounded_parts(), but without its check of the size: check_rows() must
-/// have limited the answer already.
+/// Calls answer(part) for every part, like for_bounded_parts(), but does not check the size of the results. The caller
+/// must have called check_rows() before.
 template <class T, class Answer>
 [[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
                                        const Answer& answer) {

@@ -1,4 +1,4 @@
-// Shared code of all questions: the parts of segments in a span, and answers as files.
+// Code that all queries use: the parts of segments in a span of time, and answers as files.
 
 #include "chronormal/workflow/query.h"
 
@@ -31,8 +31,8 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// Converts a time to t. If the result is not exactly a double, rounds it towards `end`, so that the part contains the
-// whole span.
+// Converts a time to t in a segment. If the result is not exactly a double, rounds it towards `end`, so that the part
+// contains the whole span of time.
 double t_towards(const Segment& segment, double time, double end) {
   const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
   return t.is_double() ? t.t : std::nextafter(t.t, end);
@@ -79,7 +79,7 @@ std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept {
 }
 
 std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept {
-  constexpr std::uint64_t kLongestNumber = 25;  // "-1.2345678901234567e-300,"
+  constexpr std::uint64_t kLongestNumber = 25;  // the longest text, as in "-1.2345678901234567e-300,"
   std::uint64_t numbers = 0;
   for (const QueryTable& table : answer.tables) {
     for (const QueryColumn& column : table.columns) numbers += std::uint64_t{column.rows()} * column.width;

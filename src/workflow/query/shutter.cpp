@@ -1,5 +1,5 @@
-// Answers the query `shutter`: the normal that a renderer should use while the shutter is open, and the error of
-// interpolating between the normals at both ends instead.
+// Answers the query `shutter`: the normal that a renderer should use while the shutter is open. Also returns the error
+// of the usual way, which interpolates between the normals at both ends.
 
 #include "chronormal/analysis/cones.h"
 
@@ -16,10 +16,11 @@
 namespace chronormal {
 namespace {
 
-// The mean normals of all faces, vertices or corners over a part of a segment, or over consecutive parts.
+// The mean normals of all faces, vertices or corners. The mean is over a part of a segment, or over several consecutive
+// parts.
 struct Means {
   std::vector<ShutterNormal> normals;
-  std::vector<Vec3d> from, to;  // unit normals at both ends
+  std::vector<Vec3d> from, to;  // unit normals at the beginning and the end
   std::vector<NormalCone> cones;
 };
 
@@ -38,7 +39,7 @@ Means means_of(const Motion& motion, const SegmentPart& part) {
   return means;
 }
 
-// Computes the means of outputs, once for each element, because vertices at one point share a normal.
+// Computes the means of outputs. The mean of an element is computed once, because vertices at one point can share it.
 Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   struct One {
@@ -67,7 +68,7 @@ Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const 
   return means;
 }
 
-// Averages the means of all parts, weighted by the durations of the parts.
+// Averages the means of all parts. The weights are the durations of the parts.
 Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::span<const Means> found) {
   Means whole = found.front();
   whole.to = found.back().to;
@@ -94,7 +95,7 @@ Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::sp
   return whole;
 }
 
-// The rows of a table of means.
+// The rows of a table of mean normals, column by column.
 struct Rows {
   std::vector<std::int64_t> segments, numbers;
   std::vector<double> mean, mean_unit, error, spread, half_angle, ends, ends_off;
