@@ -1,4 +1,4 @@
-// Compares the deltas of blend shapes with exact normals.
+// Compares the normals that the deltas of blend shapes give with exact normals.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -24,9 +24,11 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
-constexpr std::size_t kRowsPerTarget = 16;                  // rows of least squares
-constexpr std::size_t kMostWeights = std::size_t{1} << 27;  // most weights of all rows together, in one list
-constexpr std::size_t kMostBytes = std::size_t{1} << 30;    // limit for terms; beyond it, normals come from positions
+constexpr std::size_t kRowsPerTarget = 16;  // rows of weights per target, to which deltas are fitted by least squares
+// The most weights of all rows together, which are in one list.
+constexpr std::size_t kMostWeights = std::size_t{1} << 27;
+// Bytes of precomputed terms; if they need more, normals come from positions.
+constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr std::size_t kChunk = 512;
 
 Error misuse(std::string place, std::string message) {
@@ -37,13 +39,13 @@ Vec3d vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// A place that shows a normal: its element, and the number of the face, vertex or corner for messages.
+// A face, vertex or corner that shows a normal: the element that has this normal, and the number that messages print.
 struct Output {
   std::uint32_t element = 0, number = 0;
 };
 
-// A set of blend shapes whose normals are compared. If groups is nullptr, its elements are faces. `shading` is nullptr
-// unless the set is from a glTF file.
+// A set of blend shapes whose normals are compared. If groups is nullptr, the elements are faces. `shading` is nullptr
+// if the set does not come from a glTF file.
 struct Subject {
   const BlendSet* set = nullptr;
   const NormalGroups* groups = nullptr;
@@ -53,20 +55,20 @@ struct Subject {
   [[nodiscard]] std::size_t elements() const { return groups ? groups->size() : set->topology.face_count(); }
 };
 
-// A normal with the size of its terms, which are products of lengths of edges.
+// A normal, and the size of the terms of which it is the sum. A term is a product of the lengths of two edges.
 struct SizedNormal {
   Vec3d value;
   double size = 0;
 
-  // Returns the normal, or (0, 0, 0) if its terms cancel so far that the rest is only rounding error. A direction that
-  // is returned is right to 1e-6 rad.
+  // Returns the normal, or (0, 0, 0) if its terms cancel so far that only rounding error is left. A returned direction
+  // has an error of at most 1e-6 rad.
   [[nodiscard]] Vec3d without_rounding() const { return length(value) > 1e-10 * size ? value : Vec3d{}; }
 };
 
 SizedNormal operator+(const SizedNormal& a, const SizedNormal& b) { return {a.value + b.value, a.size + b.size}; }
 
-// Computes n(w) of all elements only from cross products of blended positions. Returns (0, 0, 0) for an n(w) that is
-// only rounding error.
+// Computes n(w) of all elements as cross products of blended positions, without the library's own formula for n(w).
+// Returns (0, 0, 0) for an n(w) that is only rounding error.
 std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
   const Topology& topology = subject.set->topology;
   std::vector<double> positions(subject.set->base.size());
@@ -99,7 +101,7 @@ std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> 
   return result;
 }
 
-// Lists, for each target, the outputs whose normals the target moves, in ascending order.
+// Lists for each target the outputs whose normals change with its weight, in ascending order.
 std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   const Topology& topology = subject.set->topology;
   const std::size_t targets = subject.set->targets.size();
@@ -116,7 +118,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
     }
   }
   std::vector<std::vector<std::uint32_t>> result(targets);
-  std::vector<std::size_t> moved_by(subject.elements(), targets);  // the last target that moved each element
+  std::vector<std::size_t> moved_by(subject.elements(), targets);  // for each element, the last target that moved it
   for (std::size_t k = 0; k < targets; ++k) {
     for (const std::uint32_t v : subject.set->targets[k].vertices)
       for (const std::uint32_t f : faces_of_vertex[v])
@@ -132,7 +134,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// A measurement of the errors at rows of weights, one row after the other.
+// Measures the errors at rows of weights, one row after the other.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)
@@ -149,7 +151,7 @@ class BlendMeter {
     return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
   }
 
-  // Measures the errors at some rows of weights. The deltas by least squares are fitted to other rows, fitted_rows.
+  // Measures the errors at `rows`. The deltas by least squares are fitted to other weights, fitted_rows.
   BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
                       const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);
@@ -183,8 +185,8 @@ class BlendMeter {
     return result;
   }
 
-  // Computes the sum of the stored normal and of weight times stored delta, in float32 and in the order of targets, as
-  // viewers do.
+  // Returns the sum of the stored normal and of weight times stored delta over all targets. Adds in float32 and in the
+  // order of targets, as viewers do.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
     Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -212,7 +214,7 @@ class BlendMeter {
         const std::size_t e = output.element;
         for (std::size_t m = 0; m < methods; ++m) {
           Quality& quality = parts[chunk * methods + m];
-          if (truth[e] == Vec3d{}) {  // the true normal is only rounding error, so no method is judged there
+          if (truth[e] == Vec3d{}) {  // the true normal is only rounding error, so no deltas are judged by it
             ++quality.degenerate;
             continue;
           }
@@ -238,7 +240,7 @@ class BlendMeter {
     for (std::size_t p = 0; p < parts.size(); ++p) errors.deltas[p % methods].quality.add(parts[p]);
   }
 
-  // Adds an error. A normal that cannot be lit counts as the largest possible error.
+  // Adds an error in radians. A normal that cannot be lit has the largest possible error.
   static void add(const Vec3d& shown, const Vec3d& right, const ErrorPlace& place, Quality& quality) {
     const bool is_lit = is_finite(shown) && shown != Vec3d{};
     if (!is_lit) ++quality.missing;
@@ -285,7 +287,9 @@ Status check(const BlendCompareOptions& options) {
   return Success{};
 }
 
-// Lists the numbers of active targets to compare at: `wanted`, or if it is 0 the usual numbers that are possible.
+// Lists the numbers of targets that have a weight at the same time. Errors are compared for each of these numbers. If
+// `wanted` is not 0, the list has only this number; otherwise it has the usual numbers that are below the number of
+// targets, and the number of targets.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;
@@ -298,14 +302,14 @@ std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) 
 std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max(rows, kRowsPerTarget * targets); }
 
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
-  // The number of rows cannot overflow, because a list of targets that fits into memory is far too short for that.
+  // fitted_rows() cannot overflow, because a list of so many targets would not fit into memory.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
   return invalid_input(place, std::to_string(targets).append(" targets are too many for ") + std::to_string(rows) +
                                   " poses; compare fewer poses");
 }
 
-// Draws random weights for the mesh's own targets, in rows for all targets, and fills in the weights of correction
-// targets.
+// Draws random weights for the mesh's own targets. Returns rows with the weights of all targets, in which the weights
+// of correction targets follow from the drawn weights.
 std::vector<double> random_rows(const Subject& subject, const std::vector<std::size_t>& own, std::size_t count,
                                 std::size_t active, std::uint64_t seed) {
   const std::vector<double> drawn = random_blend_weights({own.size(), count, active, 0, 1, seed});
@@ -326,7 +330,7 @@ void measure_random(BlendMeter& meter, const Subject& subject, const std::vector
     const std::vector<double> others =
         random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
     result.errors.push_back(meter.measure(rows, others, progress));
-    result.errors.back().active = active;  // counted without correction targets
+    result.errors.back().active = active;  // without correction targets
   }
 }
 
@@ -348,7 +352,8 @@ std::vector<Output> outputs_of(const GltfShading& shading) {
   return result;
 }
 
-// Reads the weights that an animation gives a mesh, track after track. Returns an empty list if it gives none.
+// Reads the weights that an animation gives a mesh, track after track. Returns an empty list if the animation has no
+// weights for the mesh.
 Result<std::vector<std::vector<double>>> animated_weights(const GltfDocument& document, std::size_t animation,
                                                           std::size_t mesh, std::size_t most) {
   const std::vector<GltfTrack>& tracks = document.animations()[animation].tracks;

@@ -1,5 +1,5 @@
-// Compares schemes block by block. Processes enough blocks at a time to keep all threads busy, and adds up their
-// results in order.
+// Compares schemes block by block. Processes enough blocks at a time to keep all threads busy, and adds up the results
+// of blocks in order.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -31,8 +31,9 @@
 namespace chronormal {
 namespace {
 
-// The number of elements in a block: with the widest scheme, a block stays in the second-level cache. A wave has
-// kBlocksPerWaveAndThread blocks for each thread: so few partial results are in memory, and progress is reported often.
+// The number of elements in a block. It is so small that a block stays in the second-level cache, even with the scheme
+// that needs most memory. A wave of blocks, which are computed at the same time, has kBlocksPerWaveAndThread blocks for
+// each thread. This number is small, so that few partial results are in memory and progress is reported often.
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
@@ -42,7 +43,8 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-// Returns the median. A few values that are too large, because a thread was interrupted, do not change it.
+// Returns the median. A thread that is interrupted measures too long a time, and a few such values do not change the
+// median.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -62,7 +64,8 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme. Only the median of each segment is kept, so memory grows with segments and not with faces.
+// The times of one scheme. Only the median of each segment is kept, so memory grows with the number of segments but not
+// with the number of faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -86,20 +89,23 @@ class Elements {
   }
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  // Returns the element of each output; empty if elements are faces, since outputs then are elements.
+  // Returns the element of each output. Returns an empty list if elements are faces, because each element then is its
+  // own output.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept {
     return groups_ ? groups_->element_of_output() : std::span<const std::uint32_t>();
   }
   [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
-  // Returns the number by which messages name an element: its face, or the first vertex or corner that shows it.
+  // Returns the number by which messages name an element. This is the number of its face, or of the first vertex or
+  // corner that shows it.
   [[nodiscard]] std::size_t first_output(std::size_t element) const {
     if (!groups_) return element;
     const auto outputs = groups_->element_of_output();
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Computes the control normals of all faces for the segments from first to last, because many groups share them.
+  // Computes the control normals of all faces for the segments from first to last. They are kept, because a face can
+  // belong to many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
@@ -119,9 +125,9 @@ class Elements {
       });
     }
   }
-  // Returns the nanoseconds that one thread needs for the faces of a segment, divided by the number of elements.
+  // Returns the time that the control normals of faces take for a segment in one thread, in nanoseconds per element.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
-  // Computes control normals. With a weighting other than area they are fitted.
+  // Computes control normals. If the weighting is not area, the control normals are fitted to normals at three times.
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const {
     if (!by_area()) {
       for (std::size_t i = 0; i < range.count; ++i) {
@@ -135,7 +141,8 @@ class Elements {
     else
       face_control_normals(segment, range, result);
   }
-  // Returns a range of elements in the form from which schemes are prepared. All arguments must outlive the result.
+  // Returns a range of elements in the form that schemes need for their preparation. All arguments must outlive the
+  // result.
   [[nodiscard]] ElementBlock block(const Segment& segment, IndexRange range,
                                    std::span<const ControlNormals> normals) const {
     ElementBlock block{&segment, range, normals, are_faces()};
@@ -145,7 +152,7 @@ class Elements {
       };
     return block;
   }
-  // Bounds the errors of the control normals.
+  // Returns bounds of the errors of the control normals.
   [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
     std::vector<ControlErrors> errors;
     if (!groups_) return errors;
@@ -159,7 +166,7 @@ class Elements {
     if (groups_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
-  // Computes exact normals at a sample, of any length.
+  // Computes the exact normals at a sample. The results have any length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
                      std::size_t sample, std::size_t samples, std::span<Vec3d> result) const {
     const double t = time_of_sample(sample, samples);
@@ -191,8 +198,8 @@ class Elements {
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
   std::size_t samples_ = 0;  // for groups
-  // The number of corners above which the normal of a face is computed once for all groups that contain it. These
-  // normals take less than 400 bytes a corner.
+  // The number of corners above which the normal of a face is computed once for all groups that contain the face. These
+  // stored normals take less than 400 bytes for each corner.
   std::size_t many_corners_ = 0;
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
   std::vector<std::uint32_t> large_;                             // faces of more than many_corners_, for groups
@@ -201,15 +208,15 @@ class Elements {
   double shared_ns_ = 0;
 };
 
-// Returns the angle in degrees between an exact and a rendered normal, or NaN if one of them has no direction: Quality
-// leaves out such samples as well.
+// Returns the angle in degrees between an exact and a rendered normal. Returns NaN if one of them has no direction;
+// Quality does not count such samples either.
 float error_in_degrees(const Vec3d& exact, const Vec3d& shown) {
   if (exact == Vec3d{} || shown == Vec3d{} || !is_finite(shown)) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(angle_between(unit(exact), shown) * kDegreesPerRadian);
 }
 
-// Makes a table of the errors of one scheme, (rows, elements). An element that several places of the mesh share has an
-// entry for each place.
+// Makes a table of the errors of one scheme, (rows, elements). If several vertices or corners share an element, each of
+// them has an entry.
 ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOptions& options, const std::string& scheme,
                     const std::vector<float>& of_elements) {
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
@@ -230,7 +237,7 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   return table;
 }
 
-// Bounds the largest error of a scheme that is prepared on a block.
+// Returns a bound of the largest error of a scheme that is prepared for a block.
 CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, std::span<const ControlErrors> errors) {
   CertifyOptions options;
   options.only_worst = true;
@@ -245,7 +252,7 @@ CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, 
   return all;
 }
 
-// Returns a checksum of the options.
+// Returns a checksum of the options and of the names of the schemes.
 std::uint32_t checksum_of_options(const CompareOptions& options, const std::vector<std::string>& names) {
   NumberChecksum sum;
   for (const std::string& name : names) sum.add(name);
@@ -259,8 +266,8 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
   return sum.value();
 }
 
-// Prepares every scheme on one block of elements, evaluates it at every sample, and compares it with the exact normals.
-// Writes the errors of each scheme to the scheme's array in `each`, if there is one.
+// Prepares every scheme on one block of elements, evaluates it at every sample, and compares its normals with the exact
+// normals. If `each` is not empty, writes the errors of each scheme to its array there.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
                                  const std::vector<std::string>& names, const CompareOptions& options,
                                  std::span<std::vector<float>> each) {
@@ -369,7 +376,8 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   if (!by_area && certified)
     return Error{ErrorCode::kUsage, "", "bounds can only be computed for normals weighted by area"};
 
-  // Errors of all schemes are compared with those of linear, so linear is computed even if no row shows it.
+  // Results show the errors of all schemes relative to those of `linear`, so `linear` is computed even if no row shows
+  // it.
   std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
   std::vector<SchemeComparison> rows;
   for (const std::string& name : names) {
@@ -394,7 +402,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     if (!groups) return groups.error();
     all.emplace(motion.topology, std::move(groups).value(), options.weighting, options.samples);
   }
-  // Errors of every row, for all elements at all samples.
+  // The errors of every row, for all elements at all samples.
   std::vector<std::vector<float>> each;
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;
@@ -418,7 +426,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   if (!begun) return begun.error();
   std::vector<std::vector<Tally>> wave(at_once);
   std::vector<Tally> of_segment(names.size());
-  // Results are added in order, segment by segment.
+  // The results of blocks are added in order, segment by segment, so that sums do not depend on threads.
   const auto add_block = [&](std::size_t segment, const std::vector<Tally>& of_block) {
     for (std::size_t s = 0; s < names.size(); ++s) {
       of_segment[s].add(of_block[s]);
@@ -442,7 +450,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   const Status compared = run.over(
       stream, segment_keys(motion), run.rest(), std::max<std::size_t>(at_once / blocks, 1), [&](IndexRange segments) {
         all->enter(motion, segments.first, segments.end() - 1);
-        // Several small segments are computed together; a large segment takes several waves.
+        // Several small segments are computed together. A large segment is computed in several waves.
         const std::size_t wanted = segments.count * blocks;
         for (std::size_t first = 0; first < wanted; first += at_once) {
           const std::size_t count = std::min(at_once, wanted - first);

@@ -9,10 +9,11 @@
 namespace chronormal {
 namespace {
 
-// An average error of linear below this is only rounding, and errors of other schemes are not divided by it.
+// An average error of `linear` below this is only rounding error, so errors of other schemes are not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
-// Finds the cheapest scheme within the tolerance. A scheme for which no normal could be compared does not count.
+// Returns the cheapest scheme whose error is within the tolerance, in degrees. A scheme for which no normal could be
+// compared does not count.
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
   std::optional<std::size_t> cheapest;
   for (std::size_t s = 0; s < schemes.size(); ++s) {
@@ -22,8 +23,7 @@ std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& 
   return cheapest;
 }
 
-// Returns true if two shards may belong to one comparison, that is, if they have the same elements, samples and
-// schemes.
+// Returns true if two shards may belong to one comparison: they have the same elements, samples and schemes.
 bool are_of_one(const Comparison& a, const Comparison& b) {
   const auto same_scheme = [](const SchemeComparison& one, const SchemeComparison& other) {
     return one.scheme == other.scheme && one.sequential == other.sequential &&

@@ -15,11 +15,12 @@ namespace chronormal::inline internal {
 struct SchemeTally {
   Quality quality;
   std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;  ///< bytes of all elements together
+  double bytes = 0;  ///< the bytes of all elements together
   CertifiedError certified = {};
 };
 
-/// The results of all schemes in one segment: one for each row, then one for linear if no row is linear.
+/// The results of all schemes in one segment. There is one for each row of the comparison, and then one for `linear` if
+/// no row shows it.
 struct ComparedSegment {
   std::size_t segment = 0;
   std::vector<SchemeTally> schemes;
@@ -28,23 +29,25 @@ struct ComparedSegment {
 using CompareRun = RecordedRun<ComparedSegment>;
 using ComparisonShard = ShardOf<Comparison, ComparedSegment>;
 
-/// Compares the run's share of the segments. Segments that are known from an earlier run have no times. Errors: also
-/// kUsage for single errors or samples of a run that is divided, and for known segments of another comparison; errors
-/// of run.keep.
+/// Compares schemes in the run's share of the segments. Segments that are known from an earlier run have no times.
+/// Errors: also kUsage if single errors or samples are requested of a divided run, and for known segments of another
+/// comparison; errors of run.keep.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options, CompareRun& run);
 
-/// Joins the shards of one comparison into the result of one run, without times. Errors: as join() returns them. There
-/// must be at least one shard.
+/// Joins the shards of one comparison. The result equals that of a comparison in one run, without times. There must be
+/// at least one shard. Errors: as join() returns them.
 [[nodiscard]] Result<Comparison> merge(std::vector<ComparisonShard> shards);
 
-/// Merges the bounds of elements or of blocks into `all`. If two bounds are equal, keeps the first.
+/// Merges bounds of elements or of blocks into `all`, which then has the largest bound. If two bounds are equal, keeps
+/// the first.
 void add(CertifiedError& all, const CertifiedError& other);
 
-/// Adds the results that follow. The same results added in the same order give the same bits.
+/// Adds the results of the elements that follow those in `all`. If the same results are added in the same order, the
+/// sums have the same bits.
 void add(SchemeTally& all, const SchemeTally& other);
 
-/// Computes the figures of a comparison from sums over this many segments. `totals` has the sums of each row, and after
-/// these the sums of linear if no row is linear.
+/// Computes the figures of a comparison from sums over this many segments. `totals` has the sums of each row, and then
+/// the sums of `linear` if no row shows it.
 void conclude(const std::vector<SchemeTally>& totals, std::size_t segments, bool certified, Comparison& comparison);
 
 }  // namespace chronormal::inline internal

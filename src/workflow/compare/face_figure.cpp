@@ -1,4 +1,4 @@
-// Computes the figures of the paper for one face: the normal that each scheme computes, and the points in between.
+// Computes the figures of the paper for one face: the normal of each scheme, and the intermediate points.
 #include "workflow/compare/face_figure.h"
 
 #include <array>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kQuaternion = "quaternion:", kRandom = "quaternion:random";
 
-// Returns the sum of vectors before normalization, for a scheme that adds vectors.
+// Returns the sum of vectors that a scheme computes before normalization.
 Vec3d sum_at(const FittedCurves& fitted, double t) {
   const WeightBasis& basis = *fitted.basis;
   const ElementCoefficients coefficients = coefficients_of(fitted.coefficients, 0);
@@ -45,7 +45,7 @@ void append_levels(std::vector<Vec3d> level, double t, std::vector<Vec3d>& point
   }
 }
 
-// Returns the two frames between which a quaternion scheme interpolates, or nothing if it used its fallback.
+// Returns the two frames between which a quaternion scheme interpolates, or nothing if the scheme used its fallback.
 std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion& element) {
   if (scheme == "quaternion:matrix") return matrix_frames(element);
   if (scheme == "quaternion:edge") return edge_frames(element);
@@ -58,8 +58,9 @@ std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion&
   return random_frames(element, seed);
 }
 
-// Returns the tangents of the frames at all times. For the best frames, any tangent may be chosen, because all turn
-// with the same rotation and give the same normals; these tangents begin along the first edge.
+// Returns the tangents of the frames at all times. The scheme quaternion:optimal allows any tangent, because all
+// tangents turn with the same rotation and give the same normals. For this scheme, the tangent at t = 0 lies along the
+// first edge.
 std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& element, const FittedCurves* fitted,
                                std::span<const double> times) {
   Vec3d start;

@@ -1,4 +1,5 @@
-// Compares interpolated normals with the true normals of keyframes that were left out.
+// Leaves out keyframes of a motion, and compares the normals that schemes interpolate there with the true normals of
+// these keyframes.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t kTruthBlock = 1024;
 
-// The keyframes that are kept.
+// The keyframes that are not left out.
 class KeptKeys {
  public:
   KeptKeys(const Motion& motion, std::size_t every) : motion_(motion), every_(every) {}
@@ -41,7 +42,7 @@ class KeptKeys {
     segment.index = i;
     return segment;
   }
-  // Returns the keyframes between the kept keyframes i and i + 1.
+  // Returns the keyframes that were left out between the kept keyframes i and i + 1.
   [[nodiscard]] std::span<const Motion::Keyframe> between(std::size_t i) const {
     return std::span(motion_.keyframes).subspan(i * every_ + 1, every_ - 1);
   }
@@ -56,7 +57,7 @@ class KeptKeys {
   std::size_t every_;
 };
 
-// The faces of a motion, or groups of their corners, with their control normals.
+// The elements of a motion, with their control normals. Elements are faces, or groups of the corners of faces.
 class TruthElements {
  public:
   TruthElements(const Topology& topology, std::optional<NormalGroups> groups)
@@ -103,19 +104,19 @@ class TruthElements {
   std::size_t count_;
 };
 
-// One kept segment and the keyframes between its ends.
+// The segment between two kept keyframes, and the keyframes that were left out in it.
 struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
   std::vector<ControlNormals> straight;
-  std::vector<std::vector<Motion::Keyframe>> curved;  // for each path, poses at the times of `between`
+  std::vector<std::vector<Motion::Keyframe>> curved;  // for each curved path, the poses at the times of `between`
 
   [[nodiscard]] double local_time(const Motion::Keyframe& keyframe) const {
     return (keyframe.time - segment.start_time) / (segment.end_time - segment.start_time);
   }
 };
 
-// Poses the mesh on a curve at the times of the keyframes that were left out.
+// Returns the poses of the mesh on a curve, at the times of the keyframes that were left out.
 std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegment& curve) {
   std::vector<Motion::Keyframe> poses;
   for (const Motion::Keyframe& keyframe : piece.between) {
@@ -130,7 +131,8 @@ std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegm
   return poses;
 }
 
-// Measures the errors of all rows on one block of elements, curved paths last.
+// Measures the errors of all rows on one block of elements. The rows of schemes come first, then the rows of curved
+// paths.
 std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& elements, IndexRange range,
                                      const std::vector<std::string>& names) {
   std::vector<std::unique_ptr<Scheme>> schemes;
