@@ -11,8 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Reserves memory for this many rows. `earlier` counts the bytes of other tables of the same result; the bytes of this
-/// table are added to it. Errors: kUsage if the table takes more than kMostErrorBytes; errors of expansion.check() for
+/// Reserves memory for this many rows. `earlier` counts the bytes of other tables of the same result, and grows by the
+/// bytes of this table. Errors: kUsage if the table takes more than kMostErrorBytes; errors of expansion.check() for
 /// all tables together.
 [[nodiscard]] Status reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion,
                                   std::uint64_t& earlier);
@@ -21,7 +21,8 @@ namespace chronormal::inline internal {
   return reserve_rows(table, rows, expansion, earlier);
 }
 
-/// Appends a row of NaN and returns it.
+/// Appends a row of NaN, and returns this row, which the caller fills. The row belongs to the moment `at`, which is a
+/// weight or a time in seconds.
 std::span<float> add_row(ErrorTable& table, std::size_t subject, bool is_weight, double at);
 
 }  // namespace chronormal::inline internal
