@@ -1,7 +1,7 @@
-// Examines every segment of a motion for causes of wrong normals: block by block, in waves of segments, adding up the
-// findings in order. A wave examines vertices first, because the limit for small faces depends on the largest
-// coordinates of the keyframe. Then a quick test of sixteen faces at a time (analysis/signs/kernels/face_glance.h)
-// finds the few faces that need the full test.
+// Examines every segment of a motion for causes of wrong normals. Works block by block, in waves of segments, and adds
+// up the findings in order. A wave examines vertices first, because the size below which a face counts as small depends
+// on the largest coordinates of the keyframe. Then a quick test of sixteen faces at a time
+// (analysis/signs/kernels/face_glance.h) finds the few faces that need the full test.
 #include "chronormal/workflow/inspect.h"
 
 #include <algorithm>
@@ -31,16 +31,16 @@
 namespace chronormal {
 namespace {
 
-// The rounding error of a normal, relative to the largest coordinate times the longer edge. Rounding to float32 moves a
-// point by up to sqrt(3) times half a unit in the last place. An edge has two such ends, and a normal is the cross
-// product of two such edges.
+// A bound of the rounding error of a normal, relative to the largest coordinate times the longer edge. Rounding to
+// float32 moves a point by up to sqrt(3) times half a unit in the last place. An edge has two such points at its ends,
+// and a normal is the cross product of two such edges.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
-// A block has this many faces or vertices, so that their control normals stay in the second-level cache. A wave has one
-// segment, or enough small segments to keep all threads busy.
+// The number of faces or vertices in a block. It is so small that the control normals of a block stay in the
+// second-level cache. A wave has one segment, or enough small segments to keep all threads busy.
 constexpr std::size_t kBlock = 8 * kCountedTogether, kBlocksPerThread = 4;
 
-// Problems of a face, one bit each.
+// The problems that a face can have, one bit for each.
 enum Mark : std::uint8_t {
   kNoArea = 1,
   kSliver = 2,
@@ -53,12 +53,12 @@ enum Mark : std::uint8_t {
 
 using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
 
-// A count of faces at one keyframe, or faces of one kind in one segment.
+// Counts the faces with one problem at a keyframe or in a segment, and remembers the first of them.
 struct FaceTally {
   std::size_t count = 0, first_face = 0;
   double first_t = 0;
 
-  // Adds a face. Faces come in ascending order.
+  // Adds a face. Faces must be added in ascending order.
   void add(std::size_t face, Mark mark, FaceMarks& marks, double t = 0) {
     if (count++ == 0) {
       first_face = face;
@@ -66,7 +66,7 @@ struct FaceTally {
     }
     marks[face].fetch_or(mark, std::memory_order_relaxed);
   }
-  // Adds the next faces of the same keyframe or segment.
+  // Adds the count for the faces that follow in the same keyframe or segment.
   void add(const FaceTally& next) {
     if (count == 0) {
       first_face = next.first_face;
@@ -76,7 +76,7 @@ struct FaceTally {
   }
 };
 
-// The bounding box of vertices that are added one after the other.
+// The bounding box of the vertices that were added.
 struct Box {
   bool is_empty = true;
   Vec3f low, high;
@@ -97,9 +97,9 @@ struct Box {
   [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
 };
 
-// The vertices of one block of a segment, or of all of its blocks so far.
+// The findings about vertices in one block of a segment, or in all of its blocks so far.
 struct VertexTally {
-  Box from, to;  // boxes of the keyframes that this segment judges
+  Box from, to;  // boxes of those keyframes at both ends that this segment judges
   Largest motion;
   std::size_t moved = 0;
 
@@ -124,9 +124,9 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// The findings in one block of faces of a segment, or in all of its blocks so far.
+// The findings about faces in one block of a segment, or in all of its blocks so far.
 struct SegmentTally {
-  KeyframeTally from, to;  // results of the keyframes that this segment judges
+  KeyframeTally from, to;  // results of those keyframes at both ends that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
   Largest turn;
   CurveCount curves;
@@ -172,7 +172,7 @@ std::size_t count_marked(const FaceMarks& marks, Mark mark) {
       std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
 }
 
-// Bounds the length of a normal that consists only of the rounding error of its positions.
+// Returns a bound of the length that the rounding errors of its positions give a normal.
 double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
   double coordinate = 0, edge = 0;
   const Vec3d origin = to_double(positions[face[0]]);
@@ -184,7 +184,7 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
   return kRounding * static_cast<double>(face.size() - 2) * coordinate * edge;
 }
 
-// Judges a face at one keyframe by its normal there. `most` is the largest coordinate of the keyframe.
+// Judges a face at one keyframe by its normal. `most` is the largest coordinate of the keyframe.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
   const double largest_rounding = kRounding * most * 2 * most;  // for a triangle
@@ -221,15 +221,15 @@ void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& 
   }
 }
 
-// Returns a factor s: if a.b > 0 and (a.b)^2 > s |a|^2 |b|^2, then the angle between a and b is certainly smaller than
-// `angle`.
+// Returns a factor s for a quick test of angles. If a.b > 0 and (a.b)^2 > s |a|^2 |b|^2, the angle between a and b is
+// certainly smaller than `angle`, in radians.
 double square_of_cosine_above(double angle) {
   const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
   return cosine * cosine * (1 + 1e-12);
 }
 
-// Examines a face in a segment. most_of_square must be square_of_cosine_above() of the largest angle so far; a face
-// that turns by less needs no exact angle.
+// Examines a face in a segment. most_of_square must be square_of_cosine_above() of the largest angle so far. If a face
+// turns by less, its exact angle is not computed.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);
@@ -244,7 +244,8 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    return each.before != Vec3d{} && each.after != Vec3d{};  // both sides have a normal, so it is not at an end
+    // Both sides have a normal, so the collapse is not at an end.
+    return each.before != Vec3d{} && each.after != Vec3d{};
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
   if (exact.always) tally.without_normals.add(f, kWithoutNormal, marks);
@@ -256,7 +257,8 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
 }
 
-// The largest coordinates at those ends of a segment whose keyframes it judges.
+// The largest coordinates of the keyframes at both ends of a segment. Only those keyframes have a value that the
+// segment judges.
 struct JudgedEnds {
   std::optional<double> from, to;
 };
@@ -282,7 +284,7 @@ void inspect_faces(const Segment& segment, IndexRange faces, const JudgedEnds& j
   }
 }
 
-// Judges faces at a keyframe that belongs to no segment.
+// Judges faces at a keyframe that is not at an end of any segment.
 void inspect_still_faces(const Segment& segment, IndexRange faces, double most, FaceMarks& marks, SegmentTally& tally) {
   std::vector<ControlNormals> normals(faces.count);
   face_control_normals(segment, faces, normals);
@@ -291,7 +293,8 @@ void inspect_still_faces(const Segment& segment, IndexRange faces, double most, 
                         marks);
 }
 
-// Returns the block with this number, of `count` faces or vertices in total; an empty range beyond the last block.
+// Returns the range of items in the block with this number, among `count` faces or vertices. The range is empty for
+// numbers beyond the last block.
 IndexRange block_of(std::size_t number, std::size_t count) {
   const std::size_t first = std::min(number * kBlock, count);
   return {first, std::min(kBlock, count - first)};
@@ -332,7 +335,8 @@ Result<Inspection> inspect(MotionStream& stream,
     }
   }
 
-  // Each keyframe is judged once: by the first segment that has it, or as a still mesh if no segment has it.
+  // Each keyframe is judged once, in the first segment that begins or ends with it. A keyframe without such a segment
+  // is judged as a mesh at rest.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
   for (std::size_t s = segment_count; s > 0; --s) {
@@ -352,7 +356,7 @@ Result<Inspection> inspect(MotionStream& stream,
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
   std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
   std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
-  // Lists segments first, then the keyframes that no segment judges.
+  // The numbers of segments come first, and then the numbers of keyframes that no segment judges.
   const auto moves = [&](std::size_t s) { return s < segment_count; };
   const auto keys_of = [&](std::size_t s) {
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
@@ -416,7 +420,7 @@ Result<Inspection> inspect(MotionStream& stream,
   result.low = result.low + origin;
   result.high = result.high + origin;
 
-  // Tallies are added in order, so that the first finding does not depend on the threads.
+  // The counts are added in order, so that the first face of each problem does not depend on the threads.
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     add_tally(result.no_area, keyframes[k].no_area, k);
     add_tally(result.slivers, keyframes[k].slivers, k);

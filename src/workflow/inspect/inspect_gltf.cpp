@@ -14,8 +14,8 @@
 namespace chronormal {
 namespace {
 
-// The tolerance for the length of a normal. Signed bytes round a component by up to 1 / 254, and so change the length
-// by up to sqrt(3) times as much.
+// The tolerance for the length of a normal. Signed bytes round a component by up to 1 / 254. This changes the length of
+// a normal by up to sqrt(3) times as much.
 constexpr double kLengthTolerance = 1.7320508075688772 / 254;
 
 Status inspect_vertices(GltfGeometry geometry, GltfPrimitiveInspection& result) {
@@ -61,7 +61,7 @@ Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, 
   return result;
 }
 
-// Widens the range of weights if the spline between two keys goes beyond the weights at both keys.
+// Widens the range of weights if the spline goes beyond this range between two keys.
 void add_spline(const Bernstein<double, 3>& weight, GltfTrackInspection& result) {
   const auto [lowest, highest] = std::minmax_element(weight.begin(), weight.end());
   if (result.lowest <= *lowest && *highest <= result.highest) return;
@@ -84,7 +84,7 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
   if (times.empty()) return result;
   result.first_time = times.front();
   result.last_time = times.back();
-  // A cubic spline has three rows per key, and the middle one holds the weights.
+  // A cubic spline has three rows for each key. The middle row has the weights.
   const bool is_cubic = document.animations()[animation].tracks[track].interpolation == GltfInterpolation::kCubicSpline;
   const std::size_t rows = times.size() * (is_cubic ? 3 : 1), width = values.size() / rows;
   bool is_first = true;

@@ -1,4 +1,4 @@
-// Inspects an input of any kind: its motion, and the other contents of a glTF file.
+// Inspects an input of any format: its motion, and the other contents of a glTF file.
 #include <utility>
 
 #include "chronormal/workflow/inspect.h"
@@ -8,7 +8,7 @@ namespace {
 
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 
-// Inspects a motion, or a mesh at rest, which is a single keyframe.
+// Inspects a motion. A mesh at rest is a motion with a single keyframe.
 Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
   const Result<MotionStream*> read = result.opened.stream();
   if (!read) return read.error();
@@ -22,7 +22,7 @@ Status inspect_keyframes(const ProgressCallback& progress, Inspected& result) {
   return Success{};
 }
 
-// Inspects the contents of a glTF file and its moving parts.
+// Inspects the contents of a glTF file, and then its meshes that move.
 Status inspect_document(const std::string& animation, const ProgressCallback& progress, Inspected& result) {
   Input& input = result.opened;
   const GltfDocument& document = *input.document();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kLongestName = 40;
 
-// The distance from 0 or 1 at which a weight counts as 0 or 1, because exporters compute weights with rounding errors.
+// A weight this near to 0 or 1 counts as 0 or 1, because exporters compute weights with rounding errors.
 constexpr double kRoundedWeight = 1e-3;
 
 std::string numbered(const char* what, std::size_t number) { return what + (' ' + std::to_string(number)); }
@@ -23,13 +23,13 @@ std::string faces(std::size_t count) { return counted(count, "face", "faces"); }
 std::string edges(std::size_t count) { return counted(count, "edge", "edges"); }
 std::string vertices(std::size_t count) { return counted(count, "vertex", "vertices"); }
 
-// Returns counted things with the right verb: "12 faces have" or "1 face has".
+// Returns the counted things with the verb in singular or plural, such as "12 faces have" or "1 face has".
 std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns the number of reports, ", 30 times in all", if some faces are reported more than once; otherwise an empty
-// text.
+// Returns the number of reports as text, such as ", 30 times altogether", if some face is reported more than once.
+// Otherwise returns an empty text.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times altogether" : "";
 }
@@ -48,7 +48,8 @@ class Troubles {
             (input_.segments.empty() ? "" : " at " + keyframe_label(input_, places.first_at)),
         std::move(meaning));
   }
-  // Adds a line such as "2 faces turn over" or "1 face turns over", from the verb " turn" and the rest " over".
+  // Adds a problem such as "2 faces turn over" or "1 face turns over". For these, `verb` is " turn" and `rest` is "
+  // over".
   void in_segments(std::string kind, const Places& places, const std::string& verb, const std::string& rest,
                    bool has_instant, std::string meaning) {
     if (places.pairs == 0) return;
@@ -86,7 +87,7 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
                        " over between two keyframes, at an instant without area", true,
                        "the normal flips to the opposite direction at that instant");
   Places others = found.collapses;
-  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all of them were reported
+  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all reported above
   troubles.in_segments("collapses", others, " lose", " all area between two keyframes", true,
                        found.turned_over.pairs > 0 ? "the normal flips, or is lost for an instant and comes back"
                                                    : "the normal is lost for an instant and comes back");
@@ -133,7 +134,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                "they separate later, so they must not be merged by their first positions");
 }
 
-// Returns the name of a part, "Head, primitive 1". Adds the node if several nodes have the mesh.
+// Returns the name of a part, such as "Head, primitive 1". Adds the name of the node if several nodes have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
   std::string label = mesh_label(*gltf.document, part.mesh) + numbered(", primitive", part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)

@@ -1,5 +1,5 @@
-/// Describes in words the problems in the results of inspect_input(), and what they mean for normals. Private to
-/// workflow and the program.
+/// Describes problems that inspect_input() has found, and what these problems mean for normals. The words are for
+/// people. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 #define CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 
@@ -13,18 +13,18 @@
 namespace chronormal::inline internal {
 
 struct Trouble {
-  std::string kind;  ///< for programs: "no_area_at_keyframe"
+  std::string kind;  ///< a name for programs, such as "no_area_at_keyframe"
   std::size_t count = 0;
-  std::string what;     ///< "2 faces have no area at a keyframe"
+  std::string what;     ///< the problem, such as "2 faces have no area at a keyframe"
   std::string where;    ///< the first place, or empty
-  std::string meaning;  ///< consequences for normals
+  std::string meaning;  ///< the consequences for normals
 };
 
-/// Lists all bad news, the worst first.
+/// Lists all problems of an input, the worst problem first.
 [[nodiscard]] std::vector<Trouble> find_trouble(const Inspected& input);
 
-/// Return labels by which a user finds a place in the file: "keyframe 3 (walk_3.obj)", "segment 3 (smile)", "face 7 of
-/// Head, primitive 1".
+/// Return names by which a user finds a place in the file, such as "keyframe 3 (walk_3.obj)", "segment 3 (smile)" or
+/// "face 7 of Head, primitive 1".
 [[nodiscard]] std::string keyframe_label(const Inspected& input, std::size_t keyframe);
 [[nodiscard]] std::string segment_label(const Inspected& input, std::size_t segment);
 [[nodiscard]] std::string face_label(const Inspected& input, std::size_t face);
@@ -33,7 +33,7 @@ struct Trouble {
 /// Returns the name of an interpolation in glTF, such as "LINEAR".
 [[nodiscard]] const char* interpolation_name(GltfInterpolation interpolation);
 
-/// Returns the name of a mesh, or "mesh 3" if it has none.
+/// Returns the name of a mesh, or a text such as "mesh 3" if the mesh has no name.
 [[nodiscard]] std::string mesh_label(const GltfDocument& document, std::size_t mesh);
 
 }  // namespace chronormal::inline internal
