@@ -11,9 +11,8 @@
 /// offsets of an element differ least between keys. If no edge can be used at every key, they are measured from a
 /// direction that turns along with the sum by the smallest rotation.
 ///
-/// Unknown    If no target stores normals that tell rules apart, the motion of an offset is unknown. The truth then is
-/// the sum
-///            by area, rotated as in the base, and can be computed exactly.
+/// Unknown    If no target stores normals that tell rules apart, the motion of an offset is unknown. The truth is then
+///            the sum by area, rotated as in the base, and can be computed exactly.
 /// Stale      If the stored normals of a target are stale (stale_keys.h), its truth is r with the offset of the base.
 /// Degenerate If r(w) is zero, the truth is zero. If r is zero at a key, the offset there is that of the base.
 /// Threads    const functions may run at once
