@@ -1,13 +1,13 @@
-// Bakes a glTF file. A mesh goes through these steps, each a function of the results of the steps before it:
+// Bakes a glTF file. A mesh goes through these steps, and each step uses the results of the steps before it:
 //
 //     read_gltf_shading     the vertices, and the faces that determine their true normals             shading/
 //     plan_mesh             the encoding and, for exact, the pairs that the animations need           plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
 //     choose_candidate      for other encodings: the best candidate in the viewers                    chooser
-//     MeshWriter            the arrays, and everything that counts targets, as edits of the file      write_mesh
+//     MeshWriter            the arrays, and all lists with an item for each target, as edits of the file  write_mesh
 //
 // n(w) is the true normal at the weights w. A track of an animation may drive several meshes, so tracks are extended
-// after all meshes are done.
+// when all meshes are done.
 #include "chronormal/workflow/bake.h"
 
 #include <algorithm>
@@ -37,14 +37,14 @@
 namespace chronormal {
 namespace {
 
-// The result of the bake of one mesh.
+// The results of the bake of one mesh, from which the file and the report are written.
 struct MeshBake {
   BakedMesh report;
   std::vector<MeshWarning> warnings;
-  GrownMesh grown;  // if it has correction targets
+  GrownMesh grown;  // set if the mesh has correction targets
 };
 
-// Returns the meshes that may move. Only their arrays, which are read later, tell whether they do.
+// Lists the meshes that may move. Their arrays, which are read later, tell which of them really move.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
@@ -60,7 +60,7 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   return result;
 }
 
-// Returns true if a target changes the image: it moves vertices, or changes only normals.
+// Returns true if a target changes the image, because it moves vertices or changes normals.
 bool changes(const GltfShading& shading, std::size_t target) { return moves(shading, target) || shading.turns[target]; }
 
 bool any_changes(const GltfShading& shading) {
@@ -82,7 +82,7 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
       "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
 }
 
-// Returns for each part whether it gets new base normals.
+// Returns for each part of a mesh if it gets new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
@@ -90,22 +90,22 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// Finds the true normals that the author intended, unless the options give a weighting. Recomputed base normals have no
-// author.
+// Finds the true normals. If the options give a weighting, they are sums by this weighting; otherwise they are the
+// normals that the author intended. Recomputed base normals have no author.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);
 }
 
-// Splits the gaps between keys into pieces, so that the curves of correction weights can follow true weights that are
-// not quadratic in a gap. Only short tracks need this, because the gaps of long tracks are small.
+// Splits the gaps between keys into pieces, so that the curves of correction weights can follow weights that are not
+// quadratic within a gap. Long tracks are not split, because their gaps are short.
 void cut_gaps(MeshWeights& weights) {
   constexpr std::size_t kNodes = 128, kMostPieces = 8;
   for (WeightTrack& track : weights.tracks)
     track.pieces_of_line = std::clamp<std::size_t>(kNodes / std::max<std::size_t>(1, track.size()), 1, kMostPieces);
 }
 
-// Copies facts about the plan to the report.
+// Copies facts about the plan into the report.
 void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.encoding = plan.encoding;
   report.elements = static_cast<std::size_t>(std::count(plan.is_shown.begin(), plan.is_shown.end(), true));
@@ -115,7 +115,7 @@ void report_plan(const MeshPlan& plan, BakedMesh& report) {
   report.resampling_error = plan.left_out;
 }
 
-// Returns the poses for which a mesh is baked if a program poses it, instead of an animation.
+// Returns the poses for which a mesh is baked if no animation drives the mesh, so that a program may set any pose.
 RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given) {
   std::vector<std::size_t> moving;
   for (std::size_t i = 0; i < shading.set.targets.size(); ++i)
@@ -123,9 +123,9 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
   return {mesh.target_names, std::move(moving), mesh.target_count, std::move(given)};
 }
 
-// Functions that compute the arrays of a mesh, one target at a time.
+// Functions that compute the arrays of a mesh for one target at a time, so that never all arrays are in memory.
 struct MeshDeltas {
-  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // nothing if the target stays as it is
+  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target stays as it is
   std::function<TargetDeltas(std::size_t extra)> extra;
   GrownMesh grown;
   bool is_new = true;  // false if the mesh stays as it is
@@ -138,7 +138,7 @@ MeshDeltas exact_deltas(const DeltaSource& source) {
           true};
 }
 
-// Returns the deltas for encodings other than exact, and adds the choice to the report.
+// Returns the deltas for encodings other than exact, and adds facts about the chosen candidate to the report.
 MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                          std::size_t tangent_bytes, BakedMesh& report, bool& is_of_animations) {
   ChosenCandidate chosen = choose_candidate(source, weights, options, tangent_bytes);
@@ -168,7 +168,8 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// The progress of a bake: each target of a mesh counts once when its candidate is chosen, and once when it is written.
+// Reports the progress of a bake. Each target of a mesh counts twice: when its candidate is chosen, and when it is
+// written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;
@@ -181,7 +182,7 @@ class Course {
     targets_ = targets;
     reach(first_);
   }
-  // Reports progress while a candidate is chosen.
+  // Returns a function that reports progress while a candidate is chosen.
   [[nodiscard]] Tell of_choice() {
     return [this](std::size_t done, std::size_t total) { reach(first_ + targets_ * done / total); };
   }
@@ -196,7 +197,7 @@ class Course {
   std::size_t total_ = 0, first_ = 0, next_ = 0, targets_ = 0;
 };
 
-// Bakes one mesh that was read, moves and has normals.
+// Bakes one mesh. The mesh must have been read, must move, and must have normals.
 Status bake_shading(const GltfDocument& document, const GltfShading& shading, const AuthorTruth& truth,
                     const BakeOptions& options, Course& course, ZeroVectors& zeros, GltfEdit& edit, MeshBake& baked) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
@@ -284,15 +285,16 @@ Status bake_shading(const GltfDocument& document, const GltfShading& shading, co
   return Success{};
 }
 
-// Returns true if a mesh was baked and needs no further bake. If it has correction targets, a second bake would add
-// correction targets to them. A mesh without correction targets can be baked again in another encoding.
+// Returns true if a mesh was baked before and must not be baked again. A second bake would add correction targets to
+// the correction targets of the first. A mesh without correction targets can be baked again in another encoding.
 bool is_baked(const GltfShading& shading, const BakeOptions& options) {
   return shading.mark &&
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
-// Judges a mesh that was baked before, so that an error beyond the tolerance is reported. In a mesh that was baked from
-// a sequence, each target is one keyframe; judging these takes long, so it is only done if a tolerance is requested.
+// Judges a mesh that was baked before, so that a bake reports an error beyond the tolerance. In a mesh that was baked
+// from a sequence, each target is one keyframe. Judging such targets takes long, so they are judged only if a tolerance
+// is requested.
 Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
   const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
   if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))
@@ -312,7 +314,7 @@ Status judge_again(const GltfDocument& document, const BakeOptions& options, Glt
   return Success{};
 }
 
-// Bakes one mesh. Returns nothing if it does not move.
+// Bakes one mesh. Returns nothing if the mesh does not move.
 Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::size_t index, const BakeOptions& options,
                                           Course& course, ZeroVectors& zeros, GltfEdit& edit) {
   const GltfMesh& mesh = document.meshes()[index];
@@ -336,7 +338,7 @@ Result<std::optional<MeshBake>> bake_mesh(const GltfDocument& document, std::siz
   baked.report.weighting = truth.rule().weighting;
   if (truth.is_plain()) {
     shading.value().groups.forget_corners();
-    shading.value().point_of_vertex = {};  // only the truth needed these two
+    shading.value().point_of_vertex = {};  // only the truth needed these two lists
     shading.value().place_of_vertex = {};
   }
   for (const GltfPrimitive& primitive : mesh.primitives) {

@@ -12,26 +12,27 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The most products of two weights that are tried. Each product takes a correction target.
+// The largest number of products of two weights that are tried. Each product takes a correction target.
 constexpr std::size_t kMostProducts = 48;
-// The number of attempts with fewer correction targets to meet the byte limit.
+// The number of attempts to get below the byte limit with fewer correction targets.
 constexpr int kTries = 5;
-// Means that differ by no more than this part of themselves count as equal.
+// Mean errors count as equal if they differ by no more than this part of themselves.
 constexpr double kAlike = 1e-3;
-// A skin may make errors larger, and so keep all candidates beyond the tolerance. Then candidates are made again for a
-// smaller tolerance, at most this many times.
+// A skin may make errors so large that all candidates are beyond the tolerance. In this case candidates are made again
+// for a smaller tolerance, at most this many times.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// A glance measures a candidate in only a few of the poses. If it shows a mean error kHopeless times that of the best
-// candidate, the candidate is not examined further. If the best candidate lacks nothing but the tolerance, kFarther
-// times is enough for a candidate that is beyond the tolerance as well.
+// A glance measures a candidate in only a few of the poses. If a candidate has kHopeless times the mean error of the
+// best candidate in a glance, the candidate is not examined further. If the best candidate meets all criteria except
+// the tolerance, kFarther times the mean error is enough, for candidates that are beyond the tolerance as well.
 constexpr double kHopeless = 2, kFarther = 1.25;
-// A file may grow more if it gets at most kFewExtras correction targets. A correction target takes about kBytesOfExtra
-// bytes for each vertex.
+// A file may become larger by more bytes if it gets at most kFewExtras correction targets. A correction target takes
+// about kBytesOfExtra bytes for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
-// A candidate is better than the stored deltas if it leaves at most this part of the mean error.
+// A candidate is better than the stored deltas if its mean error is at most this part of theirs.
 constexpr double kBetter = 0.95;
-// Doubling the correction targets of a rig is worth it if at most this part of the mean error remains.
+// It is worth it to double the number of correction targets of a rig if the mean error then is at most this part of the
+// mean error before.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
@@ -53,9 +54,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error grew by more than it may, or if torn edges did at one of the first `thresholds` angles. A
-// mean may grow up to the tolerance, and single normals may turn by the tolerance. For each hundred torn edges, one
-// more edge may be torn.
+// Returns true if an error has become larger than is allowed, or the number of torn edges has at one of the first
+// `thresholds` angles. A mean error may grow up to the tolerance, and single normals may turn by the tolerance. For
+// each hundred torn edges, one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
@@ -65,15 +66,16 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
          after.worst > before.worst + turn;
 }
 
-// A candidate and how it was judged.
+// A candidate, and how the chooser has judged it.
 struct Judged {
   BakedCandidate choice;
-  std::size_t better = 0, unharmed = 0;  // numbers of named viewers, and of other viewers, as in chooser.h
+  // Numbers of named viewers where it is better, and of others where it is no worse.
+  std::size_t better = 0, unharmed = 0;
   bool is_affordable = true, is_bearable = true;
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
-// A comparison of candidates that come one after the other; it keeps the best.
+// Compares candidates one after the other, and keeps the best.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -105,7 +107,7 @@ class Chooser {
             has_unit(options_.viewers)};
   }
 
-  // Judges a candidate, and keeps it if it is the best so far. Returns the bytes of its deltas.
+  // Judges a candidate, and keeps the candidate if it is the best so far. Returns the bytes of its deltas.
   std::size_t consider(Candidate candidate) {
     const std::size_t targets = source_.shading.set.targets.size();
     Judged judged;
@@ -133,12 +135,13 @@ class Chooser {
     return bytes;
   }
 
-  // Returns true if a glance shows that a candidate is beyond the tolerance. Returns false for a plan, which must
-  // measure all candidates.
+  // Returns true if a glance shows that a candidate is beyond the tolerance. A plan must measure all candidates, so the
+  // result is then always false.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     return !options_.plan && is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
   }
-  // Returns whether a glance shows that a candidate cannot be the best. A plan asks for all candidates.
+  // Returns true if a glance shows that a candidate cannot be the best. A plan must measure all candidates, so the
+  // result is then always false.
   [[nodiscard]] bool is_hopeless(const Candidate& candidate) const {
     if (!best_ || options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -151,22 +154,23 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // Returns the bytes that deltas may take if no tolerance or limit is given.
+  // Returns the bytes that deltas may take. If the options give a tolerance or a limit, returns the limit; otherwise
+  // the bytes are in proportion to the file.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
     return extras > kFewExtras ? options_.bytes_of_file : options_.bytes_of_file + options_.bytes_of_file / 2;
   }
-  // Estimates how many correction targets for all vertices fit into the limit, beside deltas of the mesh's own targets
-  // that take bytes_of_own.
+  // Estimates how many correction targets for all vertices fit into the limit of bytes. The deltas of the mesh's own
+  // targets take bytes_of_own of these bytes.
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // if one more is too large, fewer are tried
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
-  // Returns true if the best candidate is accurate enough and has at most this many bytes, so that others need not be
-  // tried. Returns false for a plan, which must measure all candidates.
+  // Returns true if the best candidate is accurate enough and has at most this many bytes, so that no other candidate
+  // must be tried. A plan must measure all candidates, so the result is then always false.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
            !options_.plan;
@@ -174,8 +178,8 @@ class Chooser {
   [[nodiscard]] bool plans() const noexcept { return options_.plan; }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
-  // Reduces the tolerance that candidates are made for, because skins keep all of them beyond the given tolerance.
-  // Returns false if that cannot help.
+  // Reduces the tolerance for which candidates are made, if all of them are beyond the given tolerance because of
+  // skins. Returns false if a smaller tolerance cannot help.
   bool tighten() {
     if (!best_ || of_best_.choice.within || !weights_.skins.any()) return false;
     const double now = made_within_.value_or(tolerance_);
@@ -210,7 +214,7 @@ class Chooser {
  private:
   static bool is_rounding(const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; }
 
-  // Returns the errors that decide.
+  // Returns the errors that decide which candidate is better.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     JudgedErrors all;
     for (std::size_t k = 0; k < kPoseKinds; ++k)
@@ -218,19 +222,20 @@ class Chooser {
     return all.errors();
   }
 
-  // Returns whether the best candidate is affordable, better in all named viewers, and no worse in the others.
+  // Returns true if the best candidate is within the limits, better in all named viewers, and no worse in all other
+  // viewers.
   [[nodiscard]] bool serves_all() const {
     return of_best_.is_affordable && of_best_.better + of_best_.unharmed == viewers_.size();
   }
 
-  // Returns whether some error in a named viewer is beyond the tolerance.
+  // Returns true if some error in a named viewer is beyond the tolerance.
   [[nodiscard]] bool is_beyond(const std::vector<ErrorsOfKinds>& errors) const {
     return std::any_of(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(options_.viewers.size()),
                        [&](const ErrorsOfKinds& of_viewer) { return of_viewer[0].spread.worst > tolerance_; });
   }
 
-  // Returns the mean error in the named viewer where it is smallest, because a candidate may help some viewers and harm
-  // others.
+  // Returns the mean error in the named viewer in which it is smallest, because a candidate may help some viewers and
+  // harm others.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
@@ -258,8 +263,8 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      // If a candidate is requested by name, it counts as better when its mean error is smaller, in the poses of the
-      // file or in all poses, and it tears no edge.
+      // If a candidate is requested by name, it counts as better under two conditions: its mean error is smaller, in
+      // the poses of the file or in all poses, and it tears no edge.
       const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
@@ -280,8 +285,8 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // The stored deltas lose to any candidate that is better in some viewer, unless they are within the tolerance and
-    // the smallest file is preferred.
+    // The stored deltas lose to any candidate that is better in some viewer. An exception are stored deltas within the
+    // tolerance if the smallest file is preferred.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
@@ -302,10 +307,10 @@ class Chooser {
   const DeltaSource& source_;
   const MeshWeights& weights_;
   const BakeOptions& options_;
-  std::vector<Viewer> viewers_;  // the named ones, then the others
+  std::vector<Viewer> viewers_;  // the named viewers, then the others
   RightNormals rights_;
   double tolerance_;
-  std::optional<double> made_within_;  // tolerance that candidates are made for, if smaller than tolerance_
+  std::optional<double> made_within_;  // the tolerance for which candidates are made, if smaller than tolerance_
   bool prefers_bytes_;
   std::size_t tangent_bytes_;
   std::optional<Judge> judge_;
@@ -313,13 +318,13 @@ class Chooser {
   std::vector<ErrorsOfKinds> before_;
   std::optional<Candidate> best_;
   Judged of_best_;
-  std::size_t of_choice_ = 0;  // index of the best candidate in candidates_
+  std::size_t of_choice_ = 0;  // the index of the best candidate in candidates_
   double best_glance_ = 0;
   std::vector<BakedCandidate> candidates_;
 };
 
-// Tries correction targets of low rank (low_rank.cpp): as many as the tolerance needs within the bytes by which the
-// file may grow. If they take too many bytes, tries fewer.
+// Tries correction targets of low rank (low_rank.cpp). Tries as many as the tolerance needs, within the bytes by which
+// the file may grow. If these take too many bytes, tries fewer.
 void look_at_low_rank(const Making& making, const Candidate& own, std::size_t bytes_of_own, Chooser& chooser) {
   Making of_try = making;
   of_try.most_extras = std::min(of_try.most_extras, chooser.extras_within(bytes_of_own));
@@ -335,8 +340,8 @@ void look_at_low_rank(const Making& making, const Candidate& own, std::size_t by
   }
 }
 
-// Tries correction targets of a mesh that nothing drives: more and more of them, as long as each step is worth it
-// (kWorthIt).
+// Tries correction targets for a mesh that no animation drives. Tries more and more of them, as long as each step is
+// worth it (kWorthIt).
 void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
@@ -347,14 +352,14 @@ void look_at_quadratics(const Making& making, const Candidate& own, Chooser& cho
   });
 }
 
-// Returns true if there are few enough pairs of targets to try a correction target for each.
+// Returns true if there are so few pairs of targets that each pair can have a correction target.
 bool has_few_products(const Making& making, const MeshWeights& weights) {
   const MeshPlan& plan = making.source.plan;
   return making.most_extras > 0 && (plan.is_driven || weights.rig) && plan.products_fit &&
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Makes own deltas of any length that look about like own_candidate(), without the search for the best lengths.
+// Makes own deltas of any length. They are similar to those of own_candidate(), but the best lengths are not searched.
 Candidate similar_to_own(const DeltaSource& source, const RightNormals& rights) {
   MeshPlan plan = source.plan;
   plan.is_line.assign(plan.is_line.size(), false);
@@ -365,8 +370,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
                  const std::function<void(std::size_t)>& reach) {
   Candidate own = own_candidate(source, making.rights, making.lengths);
   own.animations_only = false;
-  // If correction targets may help, deltas of the mesh's own targets that a glance finds beyond the tolerance are
-  // judged last.
+  // If a glance finds the deltas of the mesh's own targets beyond the tolerance, and correction targets may help, these
+  // deltas are judged last.
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && making.most_extras > 0;
   const bool waits = has_extras && chooser.is_far(own);
   if (!waits) chooser.consider(own);
@@ -374,10 +379,10 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(20);
   if (chooser.is_found()) return;
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
-  std::optional<Candidate> similar;  // to own deltas of any length that wait
+  std::optional<Candidate> similar;  // a candidate similar to own deltas of any length, which are judged later
   if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
-    // Viewers that add deltas as stored render the truth with deltas of any length, and in many files the others get no
-    // worse than before.
+    // Viewers that add deltas as stored render the true normals with deltas of any length. In many files, other viewers
+    // render such deltas no worse than the file before the bake.
     Making of_any = making;
     of_any.lengths = Lengths::kFree;
     if (making.rights.are_by_area()) {
@@ -391,8 +396,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
   if (has_extras) {
-    // Corrections only across N (perpendicular to the stored normal) are rendered alike in every viewer, but may need
-    // more correction targets.
+    // All viewers render the same normals if corrections are only across N (perpendicular to the stored normal). Such
+    // corrections may need more correction targets.
     Making across = making;
     across.keeps_across |= making.lengths == Lengths::kShort;
     look_at_low_rank(across, own, bytes, chooser);
@@ -408,7 +413,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
 
 ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options,
                                  std::size_t tangent_bytes) {
-  // Reports roughly how much of the time has passed.
+  // Reports roughly how much of the work is done.
   const auto reach = [&options](std::size_t percent) {
     if (options.progress) options.progress(percent, 100);
   };
@@ -420,13 +425,12 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
     // If the author's normals are known, keys of the file may be right as they are. Deltas that are fitted to
-    // animations would change them, so such deltas are not tried.
+    // animations would change these keys, so such deltas are not tried.
     const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));
     ChosenCandidate chosen = chooser.take();
-    // If targets are played together, the error of the deltas of each single target is known only where it was
-    // measured.
+    // If targets are played together, the error of each target's deltas is known only in the poses that were measured.
     if (chosen.candidate.fit_error < source.plan.lines.largest_error())
       for (const ViewerChange& change : chosen.viewers)
         if (change.is_named)
@@ -468,7 +472,7 @@ BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights
     played.is_driven = true;
   }
   BakeOptions without_alone = options;
-  without_alone.animations_only = true;  // so that no correction target is judged alone
+  without_alone.animations_only = true;  // judges no correction target alone
   Chooser chooser(source, played, without_alone, 0);
   return chooser.take().candidates.front();
 }

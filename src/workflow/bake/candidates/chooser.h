@@ -1,16 +1,22 @@
 /// Chooses what a bake writes for a mesh. Private to workflow.
 ///
-/// Makers make candidates, the judge measures what viewers render with each, and the chooser picks one. It picks one
-/// candidate for the whole mesh: if vertices chose separately, their normals would not fit those of their neighbours.
+/// Makers make candidates, the judge measures what viewers render with each candidate, and the chooser picks one of
+/// them. It picks one candidate for the whole mesh: if vertices chose separately, their normals would not fit those of
+/// their neighbours.
 ///
-///     better in a viewer    the mean over all poses is smaller, by a twentieth at least; and in what the file plays,
-///                           in each target alone, and in poses that a program sets, none of mean, 99.9 %, worst and
-///                           torn edges (beyond 10, 20 and 40 degrees) grows beyond the tolerance
+///     better in a viewer    The mean error over all poses is smaller by at least a twentieth. In addition, the mean
+///     error, the
+///                           99.9 % quantile, the worst error and the torn edges (beyond 10, 20 and 40 degrees) must
+///                           not grow
+///                           beyond the tolerance. This must be true in the poses that the file plays, in each target
+///                           alone,
+///                           and in poses that a program sets.
 ///
-/// Candidates are compared by these criteria, in this order: within the limits; better in most of the named viewers; no
-/// worse in most of the others; within the tolerance; of a size that is in proportion to the file. Among candidates
-/// that are equal by all of these and within the tolerance, the smallest is chosen, unless another one has a much
-/// smaller error in the viewers that are not named. If they are beyond the tolerance, the one with the smallest error
+/// The criteria for a candidate are, in this order: it is within the limits; it is better in most of the named viewers;
+/// it is no worse in most of the other viewers; it is within the tolerance; its size is in proportion to the file.
+/// Among candidates that are equal by all criteria and within the tolerance, the smallest is chosen, unless another one
+/// has a much smaller error in the viewers that are not named. If such candidates are beyond the tolerance, the
+/// candidate with the smallest error is chosen.
 /// is chosen.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
@@ -25,19 +31,21 @@
 
 namespace chronormal::inline internal {
 
-/// The candidate that was chosen, and all that were tried.
+/// The candidate that was chosen, and facts about all candidates that were tried.
 struct ChosenCandidate {
   Candidate candidate;
-  std::vector<ViewerChange> viewers;  ///< what each viewer renders before and after: the named ones, then the others
-  std::vector<BakedCandidate> candidates;  ///< every candidate that was tried
+  /// Errors in each viewer before and after; first the named viewers, then the others.
+  std::vector<ViewerChange> viewers;
+  std::vector<BakedCandidate> candidates;  ///< all candidates that were tried
 };
 
-/// Chooses a candidate of the encoding in the plan. tangent_bytes are the bytes of new tangents, beside any candidate.
+/// Chooses a candidate of the encoding in the plan. tangent_bytes is the size of new tangents, which are added to every
+/// candidate.
 [[nodiscard]] ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights,
                                                const BakeOptions& options, std::size_t tangent_bytes);
 
-/// Judges a mesh that an earlier bake wrote, by the tolerance and the limits of the options. If nothing drives its
-/// correction targets, they get the weights of their formulas.
+/// Judges a mesh that an earlier bake wrote, by the tolerance and the limits of the options. If nothing in the file
+/// drives its correction targets, they get the weights of their formulas.
 [[nodiscard]] BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights,
                                          const BakeOptions& options);
 

@@ -16,12 +16,12 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
-// Splines may have an estimated error this many times the limit of straight pieces, because the estimate adds up all
-// errors as if they came at the same moment.
+// The estimated error of a spline may be this many times the limit for straight pieces, because the estimate adds up
+// all errors as if they came at the same moment.
 constexpr double kPartOfSplines = 2;
 
-// Returns, for each gap between keys, the angle in radians by which normals turn if correction weights change linearly
-// in the gap. The error of a straight line is largest in the middle of the gap.
+// Returns for each gap between keys an angle in radians. It is the angle by which normals turn in the middle of the
+// gap, where the error is largest, if correction weights change linearly in the gap.
 std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                   const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                   const VertexColumns& columns) {
@@ -43,7 +43,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     for (std::size_t c = track.targets; c < missing.size(); ++c)
       missing[c] = (at_start[c] + at_end[c]) / 2 - middles.back()[c];
   }
-  // Returns the weights in planes: a row for each column of weights, with one entry for each pose.
+  // Lays out the weights of poses in rows. Each column of weights has a row, with one entry for each pose.
   const std::size_t poses = middles.size(), stride = block_count(poses, kPosePadding) * kPosePadding;
   const auto rows_of = [&](const PoseList& of) {
     std::vector<float> rows((track.targets + extra_count) * stride);
@@ -52,8 +52,9 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     return rows;
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
-  // Calls visit(p, openness) with the angle between two normals of a vertex in pose p, as an openness (a monotonic
-  // function of the angle): the rendered one, and the same one plus the missing part of the correction weights.
+  // Calls visit(p, openness) for a vertex in each pose p. The openness measures an angle between two normals. The first
+  // is the rendered normal, and the second is the same normal after the missing part of the correction weights is
+  // added.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
     thread_local std::vector<float> shown, off;
@@ -72,7 +73,7 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     };
     for (std::size_t p = 0; p < poses; ++p) visit(p, openness(at(shown, p), at(shown, p) + at(off, p)));
   };
-  // The largest openness of each pose in the upper bits, and the index of its vertex in the lower bits.
+  // For each pose, the largest openness in the upper 32 bits, and the index of its vertex in the lower 32 bits.
   std::vector<std::atomic<std::uint64_t>> worst(poses);
   const auto note = [&](std::size_t n, std::size_t p, float open) {
     const std::uint64_t found = std::uint64_t{bit_cast<std::uint32_t>(open)} << 32 | n;
@@ -81,8 +82,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   parallel_each(vertices.size(), kTurnBlock,
                 [&](std::size_t n) { turn(n, [&](std::size_t p, float open) { note(n, p, open); }); });
-  // A normal does not count if its true normal has no direction. That is rare, so it is first checked only for the
-  // vertex with the largest error.
+  // A normal whose true normal has no direction does not count. Such normals are rare, so only the vertex with the
+  // largest error is checked first.
   std::vector<std::size_t> again;
   PoseList poses_again;
   for (std::size_t p = 0; p < poses; ++p) {
@@ -106,13 +107,15 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   return result;
 }
 
-// Splits the gaps of a LINEAR track until straight pieces of correction weights turn no normal by more than the
-// tolerance (radians), within a limit of pieces. Raises `left` to the largest angle that remains.
+// Returns the number of straight pieces for each gap of a LINEAR track. With these pieces, the correction weights turn
+// no normal by more than the tolerance, in radians, if the limit of pieces allows this. Raises `left` to the largest
+// angle that remains.
 std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTrack& track, std::size_t extra_count,
                                      const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                      const VertexColumns& columns, double tolerance, double& left) {
   const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
-  // A gap gets at most `most` pieces. `most` is reduced until the pieces of all gaps together keep to the limit.
+  // A gap gets at most `most` pieces. This number is reduced until the pieces of all gaps together are within the
+  // limit.
   for (std::size_t most = kMostPieces;; --most) {
     std::vector<std::uint32_t> pieces;
     std::size_t keys = 1;
@@ -129,8 +132,8 @@ std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTra
   }
 }
 
-// Sets the gain of each formula: the largest angle by which a normal turns if the weight has an error of 1 and the
-// normal is as long as the stored one.
+// Sets the gain of each formula. The gain is the largest angle by which a normal turns if the weight has an error of 1
+// and the normal is as long as the stored normal.
 void set_gains(const RightNormals& rights, std::span<const std::uint32_t> vertices, const VertexColumns& columns,
                ExtraDrivers& drivers) {
   const std::size_t own = rights.targets();

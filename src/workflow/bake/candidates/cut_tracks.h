@@ -1,6 +1,6 @@
-/// Decides how tracks carry the weights of correction targets. Private to workflow.
+/// Decides how the tracks of a file carry the weights of correction targets. Private to workflow.
 ///
-/// Threads    on all cores; the same bits on any number of them.
+/// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CUT_TRACKS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CUT_TRACKS_H_
 
@@ -14,13 +14,17 @@
 
 namespace chronormal::inline internal {
 
-/// Decides how the tracks of a file carry the weights of correction targets, so that the error of these weights turns
-/// no normal by more than the tolerance (radians):
+/// Decides how tracks carry the weights of correction targets. The errors of these weights must turn no normal by more
+/// than the tolerance, in radians:
 ///
-///     LINEAR        each gap is cut into straight pieces, within a limit of their number; track_error is raised to the
-///                   angle by which they turn normals. If all viewers play cubic splines, the track becomes a spline,
-///                   which is exact, if that takes fewer numbers or if the pieces leave too large an error
-///     CUBICSPLINE   more keys for formulas, if all viewers play splines as specified
+///     LINEAR        Each gap between keys is cut into straight pieces, within a limit of their number. track_error is
+///     raised to
+///                   the angle by which these pieces turn normals. If all viewers play cubic splines, the track may
+///                   become a
+///                   spline, which is exact. It does so if a spline takes fewer numbers, or if the pieces leave too
+///                   large an
+///                   error.
+///     CUBICSPLINE   More keys are added for the weights of formulas, if all viewers play splines as specified.
 ///
 /// The candidate must have its deltas, and its formulas or curves.
 void cut_tracks(const RightNormals& rights, const MeshWeights& weights, std::span<const Viewer> viewers,

@@ -1,16 +1,17 @@
-// Correction targets of low rank: the errors of a mesh's own deltas along the animations of a file, written as the sum
-// of a few deltas whose weights are curves in time (docs/theory.md, section 17).
+// Makes correction targets of low rank. They correct the errors of a mesh's own deltas along the animations of a file.
+// These errors are written as the sum of a few deltas whose weights are curves in time (docs/theory.md, section 17).
 //
 //     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
 //
 // N is the stored normal, and D_i are the deltas of the mesh's own targets. The missing normals are the difference
-// between n(w) and N + sum_i w_i D_i. Their leading left singular vectors are the curves s_k, and the right ones are
-// the deltas E_k; points count more while n(w) is short. If a point still has a large error, its own E_k are fitted
-// again by least squares of the angles: the length of n(w) is free at every instant, and instants with large errors
-// count more.
+// between n(w) and N + sum_i w_i D_i. Their leading left singular vectors are the curves s_k, and the right singular
+// vectors are the deltas E_k. Points count more if n(w) gets short there. If a point still has a large error, its own
+// E_k are fitted again by least squares of the angles. In this fit the length of n(w) is free at every instant, and
+// instants with large errors count more.
 //
-// Rows are the nodes of the curves (extra_curves.h). If there are too many, the rows are the nodes of some gaps between
-// keys, and of some tracks; the curves at all other nodes follow from the deltas by least squares.
+// A row is an instant at which curves have a node (extra_curves.h). If there are too many nodes, only the nodes of some
+// gaps between keys, and of some tracks, become rows. The values of the curves at all other nodes follow from the
+// deltas by least squares.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -36,25 +37,26 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Parts of the tolerance: the error below which no correction is needed; the error that singular vectors alone should
-// leave in 99.9 % of all samples; the largest error that least squares should leave after that.
+// Parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the error that 99.9 % of
+// all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that should remain after
+// least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// A number of correction targets is enough if its error is at most kNoGain times the smallest error, and kManyMore
-// times as many targets were tried.
+// A number of correction targets is enough if two conditions hold: its error is at most kNoGain times the smallest
+// error, and kManyMore times as many targets were tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
-// Positions in a gap between keys at which a fit is judged. Nothing is fitted there.
+// Positions in a gap between keys, from 0 to 1, at which a fit is checked. The fit does not use these positions.
 constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
 constexpr int kFits = 4;
-// The angle by which an entry of a delta that is left out may turn a normal, as a part of the tolerance.
+// The angle by which a normal may turn if an entry of a delta is left out, as a part of the tolerance.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-// One correction target made from another, called `of`. Its weight is `factor` times the weight of `of`; with
-// above_zero, negative weights become 0.
+// A correction target that is made from another one, called `of`. Its weight is `factor` times the weight of `of`. If
+// above_zero is true, negative weights become 0.
 struct Share {
   std::size_t of = 0;
   double factor = 1;
@@ -62,15 +64,15 @@ struct Share {
   VertexVectors vectors;
 };
 
-// Properties of shares whose deltas are short enough for viewers that limit the length of deltas.
+// Properties of shares whose deltas are short, for viewers that limit the length of deltas.
 struct ShortShares {
-  bool are_units = false;   // N + E has the length of N, so that viewers which store directions keep E
+  bool are_units = false;   // N + E has the length of N, so that viewers that store directions keep E
   bool keep_along = false;  // keeps the part of E along N
 };
 
 struct LowRank {
   std::vector<VertexVectors> own;     // deltas of each target of the mesh
-  std::vector<VertexVectors> extras;  // deltas of correction targets: of any length, for weights from -1 to 1
+  std::vector<VertexVectors> extras;  // deltas of correction targets, of any length, for weights from -1 to 1
   TrackCurves curves;                 // weights of the correction targets over time, for each track
   PoseList rest;                      // weights of the correction targets in the poses that the file stores
   double worst = 0;                   // largest error of all points at the fitted instants, in degrees
@@ -78,20 +80,20 @@ struct LowRank {
 
 struct LowRankLimits {
   std::size_t most_extras = 0;
-  double tolerance = 0;       // degrees: correction targets are added until the worst sample is within it
+  double tolerance = 0;       // degrees: correction targets are added until no sample has a larger error
   bool keeps_across = false;  // correction targets correct only what is missing across N
-  bool refits_own = false;    // own targets are fitted to the animations too, and to nothing else
+  bool refits_own = false;    // the deltas of own targets are fitted to the animations as well, and to nothing else
 };
 
 // The instants to which a fit is made.
 struct Rows {
   std::vector<std::size_t> instants;  // ascending
-  std::vector<PlaceOfRows> places;    // half-way between neighbouring nodes of a piece
-  std::vector<PlaceOfRows> unseen;    // other places, to check the fit
+  std::vector<PlaceOfRows> places;    // instants half-way between neighbouring nodes of a piece
+  std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };
 
-// Returns the tracks that fit into this many rows if each contributes at least its most telling piece (telling_tracks()
-// and telling_keys() in poses/played_poses.h).
+// Returns the tracks that fit into this many rows if each of them has at least the rows of its most telling piece
+// (telling_tracks() and telling_keys() in poses/played_poses.h).
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -112,7 +114,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // A piece whose neighbours are left out takes three rows, and others take two.
+    // A piece takes three rows if its neighbours are left out, and otherwise two.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -145,14 +147,15 @@ PoseList poses_of(const FileInstants& all, std::span<const std::size_t> instants
   return poses;
 }
 
-// Returns the weights of own targets in each row.
+// Returns the weights of the mesh's own targets in each row.
 std::vector<float> own_weights(const PoseList& poses) {
   std::vector<float> result;
   for (const std::vector<double>& pose : poses) result.insert(result.end(), pose.begin(), pose.end());
   return result;
 }
 
-// Returns by least squares over the rows a change of the own targets' deltas, for each point: (3, targets).
+// Returns for each point a change of the deltas of the mesh's own targets, (3, targets). The change is found by least
+// squares over all rows.
 std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   const std::vector<float> weights = own_weights(missing.poses());
   std::vector<double> matrix(targets * targets, 0.0);
@@ -190,7 +193,8 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
-// Counts the products of two weights. With area weights, n(w) is quadratic, so it has at most this many missing terms.
+// Counts the products of two weights that are not zero in these poses. With area weights, n(w) is quadratic, so it has
+// at most this many missing terms.
 std::size_t products_of(const PoseList& poses) {
   std::size_t active = 0;
   for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
@@ -198,8 +202,8 @@ std::size_t products_of(const PoseList& poses) {
   return active * (active + 1) / 2;
 }
 
-// Fits with as few correction targets as the tolerance needs. Some points tell how many that may be; then the number is
-// raised in at most kFits fits.
+// Fits as few correction targets as the tolerance allows. The number is first estimated from some of the points. If the
+// fit is not good enough, the number is raised, and at most kFits fits are made.
 void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float> weights, std::size_t own_targets) {
   std::vector<std::size_t> counts;
   for (const std::size_t count : kCounts)
@@ -212,7 +216,7 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
     ++at;
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
-  // Between two counts, the logarithm of the error is interpolated linearly.
+  // Between two numbers of targets, the logarithm of the error is interpolated linearly.
   if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
     const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
     extras =
@@ -227,8 +231,8 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   }
 }
 
-// Returns the weights of correction targets at other instants than the fitted ones, by least squares over all points:
-// (poses, extras).
+// Returns the weights of correction targets at instants that are not rows, by least squares over all points. The result
+// has the shape (poses, extras).
 std::vector<double> weights_at(const LowRankFit& fit, const MissingNormals& missing, const Cholesky& gram) {
   const std::size_t extras = fit.extras(), padded = fit.padded(), stride = missing.stride();
   constexpr std::size_t kParts = 32;
@@ -277,7 +281,7 @@ Cholesky gram_of_deltas(const LowRankFit& fit, std::size_t points) {
   return {std::move(matrix), extras, ridge};
 }
 
-// A vertex, with the index of its point among the fitted ones.
+// A vertex, and the index of its point among the points that were fitted.
 struct FittedVertex {
   std::uint32_t vertex;
   std::size_t point;
@@ -318,7 +322,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
   found.worst = fit.worst();
 
-  // Collects the deltas, point by point and then vertex by vertex.
+  // Collects the deltas. Fits have them point by point, but the file needs them vertex by vertex.
   std::vector<FittedVertex> all;
   for (std::size_t p = 0; p < fitted.size(); ++p)
     for (const std::uint32_t v : fitted[p]) all.push_back({v, p});
@@ -351,7 +355,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Computes the curves at all nodes.
+  // Computes the values of the curves at all nodes.
   const std::size_t extras = fit.extras();
   std::vector<double> curves(instants.poses.size() * extras);
   std::vector<char> is_row(instants.poses.size(), 0);
@@ -377,7 +381,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Scales weights to at most 1, and sets entries of deltas that turn no normal noticeably to zero.
+  // Scales weights to at most 1, and multiplies deltas by the same factors. Entries of deltas that turn no normal
+  // noticeably become zero.
   std::vector<std::size_t> kept;
   std::vector<double> largest(extras, 0.0);
   for (std::size_t n = 0; n < curves.size(); ++n)
@@ -414,8 +419,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   return found;
 }
 
-// Multiplies vectors by a factor, or gives N + E the length of N if is_unit is true. In that case, keeps_along keeps
-// the part of E along N.
+// Multiplies vectors by a factor. If is_unit is true, changes each vector E instead, so that N + E has the length of N;
+// keeps_along then keeps the part of E along N.
 void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps_along, VertexVectors& vectors) {
   for (std::size_t n = 0; n < vectors.vertices.size(); ++n) {
     Vec3f& vector = vectors.vectors[n];
@@ -430,8 +435,8 @@ void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps
   }
 }
 
-// Turns deltas of any length into deltas that `lengths` allows. Each delta becomes one share, or for kUnit two shares:
-// one for positive weights, and one for negative weights.
+// Returns deltas whose lengths are allowed by `lengths`, made from deltas of any length. Each delta becomes one share,
+// or two shares for kUnit: one for positive weights, and one for negative weights.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, Lengths lengths,
                              const ShortShares& how) {
   std::vector<Share> shares;
@@ -451,7 +456,8 @@ std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVecto
   return shares;
 }
 
-// Replaces the weights of correction targets, (poses, extras), by the weights of their shares.
+// Replaces the weights of correction targets, (poses, extras), by the weights of the shares that were made from these
+// targets.
 void take_shares(std::span<const Share> shares, std::size_t extras, std::vector<double>& values) {
   std::vector<double> result;
   for (std::size_t first = 0; first < values.size(); first += extras) {
@@ -475,8 +481,8 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = found.extras.size();
-  // Parts along N help viewers that add up deltas: they allow turns by more than a right angle. In viewers that keep
-  // only directions, these parts are wrong.
+  // Deltas along N help viewers that add up deltas, because they allow turns by more than a right angle. In viewers
+  // that keep only directions, such deltas are wrong.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,

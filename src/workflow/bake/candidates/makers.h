@@ -1,10 +1,10 @@
-/// The makers of candidates. Each makes a Candidate from a Making, which is a mesh and the wishes of the bake. Private
-/// to workflow.
+/// The makers of candidates. Each maker makes a Candidate from a Making, which is a mesh with the requirements of the
+/// bake. Private to workflow.
 ///
 /// N is the stored normal of a vertex, D the delta of a target of the mesh, and E the delta of a correction target. Own
 /// deltas are those of the mesh's own targets. "Across N" means perpendicular to N.
 ///
-/// Threads    on all cores; the same bits on any number of them.
+/// Threads    Uses all cores. The results have the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_MAKERS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_MAKERS_H_
 
@@ -31,70 +31,72 @@ enum class Lengths {
   kFree    ///< any length, if all viewers add the deltas as stored
 };
 
-/// Returns the freest choice of lengths that all of these viewers render with little or no loss.
+/// Returns the choice of lengths that all of these viewers render with little or no loss, and that restricts deltas
+/// least.
 [[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
 /// Returns the factor by which weights for these lengths are larger than weights for deltas of any length.
 [[nodiscard]] constexpr double weight_factor(Lengths lengths) noexcept { return lengths == Lengths::kShort ? 64 : 1; }
 
-/// A mesh and the wishes for a candidate. The members that are references must outlive it.
+/// A mesh and the requirements for a candidate. The members that are references must outlive this object.
 struct Making {
   const DeltaSource& source;
   const RightNormals& rights;
   const MeshWeights& weights;
   const Judge& judge;
-  std::span<const Viewer> viewers;  ///< in which it should be right
+  std::span<const Viewer> viewers;  ///< the viewers in which the candidate should be right
   Lengths lengths = Lengths::kFree;
   double tolerance = 0;  ///< degrees
   std::size_t most_extras = 0;
   bool animations_only = false;
-  bool keeps_across = false;  ///< some viewers keep no lengths: correction targets turn normals by vectors across N
+  /// If true, correction targets have only deltas across N, because some viewers keep no lengths.
+  bool keeps_across = false;
 
   [[nodiscard]] std::size_t targets() const { return source.shading.set.targets.size(); }
 };
 
-/// The part of the tolerance that straight pieces between keys may use.
+/// The part of the tolerance that errors of straight pieces between keys may use.
 inline constexpr double kPartOfTracks = 0.2;
 
 // Candidates without correction targets (own.cpp).
 
-/// Makes a candidate of the stored deltas.
+/// Makes a candidate that has the deltas of the file.
 [[nodiscard]] Candidate stored_candidate(const DeltaSource& source);
 
-/// Makes deltas that are right at weight 1 of each target alone. If lengths are free, it makes the deltas with the
-/// smallest error on the way from 0 to 1 as well: as the plan of the source says, with fitted lines by least squares
-/// over the weights of the file.
+/// Makes deltas of the mesh's own targets. They are right at weight 1 of each target alone. If lengths are free, they
+/// instead have the smallest error on the way from weight 0 to 1, as the plan of the source requires. Then lines are
+/// fitted by least squares over the weights of the file.
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
 // Correction targets that products of weights drive (products.cpp).
 
-/// Computes the own deltas that are right at weight 1 of each target, for the vertices of all elements that the target
-/// moves.
+/// Returns the own deltas that are right at weight 1 of each target. The deltas of a target are for the vertices of all
+/// elements that the target moves.
 [[nodiscard]] std::vector<VertexVectors> end_deltas(const GltfShading& shading, const NormalTerms& terms,
                                                     const RightNormals& rights, Lengths lengths);
 
-/// Counts the pairs of targets that are active together and both move a normal; a target with itself is a pair too.
-/// Stops at `most` + 1.
+/// Counts the pairs of targets that are active together and that both move some normal. A target with itself is a pair
+/// too. Stops counting at `most` + 1.
 [[nodiscard]] std::size_t count_products(const Making& making, std::size_t most);
 
-/// Makes the candidate with products, for the poses of the file or of the rig. Vertices whose error is at most half the
-/// tolerance take part in no correction target. If the limit allows fewer correction targets, it keeps those that help
-/// most.
+/// Makes the candidate with products of weights, for the poses of the file or of the rig. Vertices whose error is at
+/// most half the tolerance get no deltas of correction targets. If the limit allows fewer correction targets than were
+/// made, keeps those that help most.
 [[nodiscard]] Candidate products_candidate(const Making& making);
 
 // Correction targets that animations drive (low_rank.cpp).
 
-/// Fits correction targets to the errors that new own deltas leave: as many as the tolerance needs, within the limit.
-/// Vertices whose error is a small part of the tolerance take no part. If only animations count and lengths are free,
-/// own deltas are fitted to the animations too. Cost: the true normals at all nodes of the curves; at most 480 nodes
-/// are fitted to, in 700 MB of memory.
+/// Fits correction targets to the errors that new own deltas leave. Makes as many as the tolerance needs, within the
+/// limit. Vertices whose error is a small part of the tolerance are left out. If only animations count and lengths are
+/// free, own deltas are fitted to the animations too. Computes the true normals at all nodes of the curves; at most 480
+/// nodes are fitted, and they take 700 MB of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
 // Correction targets whose weights are quadratics of the weights, for a mesh that nothing drives (quadratics.cpp).
 
-/// Adds more and more correction targets to the deltas of a candidate that has none. Calls take(candidate) for each
-/// number of them, until it returns false. As long as nothing drives the correction targets, a viewer renders the
-/// deltas of `own` alone. making.weights must have a rig
+/// Adds correction targets to a candidate that has none. Calls take(candidate) for larger and larger numbers of them,
+/// until take() returns false. As long as no program drives the correction targets, a viewer renders the deltas of
+/// `own` alone. making.weights must have a rig.
 void quadratics_candidates(const Making& making, const Candidate& own,
                            const std::function<bool(Candidate candidate)>& take);
 

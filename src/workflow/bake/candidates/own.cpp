@@ -26,12 +26,12 @@ Candidate stored_candidate(const DeltaSource& source) {
 Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths) {
   Candidate result;
   result.name = "own deltas";
-  // If the true normals are not quadratic in the weight, the terms are only fitted. The true normal at weight 1 is more
-  // exact, so deltas lead there.
+  // If the true normals are not quadratic in the weight, the terms of n(w) are only fitted to them. The true normal at
+  // weight 1 is more exact, so deltas lead to this normal.
   const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
   if (lengths != Lengths::kFree || is_of_truth) {
-    // This gives the normal at weight 1 the length of N. Stored normals of an author have that length, so stored deltas
-    // that are right nearly stay as they are.
+    // The deltas give the normal at weight 1 the length of N. The stored normals of an author have that length too, so
+    // stored deltas that are right hardly change.
     result.own =
         end_deltas(source.shading, source.terms, rights, lengths == Lengths::kUnit ? lengths : Lengths::kShort);
     return result;

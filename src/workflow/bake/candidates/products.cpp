@@ -1,20 +1,22 @@
-// A candidate with correction targets that products of weights drive (docs/theory.md, section 16).
+// Makes a candidate with correction targets that products of weights drive (docs/theory.md, section 16).
 //
 // Each target of the mesh gets the delta to the true normal at its weight 1. Correction targets correct the errors
-// between weight 0 and 1, and the errors of poses with several targets. They move no vertex, and their weights follow
-// from the weights of the targets:
+// between weight 0 and 1, and the errors of poses with several targets. Correction targets move no vertex, and their
+// weights follow from the weights of the mesh's own targets:
 //
-//     turn      w_i            if a turn to weight 1 is so large that a delta of unit length would not fit; two targets
-//     self      4 w_i (1-w_i)  right at w_i = 1/2 as well
-//     pair      s w_i w_j      right where both are strongest in the file; one target or two
+//     turn      w_i            for a turn at weight 1 that is so large that a delta of unit length would not fit;
+//                              two targets
+//     self      4 w_i (1-w_i)  makes normals right at w_i = 1/2 as well
+//     pair      s w_i w_j      makes normals right where both weights are strongest in the file; one target or two
 //
-// If lengths are not free, every correction leads from N to another unit normal, with a weight from 0 to 1 if the
+// If lengths are not free, every correction leads from N to another unit normal. Its weight is from 0 to 1 if the
 // weights of the file are in this range. Viewers that keep only the direction of N plus the delta, or 8 bits of it,
-// then render the same.
+// then render the same normals.
 //
-// Corrections are made one after the other. Each gives the sum of itself and all earlier ones the right direction in
-// one pose, so their order is part of the candidate. Not all of them are worth a target: the worth of a target is the
-// angle by which normals would turn without it, measured at poses of the file.
+// Corrections are made one after the other. Each correction is computed so that its sum with all earlier ones has the
+// right direction in one pose. The result depends on their order for this reason. Not all corrections are kept. The
+// worth of a correction target is the angle by which normals would turn without it, measured in poses of the file, and
+// the targets with the smallest worth are removed.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -33,25 +35,27 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// Lengths that are tried for a sum of unit normals: from the longest down, each shorter by a factor.
+// Lengths that are tried for a sum of unit normals, from the longest down. Each next length is kNextSum times the last.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
 constexpr int kTriedSums = 31;  // the shortest sum has a length of a tenth
-// kPartOfPairs: the error that a single correction target of a pair may leave half-way, as a part of the tolerance.
-// kAsGood: the factor by which its squared error may exceed that of two targets.
+// kPartOfPairs is the error that a single correction target of a pair may leave half-way to its pose, as a part of the
+// tolerance. kAsGood is the factor by which the squared error of one target may exceed the squared error of two
+// targets.
 constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
-// The shortest correction, relative to N, that is kept. Shorter ones turn no normal by an angle that matters.
+// The length of the shortest correction that is kept, relative to N. Shorter corrections turn no normal by an angle
+// that matters.
 constexpr double kLeastCorrection = 1e-5;
 // The error in radians below which a normal needs no correction.
 constexpr double kRight = 1e-5;
 // Limits for the lengths of n(w) that are stored, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
-// The product of both weights drives the correction target of a pair. At unit lengths the product is scaled up so that
-// its largest value in the file becomes kStrongest, but at most by kMostScale.
+// The product of both weights of a pair drives its correction target. At unit lengths the product is multiplied by a
+// scale, so that its largest value in the file becomes kStrongest. The scale is at most kMostScale.
 constexpr double kMostScale = 4, kStrongest = 0.95;
 // Weights and products of pairs below this count as zero.
 constexpr double kLeastProduct = 1e-6;
-// kMostActive: the most targets whose pairs are all examined. kMostHarmlessPairs: the most pairs that are kept.
-// kMostHarmlessPoses: the most poses at which their worth is measured.
+// kMostActive is the largest number of targets whose pairs are all examined. kMostHarmlessPairs is the largest number
+// of pairs that are kept. kMostHarmlessPoses is the largest number of poses in which the worth of pairs is measured.
 constexpr std::size_t kMostSampled = 400;
 constexpr unsigned kRigSeed = 4;
 constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmlessPoses = 96, kMeasured = 6000000;
@@ -62,10 +66,10 @@ struct ProductLimits {
   double tolerance = 0;  // degrees
 };
 
-// A candidate whose correction targets have no drivers yet.
+// A candidate before its correction targets have drivers.
 struct Products {
-  std::vector<VertexVectors> own;    // of each target of the mesh
-  std::vector<ExtraWeight> weights;  // of the correction targets; their gains are not set
+  std::vector<VertexVectors> own;    // deltas of each target of the mesh
+  std::vector<ExtraWeight> weights;  // weights of the correction targets, without gains
   std::vector<VertexVectors> extras;
   std::size_t left_out = 0;
 };
@@ -98,7 +102,7 @@ struct Asked {
   Vec3d of_element;
 };
 
-// Returns the vertices of some elements, ascending.
+// Returns the vertices of some elements, in ascending order, with the normals of their elements in a pose.
 std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNormals& rights,
                                   const std::vector<double>& pose, std::span<const std::uint32_t> elements) {
   const std::vector<Vec3d> normals = rights.of_elements(pose, elements);
@@ -110,7 +114,7 @@ std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNo
   return result;
 }
 
-// Gathers the nonzero vectors that vector_of(asked) returns.
+// Collects the vectors that vector_of(asked) returns, except zeros.
 template <class VectorOf>
 VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
   std::vector<Vec3f> all(asked.size());
@@ -126,7 +130,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// A maker of the corrections of products, one after the other.
+// Makes the corrections of products, one after the other.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
@@ -139,7 +143,7 @@ class Corrector {
         form_(form),
         of_target_(form.own.size()) {}
 
-  // Adds a correction with this weight that gives normals the right direction in a pose.
+  // Adds a correction target with this weight. Its deltas give the normals the right direction in a pose.
   void add(const ExtraWeight& weight, const std::vector<double>& pose) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -148,8 +152,8 @@ class Corrector {
     append(weight, gather(asked, [&](const Asked& of) { return correction(of, weight, pose, t); }));
   }
 
-  // Adds two correction targets that complete a target's turn at weight 1, and have the weight of the target. They give
-  // the sum length 1, so normals turn as evenly on the way as with free lengths.
+  // Adds two correction targets that complete a large turn of a target at weight 1. Both have the weight of the target.
+  // They give the sum the length 1, so between weight 0 and 1 normals turn as evenly as with deltas of any length.
   void add_turn(std::size_t i, const std::vector<double>& pose) {
     const ExtraWeight weight{i, i, 1, 0};
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -170,9 +174,9 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds a correction for two targets that is right in a pose, and as good as possible half-way there. It has two
-  // correction targets with the same weight, or one if that is nearly as good or leaves a small part of the tolerance
-  // (radians).
+  // Adds correction targets for a pair of targets. They make normals right in a pose, and as good as possible half-way
+  // to this pose. The correction has two targets with the same weight. It has only one if one is nearly as good as two,
+  // or leaves an error that is a small part of the tolerance (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -199,7 +203,7 @@ class Corrector {
   }
 
  private:
-  // Returns the elements that all targets of a weight move, and that need a correction.
+  // Returns the elements that every target of a weight moves and that need a correction.
   [[nodiscard]] std::vector<std::uint32_t> elements_of(const ExtraWeight& weight) const {
     std::vector<std::uint32_t> elements = terms_.elements(weight.i);
     if (weight.i != weight.j) {
@@ -221,7 +225,7 @@ class Corrector {
     form_.extras.push_back(std::move(vectors));
   }
 
-  // Appends correction targets, except empty ones.
+  // Appends the first and the second vectors as two correction targets. Leaves out a target that has only zeros.
   void append_parts(const ExtraWeight& weight, std::span<const Asked> asked,
                     const std::vector<std::array<Vec3d, 2>>& vectors) {
     for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) {
@@ -256,7 +260,7 @@ class Corrector {
       if (right_half == Vec3d{}) return 0.0;
       return max_abs(now) > 0 ? angle_between(now, right_half) : std::numbers::pi;
     };
-    // A normal that needs no correction in the pose stays as it is.
+    // If the normal needs no correction in the pose, it stays as it is there.
     const bool is_right = max_abs(shown) > 0 && angle_between(shown, right) < kRight;
     result.error_of_one = result.error_of_two = error_with({});
     if (is_right && result.error_of_two < kRight) return result;
@@ -266,7 +270,7 @@ class Corrector {
       if (u) result.one = base.length * (*u - base.direction);
       result.error_of_one = error_with((1 / base.length) * result.one);
     }
-    // The sum in that pose may have any length that two unit vectors can reach; the length with the smallest error is
+    // In that pose, the sum may have any length that two unit vectors can reach. The length with the smallest error is
     // chosen.
     std::optional<Vec3d> best;
     double size = kLongestSum;
@@ -304,7 +308,8 @@ class Corrector {
     return max_abs(vector) > kLeastCorrection * base.length ? vector : Vec3d{};
   }
 
-  // Returns what target i alone adds to the normal of a vertex in a pose, with its correction targets.
+  // Returns the sum of the deltas that target i and the correction targets which it alone drives add to a normal in a
+  // pose.
   [[nodiscard]] Vec3d sum_of(std::size_t i, std::size_t vertex, const std::vector<double>& pose) const {
     Vec3d sum = pose[i] * to_double(form_.own[i].at(vertex));
     for (const std::size_t k : of_target_[i])
@@ -321,14 +326,15 @@ class Corrector {
   std::vector<std::vector<std::size_t>> of_target_;  // for each target, the correction targets that it alone drives
 };
 
-// Two targets, with the pose of the file in which both are strongest.
+// Two targets, their largest product of weights in the file, and the pose with this product.
 struct Pair {
   std::size_t i = 0, j = 0;
   double product = 0;
   std::size_t pose = 0;
 };
 
-// Returns the targets that are active in some pose, ascending; if there are too many, those with the largest weights.
+// Returns the targets that are active in some pose, in ascending order. If there are too many, returns those with the
+// largest weights.
 std::vector<std::size_t> active_targets(std::size_t targets, const PoseList& poses) {
   std::vector<double> largest(targets, 0.0);
   for (const std::vector<double>& pose : poses)
@@ -365,20 +371,20 @@ std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
   return of_all;
 }
 
-// The effect of a correction target.
+// How much a correction target turns normals.
 struct Worth {
-  double squares = 0;  // of angles, over vertices and poses
-  double worst = 0;    // degrees
+  double squares = 0;  // squares of angles, added up over vertices and poses
+  double worst = 0;    // the largest angle in degrees
 };
 
-// Measures the worth of correction targets at poses, on vertices that need corrections.
+// Measures the worth of correction targets, in poses and at vertices that need corrections.
 std::vector<Worth> worths(const RightNormals& rights, const Products& form, std::span<const std::uint32_t> vertices,
                           const PoseList& all_poses) {
   const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostHarmlessPoses);
   PoseList poses;
   const std::size_t count = std::min(most, all_poses.size());
   for (std::size_t n = 0; n < count; ++n) poses.push_back(all_poses[n * all_poses.size() / count]);
-  // Lays out the weights of correction targets: `count` poses for each target, one after the other.
+  // Lays out the weights of correction targets: each target has `count` values in a row, one for each pose.
   std::vector<float> weights(form.weights.size() * count);
   for (std::size_t k = 0; k < form.weights.size(); ++k) {
     const ExtraWeight& extra = form.weights[k];
@@ -389,7 +395,7 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // Holds, for each entry, the sum of squares and the worst angle. These are added up afterwards in a fixed order, so
+  // For each entry, the sum of squares and the largest angle. They are added up afterwards in a fixed order, so that
   // the result does not depend on threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
@@ -425,8 +431,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   return result;
 }
 
-// Drops the correction targets that turn normals least: as many as turn a normal by at most half the tolerance
-// together, and all beyond the limit.
+// Removes the correction targets that turn normals least. Removes as many as together turn a normal by at most half the
+// tolerance, and as many as the limit requires.
 void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& limits, Products& form) {
   std::vector<std::size_t> order(worths.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
@@ -454,7 +460,8 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
   form.extras = std::move(kept.extras);
 }
 
-// Adds correction targets for some poses, to vertices that need them: `worst` has the error of each vertex in degrees.
+// Adds correction targets for some poses. Only vertices that need corrections get deltas; `worst` has the error of each
+// vertex in degrees.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {

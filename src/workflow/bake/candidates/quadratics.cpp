@@ -1,6 +1,6 @@
 // Makes candidates whose correction targets have weights that are quadratic in the weights of the mesh's own targets.
-// Viewers that keep only directions need weights from 0 to 1, so each vector then becomes two correction targets:
-// one for the positive terms of the weight, and one for the negative terms.
+// Viewers that keep only directions need weights from 0 to 1. For these viewers each vector becomes two correction
+// targets, one for the positive terms of the weight, and one for the negative terms.
 
 #include "workflow/bake/candidates/makers.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr unsigned kSizeSeed = 5;
 constexpr std::size_t kSizePoses = 1000;
-// The numbers of correction targets that are tried.
+// The numbers of correction targets for which a candidate is made.
 constexpr std::array<std::size_t, 7> kExtraCounts = {2, 4, 8, 16, 32, 64, 128};
 
 GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
@@ -26,7 +26,7 @@ GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
   return weight;
 }
 
-// Returns the terms of one sign, multiplied by that sign.
+// Returns the terms of one sign, multiplied by this sign, so that all of them are positive.
 GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   GltfExtraTarget result;
   for (const auto& term : weight.linear)
@@ -36,7 +36,7 @@ GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   return result;
 }
 
-// Returns weights and vectors of the lengths that the viewers keep.
+// Returns correction targets whose vectors have the lengths that viewers keep, with weights to match.
 QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses& rig, QuadraticFit::Extras extras,
                                      Lengths lengths) {
   QuadraticFit::Extras result;
@@ -67,7 +67,8 @@ QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses&
   return result;
 }
 
-// Makes drivers from sums. The tracks of such a mesh move nothing, so correction targets have weight 0 in all of them.
+// Makes drivers whose weights are sums of terms. The tracks of such a mesh move nothing, so correction targets have
+// weight 0 in all tracks.
 ExtraDrivers drivers_of(const MeshWeights& weights, std::vector<GltfExtraTarget> sums) {
   ExtraDrivers drivers;
   const std::size_t extras = sums.size();

@@ -1,4 +1,4 @@
-// Finds leading singular vectors, and fits deltas to angles by least squares.
+// Finds the leading singular vectors, and fits deltas to angles by least squares.
 #include "workflow/bake/fits/low_rank_fit.h"
 
 #include <algorithm>
@@ -18,35 +18,35 @@ namespace {
 
 constexpr std::size_t kPointBlock = 16;  // points at a time
 constexpr std::size_t kSampledPoints = 1500;
-// The weight of a point in the fit is 1 / length, where length is the 2 % quantile of the lengths of its normals, but
-// at least kShortest and at least kPartOfLack of its missing vectors. The angle of an error is bounded, so a few points
-// with very short normals must not dominate all others.
+// A point counts in the fit by 1 / length. length is the 2 % quantile of the lengths of its normals, but at least
+// kShortest, and at least kPartOfLack times the length of its missing vectors. The limits prevent that a few points
+// with very short normals dominate all others, although the angle of an error is bounded.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Parts of the tolerance. Points with an error beyond kPartThatCounts count more, and points with an error beyond
+// Parts of the tolerance. Points with an error beyond kPartThatCounts count more. Points with an error beyond
 // kPartToRefit get a fit of their own.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
-// The limit of multiplications in all fits of single points. With many correction targets each fit costs more, so fewer
-// points are fitted.
+// The limit of multiplications in the fits of all single points. If there are many correction targets, each fit takes
+// more multiplications, so fewer points are fitted.
 constexpr double kRefitWork = 1e10;
-// The direction of a normal that is shorter than this, relative to n(0), is not fitted to.
+// A normal that is shorter than this, relative to n(0), is not used in a fit of directions.
 constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
-// Between nodes a normal may be much shorter than at the nodes, which is called a dip. The search for dips takes
-// kDipSteps steps in a piece if the squared length at one of its nodes is below kNearDip, relative to n(0). A dip
-// counts if its squared length is below kDip times that at the nodes.
+// A dip is a place between nodes where a normal is much shorter than at the nodes. A piece is searched for dips in
+// kDipSteps steps if the squared length at one of its nodes is below kNearDip, relative to n(0). A dip counts if its
+// squared length is below kDip times the squared length at the nodes.
 constexpr int kDipSteps = 32;
 constexpr double kNearDip = 0.25, kDip = 0.5;
 constexpr double kRidgeOfRefit = 1e-4, kLeastSquare = 1e-6;
 
-// Returns the place at t in a piece whose three nodes are at 0, 1/2 and 1.
+// Returns the place at t in a piece. The three nodes of the piece are at t = 0, 1/2 and 1.
 PlaceOfRows place_at(const std::array<std::size_t, 3>& nodes, double t) {
   return {nodes, {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}};
 }
 
-// Interpolates the values of rows at a place.
+// Returns the value at a place, interpolated between the values of three rows.
 float at_place(const PlaceOfRows& place, const float* of_rows) {
   double sum = 0;
   for (std::size_t n = 0; n < 3; ++n) sum += place.factors[n] * static_cast<double>(of_rows[place.nodes[n]]);
@@ -103,7 +103,8 @@ void LowRankFit::take_weights(std::span<const double> vectors, std::size_t colum
     for (std::size_t k = 0; k < extras; ++k) weights_[r * padded_ + k] = static_cast<float>(vectors[r * columns + k]);
 }
 
-// Computes the deltas. The columns of weights are orthonormal, so a delta is an inner product with a column.
+// Computes the deltas of all points. The columns of weights are orthonormal, so a delta is an inner product with a
+// column.
 void LowRankFit::project() {
   deltas_.assign(missing_.points() * 3 * padded_, 0.0F);
   parallel_blocks(missing_.points(), kPointBlock, [&](IndexRange points) {
@@ -196,14 +197,14 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
-// Measures the largest error of each point at the rows.
+// Measures the largest error of each point at the rows, in degrees.
 void LowRankFit::measure_rows() {
   const Basis basis = basis_of({}, {});
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// Measures the largest error of some points at rows, places, unseen places and dips. If the own deltas of the mesh are
-// corrected as well, own_weights has the weights of these corrections.
+// Measures the largest error of these points at rows, places, unseen places and dips, in degrees. If the own deltas of
+// the mesh are corrected as well, own_weights has the weights by which these corrections are multiplied.
 void LowRankFit::measure(std::span<const float> own_weights, std::span<const std::size_t> points) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
@@ -241,8 +242,8 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   return static_cast<float>(degrees_of(largest_openness(planes(course.shown), planes(course.right), basis.stride)));
 }
 
-// Returns the places of a point's dips: between nodes, where its right normal is much shorter than at the nodes around,
-// but still has a direction. The normal turns fastest there, and missing parts matter most.
+// Returns the dips of a point. A dip is a place between nodes where the right normal is much shorter than at these
+// nodes, but still has a direction. The normal turns fastest there, so errors are largest there.
 std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   const std::size_t stride = missing_.stride();
   const float *const shown = missing_.shown(point), *const lack = missing_.missing(point);
@@ -273,8 +274,9 @@ std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   return result;
 }
 
-// Minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction. Instants with larger
-// errors count more, and a ridge pulls x towards the singular vectors. Keeps the best of all rounds.
+// Finds the x that minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction.
+// Instants with larger errors count more, and a ridge pulls x towards the singular vectors. Keeps the best x of all
+// rounds.
 void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
   const Course course = course_of(point, places);
@@ -396,7 +398,7 @@ void LowRankFit::fit(std::size_t extras, double tolerance, std::span<const float
     of_point.insert(of_point.begin(), places_.begin(), places_.end());
     refit(bad[n], basis_of(own_weights, of_point), of_point, tolerance);
   });
-  measure(own_weights, bad);  // all other points keep their errors
+  measure(own_weights, bad);  // all other points have the same errors as before
 }
 
 double LowRankFit::worst() const {

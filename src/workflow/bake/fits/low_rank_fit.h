@@ -1,9 +1,10 @@
-/// Fits correction targets of low rank: to all points by singular vectors of the missing normals, and to points with
-/// large errors by least squares of the angles. Private to workflow.
+/// Fits correction targets of low rank (docs/theory.md, section 17). The fit for all points takes singular vectors of
+/// the missing normals. Points with large errors get another fit, by least squares of the angles. Private to workflow.
 ///
-/// Shapes     points, rows and stride as in MissingNormals. `extras` columns are stored in rows of `padded()` floats,
-///            of which those beyond extras() are zero.
-/// Threads    on all cores; the same bits on any number of them.
+/// Shapes     Points, rows and stride are as in MissingNormals. Weights are stored in rows of `padded()` floats. The
+/// first
+///            extras() floats of a row are weights, and the others are zero.
+/// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
 
@@ -16,47 +17,49 @@
 
 namespace chronormal::inline internal {
 
-/// An instant between rows: values there follow from three rows, by a parabola.
+/// An instant between rows. The values there follow from three rows by a parabola.
 using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {
  public:
-  /// Fits to all rows and these places, and also measures errors at the unseen places. All arguments must outlive this
-  /// object.
+  /// Prepares a fit to all rows and to these places. Errors are also measured at the unseen places, which are not
+  /// fitted. All arguments must outlive this object.
   LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
-  /// Returns the error in degrees for each count of correction targets, with singular vectors alone. It is the error
-  /// that 99.9 % of the samples do not exceed, for some of the points and rows.
+  /// Returns an error in degrees for each of these numbers of correction targets, if singular vectors alone are used.
+  /// 99.9 % of the samples do not exceed this error. It is measured at some of the points and rows.
   [[nodiscard]] std::vector<double> errors_with(std::span<const std::size_t> extras);
 
   /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get a fit of their own. If
-  /// own_weights (rows, targets) is given, that fit also corrects the deltas of the mesh's own targets.
+  /// own_weights (rows, targets) are given, the fit of a point also corrects the deltas of the mesh's own targets.
   void fit(std::size_t extras, double tolerance, std::span<const float> own_weights, std::size_t own_targets);
 
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
   [[nodiscard]] std::size_t padded() const noexcept { return padded_; }
-  /// Returns the weights of the correction targets: (rows, padded).
+  /// Returns the weights of the correction targets, (rows, padded).
   [[nodiscard]] std::span<const float> weights() const noexcept { return weights_; }
-  /// Returns the deltas of a point: (3, padded).
+  /// Returns the deltas of a point, (3, padded).
   [[nodiscard]] std::span<const float> deltas(std::size_t point) const {
     return std::span(deltas_).subspan(3 * padded_ * point, 3 * padded_);
   }
-  /// Returns the corrections of a point's own deltas: (3, own targets); empty if fit() got no own_weights.
+  /// Returns the corrections of the own deltas of a point, (3, own targets). Returns an empty span if fit() got no
+  /// own_weights.
   [[nodiscard]] std::span<const float> own_deltas(std::size_t point) const {
     return std::span(own_deltas_).subspan(3 * own_targets_ * point, 3 * own_targets_);
   }
-  /// Returns the weight of a point in the fit.
+  /// Returns the factor by which a point counts in the fit.
   [[nodiscard]] float importance(std::size_t point) const { return importance_[point]; }
-  /// Returns the largest error of all points in degrees, also at unseen places.
+  /// Returns the largest error of all points in degrees, at rows, places and unseen places.
   [[nodiscard]] double worst() const;
 
  private:
-  // A basis at rows and places: an array (instants, columns), padded, and its transpose.
+  // The vectors to which a point's normals are fitted: an array (instants, columns) for rows and places, with padding,
+  // and its transpose.
   struct Basis {
     std::size_t columns = 0, padded = 0, instants = 0, stride = 0;
     std::vector<float> by_instant, by_column;
   };
-  // The rendered and the right normals of a point at rows and places, as three planes each.
+  // The rendered and the right normals of one point at rows and places. Each has three planes: x, y and z.
   struct Course {
     std::vector<float> shown, right;
     std::vector<char> is_known;
@@ -76,7 +79,7 @@ class LowRankFit {
   const MissingNormals& missing_;
   std::span<const PlaceOfRows> places_, unseen_;
   std::size_t extras_ = 0, padded_ = 0, own_targets_ = 0;
-  std::vector<float> importance_, errors_;  // of each point
+  std::vector<float> importance_, errors_;  // one for each point
   std::vector<float> weights_, deltas_, own_deltas_;
 };
 

@@ -20,8 +20,8 @@ constexpr std::size_t kMissingBlock = 64;
 constexpr std::size_t kPosesAtOnce = 16;    // poses whose normals are in memory at once
 constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
 
-// Returns the vector with the true direction that can be reached from a sum by adding vectors across the normal N. If
-// that would be too far, returns the true normal itself.
+// Returns a vector with the true direction that differs from the sum only by a vector across the normal N. If such a
+// vector would be too long, returns the true normal itself.
 Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
   constexpr double kLeastAlong = 0.2;
   const Vec3d u = unit(right);
@@ -50,7 +50,7 @@ std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const
     if (is_new) points.emplace_back();
     points.back().push_back(vertex);
   }
-  // Sorts points by their first vertex, so that neighbours in the file are neighbours in the list.
+  // Sorts points by their first vertex, so that points near each other in the file are near each other in the list.
   std::sort(points.begin(), points.end());
   return points;
 }
@@ -81,7 +81,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
     parallel_for(count, [&](std::size_t r) {
       normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
     });
-    // The weights of own targets by column, so that a delta is added in all poses at once.
+    // The weights of own targets, column by column, so that a loop adds a delta in all poses at once.
     std::vector<std::array<double, kPosesAtOnce>> weights(rights.targets());
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t c = 0; c < weights.size(); ++c) weights[c][r] = poses_[first + r][c];
@@ -115,7 +115,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
 std::vector<double> MissingNormals::inner_products(std::span<const float> importance, std::size_t step) const {
   constexpr std::size_t kPoints = 16, kParts = 32, kColumnsAtOnce = 64;
   const std::size_t rows = this->rows(), sampled = (points() + step - 1) / step;
-  std::vector<std::vector<double>> of_parts(kParts);  // sums over some points each; each is a whole matrix
+  std::vector<std::vector<double>> of_parts(kParts);  // sums over parts of the points; each sum is a whole matrix
   parallel_for(kParts, [&](std::size_t part) {
     std::vector<double>& sum = of_parts[part];
     sum.assign(rows * stride_, 0.0);
@@ -129,7 +129,7 @@ std::vector<double> MissingNormals::inner_products(std::span<const float> import
         for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
       }
       std::fill(products.begin(), products.end(), 0.0F);
-      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // only the upper triangle of the matrix
+      for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {  // computes only the upper triangle of the matrix
         const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
         const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};
         add_products(a, b, products.data() + i * stride_ + i, stride_);

@@ -1,10 +1,13 @@
-/// The missing normals of a mesh: the errors that the deltas of its own targets leave at the instants of the file. They
-/// form the matrix that correction targets of low rank approximate (docs/theory.md, section 17). Private to workflow.
+/// The missing normals of a mesh: the errors that the deltas of its own targets leave at the instants of the file.
+/// These errors form the matrix that correction targets of low rank approximate (docs/theory.md, section 17). Private
+/// to workflow.
 ///
-/// Points     vertices that show the same normal: of one element, with the same stored base normal.
-/// Shapes     (points, 3, stride) floats, of which the first rows() of each run of `stride` count and the rest is zero.
-/// Units      lengths of the stored base normal.
-/// Threads    on all cores; the same bits on any number of them.
+/// Points     A point is a set of vertices that show the same normal. They have the same element and the same stored
+/// base normal.
+/// Shapes     (points, 3, stride) floats. The first rows() floats of each run of `stride` floats are values, and the
+/// rest is 0.
+/// Units      The length of the stored base normal is 1.
+/// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
 
@@ -20,35 +23,36 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds a number of floats up to whole groups, so that loops process groups at once.
+/// Rounds a number of floats up to whole groups, so that loops handle a whole group at once.
 [[nodiscard]] constexpr std::size_t padded_to(std::size_t count) noexcept {
   constexpr std::size_t kPadding = 16;
   return (count + kPadding - 1) / kPadding * kPadding;
 }
 
-/// Vertices that show the same normal; the first stands for all.
+/// Vertices that show the same normal. The first vertex stands for all of them.
 using PointVertices = std::vector<std::uint32_t>;
 
-/// Groups vertices into points. Leaves out vertices whose base normal is too short for deltas.
+/// Groups vertices into points. Leaves out vertices whose base normal is too short to divide deltas by.
 [[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                                    std::span<const std::uint32_t> element_of_vertex);
 
-/// All instants of a file at which curves have values: first the nodes of each track, then the poses that the file
-/// stores.
+/// All instants of a file at which curves have values. The nodes of each track come first, and then the poses that the
+/// file stores.
 struct FileInstants {
   explicit FileInstants(const MeshWeights& weights);
 
   std::vector<CurveNodes> tracks;
-  std::vector<std::size_t> first;  ///< of each track, and of the poses that the file stores
+  std::vector<std::size_t> first;  ///< the first instant of each track, and of the poses that the file stores
   PoseList poses;
 };
 
-/// The weights of the mesh's own targets in each row, and the rendered and missing normals in that row.
+/// The weights of the mesh's own targets in each row (a row is a pose), and the rendered and missing normals in this
+/// row.
 class MissingNormals {
  public:
   /// Computes the missing normals. `own` has the deltas of the mesh's own targets for the first vertex of each point.
-  /// If `across` is true, the missing vectors have no part along N, as far as such vectors can reach the right
-  /// direction; the length of the resulting normal is then free.
+  /// If `across` is true, the missing vectors have no part along N where vectors across N can reach the right
+  /// direction. The length of the resulting normal is then not fixed.
   MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
                  std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own, PoseList poses,
                  bool across = false);
@@ -57,21 +61,23 @@ class MissingNormals {
   [[nodiscard]] std::size_t rows() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the index of a point among the points given to the constructor.
+  /// Returns the index that a point had among the points given to the constructor.
   [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
-  /// Returns the sums of own deltas for a point, (3, stride); zero where the right normal is not known.
+  /// Returns the sums of N and own deltas for a point, (3, stride). The sums are zero where the right normal is not
+  /// known.
   [[nodiscard]] const float* shown(std::size_t point) const { return shown_.data() + 3 * stride_ * point; }
-  /// Returns the missing vectors of a point: the right normal, whose length is |n(w)| / |n(0)|, minus the sum of own
-  /// deltas. (3, stride).
+  /// Returns the missing vectors of a point, (3, stride). A missing vector is the right normal, whose length is |n(w)|
+  /// / |n(0)|, minus the sum that shown() returns.
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
-  /// Returns the inner products of the missing normals of each two rows: (rows, rows). They are sums over every step-th
-  /// point, each multiplied by its importance; float32 for a few points, and double for all.
+  /// Returns the inner products of the missing normals of each two rows, (rows, rows). A product is a sum over every
+  /// step-th point, multiplied by the importance of the point. It is computed in float32 for a few points, and in
+  /// double for all together.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
-  /// Adds vectors (3, stride) to the sums of a point, and subtracts them from what is missing.
+  /// Adds vectors (3, stride) to the sums of a point, and subtracts them from its missing vectors.
   void show_more(std::size_t point, std::span<const float> more);
-  /// Drops the points whose error is at most this many degrees in all rows.
+  /// Removes the points whose error is at most this many degrees in all rows.
   void keep_beyond(double degrees);
 
  private:
@@ -81,16 +87,16 @@ class MissingNormals {
   std::vector<float> shown_, missing_;
 };
 
-/// Returns a measure of the angle between two vectors of any length. It grows with the angle, from 0 to 2, and needs no
-/// arc tangent: up to a right angle it is the squared sine, and beyond it is 2 minus the squared sine. It is 0 if one
-/// vector is zero.
+/// Returns a measure of the angle between two vectors of any length. The measure grows with the angle, from 0 to 2, and
+/// needs no arc tangent. Up to a right angle it is the squared sine, and for larger angles it is 2 minus the squared
+/// sine. It is 0 if one of the vectors is zero.
 [[nodiscard]] inline float openness(const Vec3f& a, const Vec3f& b) noexcept {
   const Vec3f aside = cross(a, b);
   const float across = dot(aside, aside), along = dot(a, b), both = across + along * along;
   const float square = both > 0 ? across / both : 0;
   return along < 0 ? 2 - square : square;
 }
-/// Returns the angle with this openness, in degrees.
+/// Returns the angle that has this openness, in degrees.
 [[nodiscard]] double degrees_of(float openness) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -20,15 +20,17 @@ constexpr unsigned kFitSeed = 101, kTermSeed = 102;
 constexpr std::size_t kQuadraticBlock = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kQuadraticPoints = 8000;
-// The most products of two weights. With more, the weight of a correction target would have too many terms to evaluate.
+// The largest number of products of two weights. With more products, the weight of a correction target would have too
+// many terms to compute.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Parts of the tolerance. kPartOfNeed: the error below which no correction is needed. kPartOfEntry: the angle by which
-// an entry of a delta that is left out may turn a normal.
+// Parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which a normal
+// may turn if an entry of a delta is left out.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
-// The shortest length that counts, relative to n(0). Shorter normals can hardly be fitted, so they count as this long.
+// The shortest length that counts, relative to n(0). Shorter normals count as if they had this length, because they can
+// hardly be fitted.
 constexpr float kLeastCounted = 0.1F;
-// The terms that may be left out, as a part of all terms (root mean square).
+// The part of all terms that may be left out (root mean square).
 constexpr double kPartOfTerms = 0.02;
 constexpr double kRidgeOfTerms = 1e-5, kLeastRidge = 1e-12;
 
@@ -142,8 +144,8 @@ void QuadraticFit::find_features(const DeltaSource& source) {
       if (a == b || source.terms.overlap(moving[a], moving[b])) features_.push_back({moving[a], moving[b], false});
 }
 
-// Returns for each point the sums of the missing normals over the poses, weighted by these vectors (rows, extras):
-// (points, 3, padded).
+// Returns for each point the sums of the missing normals over the poses, multiplied by these vectors (rows, extras).
+// The result has the shape (points, 3, padded).
 std::vector<float> QuadraticFit::directions(std::span<const double> vectors) const {
   std::vector<float> columns(missing_.rows() * padded_, 0.0F), result(3 * padded_ * points_.size(), 0.0F);
   for (std::size_t r = 0; r < missing_.rows(); ++r)
@@ -156,7 +158,8 @@ std::vector<float> QuadraticFit::directions(std::span<const double> vectors) con
   return result;
 }
 
-// Computes the terms of the weights: expresses the terms of n(w) by the directions, by least squares over all points.
+// Computes the terms of the weights. Writes the terms of n(w) as sums of the directions, by least squares over all
+// points.
 void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions) {
   const GltfShading& shading = source.shading;
   std::vector<double> matrix(extras_ * extras_, 0.0);
@@ -165,7 +168,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
     return to_double(Vec3f{of[k], of[padded_ + k], of[2 * padded_ + k]});
   };
   std::vector<VertexTerms> turned;
-  std::vector<double> shares;  // of the terms of each point
+  std::vector<double> shares;  // the shares of the terms of each point
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const std::uint32_t v = points_[p].front(), e = shading.element_of_vertex[v];
     const double square = static_cast<double>(importance_[p]) * static_cast<double>(importance_[p]);
@@ -233,7 +236,7 @@ void QuadraticFit::leave_out_small(const RigPoses& rig) {
   }
 }
 
-// Computes the weights in the poses that are fitted to.
+// Computes the weights of correction targets in the poses of the fit.
 void QuadraticFit::evaluate() {
   weights_.assign(missing_.rows() * padded_, 0.0F);
   parallel_each(missing_.rows(), kQuadraticBlock, [&](std::size_t r) {
@@ -253,7 +256,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t k = 0; k < count; ++k) largest[k] = std::fmax(largest[k], std::fabs(weights_[r * padded_ + k]));
 
-  // Fits the deltas of each point by least squares. A row counts more if its normal is shorter.
+  // Fits the deltas of each point by least squares. Rows in which its normal is shorter count more.
   std::vector<Vec3f> deltas(points_.size() * count);
   const double least = kPartOfEntry * tolerance_ / kDegreesPerRadian;
   parallel_blocks(points_.size(), kQuadraticBlock, [&](IndexRange points) {

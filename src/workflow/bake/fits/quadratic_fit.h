@@ -1,15 +1,16 @@
-/// Correction targets of a rig that no animation drives. The own deltas of a mesh leave errors in the poses for which
-/// the rig is made. These errors are written as a sum of a few deltas whose weights are quadratic in the weights of the
-/// rig (docs/theory.md, section 18). Private to workflow.
+/// Fits correction targets for a rig that no animation drives. The own deltas of a mesh leave errors in the poses for
+/// which the rig is made. These errors are written as a sum of a few deltas whose weights are quadratic in the weights
+/// of the rig (docs/theory.md, section 18). Private to workflow.
 ///
 ///     n(w) / |n(0)|  =  N + sum_i w_i D_i + sum_k s_k(w) E_k, nearly,   s_k(w) = sum_i l_ki w_i + sum_ij q_kij w_i w_j
 ///
-/// The missing normals in some poses of the rig form a matrix of low rank. Its leading right singular vectors are the
-/// deltas E_k that help most. n(w) is a quadratic form, so the best weight s_k is one too: its terms are the terms of
-/// n(w) projected on E_k. Small terms are dropped. Then the E_k are fitted again for each point, to the missing normal
-/// divided by the length of n(w), which is about the angle of the error.
+/// The missing normals in some poses of the rig form a matrix that is nearly of low rank. Its leading right singular
+/// vectors are the deltas E_k that help most. n(w) is a quadratic form, so the best weight s_k is a quadratic form too.
+/// Its terms are the terms of n(w) projected on E_k. Small terms are dropped. Then the E_k are fitted again for each
+/// point, to the missing normal divided by the length of n(w). The length of this quotient is about the angle of the
+/// error.
 ///
-/// Threads    on all cores; the same bits on any number of them.
+/// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
 #define CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
 
@@ -31,8 +32,9 @@ inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
  public:
-  /// Prepares the fit. `own` has the deltas of the mesh's own targets; of `vertices`, only those with errors are
-  /// fitted. rights must outlive this object. Cost: the right normals in 400 poses, and all terms of n(w).
+  /// Prepares the fit. `own` has the deltas of the mesh's own targets. Only those vertices in `vertices` that have
+  /// errors are fitted. rights must outlive this object. Computes the right normals in 400 poses, and all terms of
+  /// n(w).
   QuadraticFit(const DeltaSource& source, const RightNormals& rights, std::span<const std::uint32_t> vertices,
                const std::vector<VertexVectors>& own, const RigPoses& rig,
                std::span<const std::vector<double>> standing, std::size_t most_extras, double tolerance);
@@ -41,15 +43,16 @@ class QuadraticFit {
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
-    std::vector<GltfExtraTarget> weights;  ///< about from -1 to 1 in the poses of the rig; no index is set
-    std::vector<VertexVectors> vectors;    ///< of any length
+    /// Weights from about -1 to 1 in the poses of the rig; their index is not set.
+    std::vector<GltfExtraTarget> weights;
+    std::vector<VertexVectors> vectors;  ///< deltas of any length
   };
-  /// Returns the best `count` correction targets; count must be at most extras(). If keeps_lengths is false, only the
-  /// direction of the sum is fitted, and its length stays as it is.
+  /// Returns the best `count` correction targets. count must be at most extras(). If keeps_lengths is false, only the
+  /// direction of the sum is fitted, and the length of the sum stays as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:
-  // A factor of a term of n(w): the weight w_i, or the product w_i w_j.
+  // A factor that depends on the weights, in a term of n(w): the weight w_i, or the product w_i w_j.
   struct Feature {
     std::size_t i = 0, j = 0;
     bool is_linear = false;
@@ -70,7 +73,7 @@ class QuadraticFit {
   std::size_t extras_ = 0, padded_ = 0;
   std::vector<PointVertices> points_;
   MissingNormals missing_;
-  std::vector<float> importance_;  // of each point
+  std::vector<float> importance_;  // one for each point
   std::vector<Feature> features_;
   std::vector<double> terms_;   // (features, extras)
   std::vector<float> weights_;  // (rows, padded)

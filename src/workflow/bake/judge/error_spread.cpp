@@ -1,4 +1,4 @@
-// Counts errors in bins; an octave (a factor of two) has sixteen bins.
+// Counts errors in bins. An octave, which is a factor of two, has sixteen bins.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <algorithm>
@@ -12,14 +12,14 @@ namespace {
 constexpr std::size_t kBins = ErrorSpread::kBins;
 constexpr float kLeastBin = 1e-3F;
 
-// Returns the bin of an error: the exponent of a float counts octaves, and the first four bits of its fraction count
-// sixteenths of an octave.
+// Returns the bin of an error in degrees. In the bits of a float, the exponent counts octaves, and the first four bits
+// of the fraction count sixteenths of an octave.
 std::size_t bin_of(float degrees) {
   const auto bits = bit_cast<std::uint32_t>(std::max(degrees * (1 / kLeastBin), 1.0F));
   return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));
 }
 
-// Returns the upper end of a bin.
+// Returns the upper end of a bin in degrees.
 double end_of(std::size_t bin) {
   const auto octave = static_cast<int>(bin / 16);
   const double part = 1 + static_cast<double>(bin % 16 + 1) / 16;

@@ -1,5 +1,5 @@
-/// Errors of many vertices in many poses: their mean, their largest value, and the value that 99.9 % of them do not
-/// exceed. Private to workflow.
+/// Counts the errors of many vertices in many poses. From the counts follow the mean error, the largest error, and the
+/// error that 99.9 % of the samples do not exceed. Private to workflow.
 ///
 /// Units      degrees
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_ERROR_SPREAD_H_
@@ -14,8 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// The distribution of errors as a histogram with sixteen bins for each factor of two, so a value is known to a
-/// sixteenth.
+/// The distribution of errors as a histogram. Each factor of two has sixteen bins, so an error is known to a sixteenth
+/// of its value.
 struct ErrorSpread {
   static constexpr std::size_t kBins = 320;
 
@@ -24,7 +24,7 @@ struct ErrorSpread {
   std::array<std::size_t, kBins> bins{};
 
   void add(const ErrorSpread& other);
-  /// Adds errors. Skips negative values, which mean that there is no error to judge.
+  /// Adds errors. Skips negative values, which stand for vertices that are not judged.
   void add(std::span<const float> errors);
   [[nodiscard]] ShownErrors errors() const;
 };

@@ -1,4 +1,5 @@
-// The weights of many poses lie side by side in memory, so that one loop adds a delta to many poses.
+// Measures candidates. The weights of many poses lie side by side in memory, so that one loop adds a delta to many
+// poses.
 #include "workflow/bake/judge/judge.h"
 
 #include <algorithm>
@@ -14,23 +15,23 @@ namespace {
 
 constexpr std::size_t kSamplesOfBlock = 8192, kMostOfBlock = 1024, kEdgeBlock = 1024;
 constexpr int kFineBits = 16;
-// kMostPairs: the most samples (a vertex in a pose) whose right normals are held. The others limit the poses of one
-// kind.
+// kMostPairs is the largest number of samples whose right normals are in memory. A sample is a vertex in a pose. The
+// other constants limit the number of poses of one kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
-// A glance takes every kGlance-th pose, but at least kFewestAtGlance poses if there are that many.
+// A glance takes every kGlance-th pose, but at least kFewestAtGlance poses if there are so many.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
-// The number of errors of vertices that are held at once.
+// The number of errors of vertices that are in memory at the same time.
 constexpr std::size_t kMostErrors = 4000000;
 
-// Returns the viewer without some of its rounding: half floats, which are too fine to decide a choice, and numbers of a
-// few bits, which come from compressors.
+// Returns the viewer without rounding that must not decide a choice: rounding to half floats, which is too fine, and
+// rounding to a few bits, which compressors do.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
   return viewer;
 }
 
-// Returns whether two viewers render all deltas alike.
+// Returns true if two viewers render the same normals for all deltas.
 bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
@@ -38,8 +39,8 @@ bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
 
 std::size_t padded(std::size_t poses) { return block_count(poses, kPosePadding) * kPosePadding; }
 
-// The weights of poses, column by column, and for each column the range of poses in which it has a weight. If targets
-// are judged one by one, most columns have no weight in most poses.
+// The weights of poses, column by column. Each column also has the range of poses in which its weight is not zero. If
+// targets are judged one by one, most columns have no weight in most poses.
 class PoseWeights {
  public:
   explicit PoseWeights(std::span<const SeenPose> poses)
@@ -62,9 +63,9 @@ class PoseWeights {
 
   // Returns the weights of a column: (poses, padded).
   [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * stride_; }
-  // Returns the columns with any weight, ascending.
+  // Returns the columns that have a weight in some pose, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> columns() const { return columns_; }
-  // Returns the range of poses beyond which the column has no weight.
+  // Returns the range of poses outside of which the column has no weight.
   [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
 
  private:
@@ -81,7 +82,8 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
 // The sums of one vertex in many poses.
 class Sums {
  public:
-  // Adds up the normal and its deltas in `count` poses, from number `first` on. Both must be as a viewer stores them.
+  // Adds up the normal and its deltas in `count` poses, beginning with pose `first`. The normal and the deltas must be
+  // rounded as a viewer stores them.
   void add_up(const Vec3f& normal, std::span<const VertexColumns::Entry> entries, const PoseWeights& weights,
               std::size_t first, std::size_t count) {
     terms_.clear();
@@ -95,7 +97,7 @@ class Sums {
       else
         no_sums_.push_back({begin - first, end - begin});
     };
-    constexpr std::size_t kFew = 8;  // a longer list of entries is searched for each column instead
+    constexpr std::size_t kFew = 8;  // a longer list of entries is searched for each column
     if (kFew * weights.columns().size() > entries.size()) {
       for (const auto& [column, delta] : entries) add(column, delta);
     } else {
@@ -112,7 +114,7 @@ class Sums {
       std::fill_n(planes_.data() + range.first, range.count, std::numeric_limits<float>::quiet_NaN());
   }
 
-  // Replaces the sums by the normals that a viewer sees through the skin.
+  // Replaces the sums by the normals that a viewer shows after the skin has transformed them.
   void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule, std::size_t poses) {
     for (std::size_t p = 0; p < poses; ++p) {
       float *const x = planes_.data() + p, *const y = x + stride_, *const z = y + stride_;
@@ -123,7 +125,8 @@ class Sums {
     }
   }
 
-  // Compares the sums with the right normals, in three planes, by compare_normals(). The errors are written as planes.
+  // Compares the sums with the right normals, which are given in three planes. Writes angles in degrees, and the errors
+  // as planes.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
@@ -136,8 +139,8 @@ class Sums {
   std::vector<float> planes_;
 };
 
-// Returns the edges of which at least one end is in a list of vertices. An end is written as its index in the list, or
-// as an index beyond the list.
+// Returns the edges that have at least one end in a list of vertices. An end is the index of its vertex in the list, or
+// an index beyond the list if the vertex is not in the list.
 std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<const std::uint32_t> vertices,
                                   std::size_t vertex_count) {
   const auto none = static_cast<std::uint32_t>(vertices.size());
@@ -228,7 +231,8 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
 std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
-  std::vector<std::pair<Viewer, VertexColumns>> of_viewers;  // deltas as viewers store them, if these differ
+  // Deltas as viewers store them, if these differ from the given deltas.
+  std::vector<std::pair<Viewer, VertexColumns>> of_viewers;
   const auto kept_by = [&](const Viewer& viewer) -> const VertexColumns& {
     if (viewer.normals == NormalRule::kSum && !viewer.keeps_halves()) return columns;
     auto found = std::find_if(of_viewers.begin(), of_viewers.end(),
@@ -331,14 +335,14 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
 }
 
 TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
-  // The error of a vertex that is not judged counts as zero.
+  // A vertex that is not judged counts as a vertex without error.
   const std::size_t count = known.numbers.size(), poses = differences.poses;
   const std::vector<float> none(3 * poses, 0.0F);
   return parallel_fold<TearCounts>(
       known.edges.size(), kEdgeBlock,
       [&](std::size_t edge, TearCounts& counts) {
         const auto [a, b] = known.edges[edge];
-        // The difference of two errors is at most the sum of their lengths.
+        // The difference of two error vectors is at most as long as both together.
         const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
         if (most * most < TearCounts::kSquares[0]) return;
         counts.add(differences.planes.data() + 3 * a * poses,

@@ -1,15 +1,18 @@
-/// Measures what viewers render with a candidate, over the poses of a file. All decisions of a bake rest on this judge.
-/// Private to workflow.
+/// Measures what viewers render with a candidate, over the poses of a file. All decisions of a bake rest on these
+/// measurements. Private to workflow.
 ///
-///     error    the angle between the rendered normal and the right one, both as the viewer carries them by the skin of
-///              the pose
-///     tear     the angle by which errors jump between neighbours (surface_edges.h)
+///     error    the angle between the rendered and the right normal, after the skin of the pose has transformed both as
+///     the
+///              viewer does
+///     tear     the angle by which errors of neighbouring vertices differ (surface_edges.h)
 ///
-/// The right normals of all poses are computed once, and so are the normals that viewers render of the file as it is.
+/// The right normals of all poses are computed once. The normals that viewers render of the file before the bake are
+/// computed once as well.
 ///
-/// Shapes     n = number of a vertex in the list of those that are judged
+/// Shapes     n is the number of a vertex in the list of judged vertices.
 /// Units      degrees
-/// Threads    on all cores, one measurement after the other; the same bits on any number of them.
+/// Threads    Uses all cores for one measurement after the other. The results have the same bits on any number of
+/// cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 
@@ -30,8 +33,8 @@
 
 namespace chronormal::inline internal {
 
-/// The angle in degrees by which an error may always grow, because rounding to float32 and float16 may turn a normal by
-/// it.
+/// An angle in degrees by which an error may always grow, because rounding to float32 and float16 may turn a normal by
+/// this angle.
 inline constexpr double kHarmless = 0.02;
 
 /// The errors of one viewer in poses of one kind.
@@ -48,46 +51,47 @@ struct JudgedErrors {
   [[nodiscard]] ShownErrors errors() const;
 };
 
-/// The errors in every kind of poses.
+/// The errors in each kind of poses.
 using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
-/// Adds up the errors over all kinds.
+/// Returns the sum of the errors over all kinds of poses.
 [[nodiscard]] JudgedErrors errors_of_all(const ErrorsOfKinds& kinds);
 
 class Judge {
  public:
-  /// The part that is measured.
+  /// Tells which viewers and which poses a measurement includes.
   enum class Depth {
     kGlance,   ///< the named viewers, without tears, in about an eighth of the poses that decide (decides())
-    kRounded,  ///< the viewers that compressors round for, with this rounding, in about an eighth of the poses
+    kRounded,  ///< the viewers for which compressors round, with this rounding, in about an eighth of the poses
     kAll       ///< all viewers in all poses
   };
 
-  /// The first `named` viewers are those that the bake is made for. All arguments must outlive this.
+  /// Creates a judge. The first `named` viewers are the viewers for which the bake is made. All arguments must outlive
+  /// the judge.
   Judge(const DeltaSource& source, const RightNormals& rights, const MeshWeights& weights,
         std::span<const Viewer> viewers, std::size_t named, bool animations_only);
 
-  /// Returns the vertices that are judged, ascending.
+  /// Returns the vertices that are judged, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Viewer> viewers() const noexcept { return viewers_; }
 
-  /// Returns true if errors in poses of this kind decide. Poses that the file plays decide, and if the file has no
-  /// animation, all poses do.
+  /// Returns true if errors in poses of this kind decide which candidate is chosen. Poses that the file plays always
+  /// decide. If the file has no animation, all poses decide.
   [[nodiscard]] bool decides(PoseKind kind) const noexcept { return kind == PoseKind::kFile || !weights_.is_driven; }
 
-  /// Measures what each viewer renders, in each kind of poses. There are no errors of viewers and poses that the depth
-  /// leaves out.
+  /// Measures what each viewer renders in each kind of poses. Viewers and poses that the depth does not include have no
+  /// errors in the result.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth) const;
-  /// Returns the largest error of each vertex over some poses, in a viewer that adds up deltas as stored.
+  /// Returns the largest error of each vertex in these poses, for a viewer that adds up deltas as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
  private:
   // A set of poses, and the right normals in these poses.
   struct KnownSet {
     PoseSet set;
-    std::vector<std::uint32_t> numbers;  // the vertices that it judges
-    std::vector<SurfaceEdge> edges;      // by indices into `numbers`; the second may be beyond its end
-    std::vector<float> right;            // (vertices, 3, poses): unit vectors, or (0, 0, 0) if none is known
+    std::vector<std::uint32_t> numbers;  // the vertices that are judged in this set
+    std::vector<SurfaceEdge> edges;      // ends as indices into `numbers`; the second may be beyond the end
+    std::vector<float> right;  // (vertices, 3, poses); unit vectors, or (0, 0, 0) if the right normal is not known
   };
 
   // The differences between rendered and right unit normals, for the vertices of a set.
@@ -108,7 +112,7 @@ class Judge {
   std::size_t named_;
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
-  mutable Differences differences_;  // memory of the last measurement, which the next one writes over
+  mutable Differences differences_;  // memory that each measurement uses again
 };
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,6 @@
-// The parabola through the values a, m, b at the start, the middle and the end of a piece has the slopes 4m - 3a - b
-// and a - 4m + 3b there; a cubic spline whose tangents are these is that parabola.
+// Computes the weights of curves, and extends tracks by curves. A parabola has the values a, m, b at the start, the
+// middle and the end of a piece. Its slopes are 4m - 3a - b at the start and a - 4m + 3b at the end, and a cubic spline
+// with these tangents is the parabola.
 #include "workflow/bake/poses/extra_curves.h"
 
 #include <algorithm>
@@ -12,12 +13,12 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
-// kNearParabola: the largest allowed distance between a parabola and the square of a weight. It is measured at
-// kPlacesOfPiece places of each piece.
+// kNearParabola is the largest allowed distance between a parabola and the square of a weight. The distance is measured
+// at kPlacesOfPiece places of each piece.
 constexpr double kNearParabola = 0.002;
 constexpr int kPlacesOfPiece = 4;
 
-// Returns the largest distance between the square of a weight and its parabolas in this many pieces of a gap.
+// Returns the largest distance between the square of a weight and its parabolas, if a gap has this many pieces.
 double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pieces) {
   const auto square = [&weight](double t) {
     const double w = evaluate(weight, t);
@@ -48,7 +49,7 @@ std::size_t pieces_of_spline(const WeightTrack& track) {
   return pieces;
 }
 
-// The values and the slopes (per second) of all columns at one key of a spline.
+// The values of all columns at one key of a spline, and their slopes before and after the key, per second.
 struct SplineKey {
   double time = 0;
   std::vector<double> in, value, out;
@@ -77,10 +78,10 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
     const double from = track.keys.times[key], to = track.keys.times[key + 1];
     std::vector<std::array<double, 4>> rest(track.targets);
     for (std::size_t i = 0; i < track.targets; ++i) rest[i] = track.piece(key, i);
-    double start = 0;  // start of the piece, as a part of the gap
+    double start = 0;  // the start of the piece, as a part of the gap from 0 to 1
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       const bool is_last = piece + 1 == pieces;
-      // Times in files are float32, so a new key can only be at such a time.
+      // The file stores times as float32, so a new key can only be at a float32 time.
       const double part = static_cast<double>(piece + 1) / static_cast<double>(pieces);
       const double time = is_last ? to : static_cast<double>(static_cast<float>(from + (to - from) * part));
       if (!is_last && !(keys.back().time < time && time < to)) continue;
@@ -175,7 +176,7 @@ ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& cur
   result.interpolation = track.interpolation;
   result.keys = track.size();
   if (result.keys > most_keys) return result;
-  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // a spline with one key
+  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // this is a spline with one key
   for (std::size_t key = 0; key < track.size(); ++key) {
     const auto append_tangents = [&](bool out) {
       for (std::size_t i = 0; i < track.targets; ++i) result.values.push_back(to_file(track.tangent(key, out, i)));

@@ -1,14 +1,16 @@
-/// Weights of correction targets that follow no formula: curves over the tracks of a file. Private to workflow.
+/// Weights of correction targets that follow no formula. Such weights are curves over the tracks of a file. Private to
+/// workflow.
 ///
-/// A curve is given by its values at nodes: the keys of a track and, if the track moves between them, the ends and
-/// middles of equal pieces of each gap between two keys. In each piece the curve is a parabola through the three nodes:
+/// A curve has values at nodes. Nodes are the keys of a track and, if the weights of the track change between two keys,
+/// the ends and middles of equal pieces of each gap between keys. In each piece the curve is a parabola through the
+/// three nodes:
 ///
 ///     STEP, or a single key    a node at each key; curves are constant between keys, as the track is
 ///     LINEAR                   one piece per gap if the true normals are weighted by area, because n(w(t)) and the
-///                              missing normals are then quadratic there; otherwise as many as the track says
+///                              missing normals are then quadratic there; otherwise as many pieces as the track says
 ///     CUBICSPLINE              two, four or eight pieces per gap, so that parabolas are near squares of weights
 ///
-/// Threads    pure
+/// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
 
@@ -33,17 +35,17 @@ struct ExtraCurves;
 class CurveNodes {
  public:
   explicit CurveNodes(const WeightTrack& track);
-  /// Takes the nodes that the given curves over the track have.
+  /// Prepares the same nodes as those of the given curves over the track.
   CurveNodes(const WeightTrack& track, const ExtraCurves& curves);
 
   [[nodiscard]] std::size_t size() const noexcept { return pieces_ == 0 ? keys_ : 2 * pieces_ * (keys_ - 1) + 1; }
-  /// Returns the number of pieces in each gap; 0 if curves are constant between keys.
+  /// Returns the number of pieces in each gap, or 0 if curves are constant between keys.
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
   /// Returns the weights of the mesh's own targets at a node.
   [[nodiscard]] std::vector<double> pose(const WeightTrack& track, std::size_t node) const;
 
-  /// A place in the gap after a key: the nodes from which the value of a curve there is interpolated, and their
-  /// factors.
+  /// A place in the gap after a key. The value of a curve there is the sum of its values at three nodes, multiplied by
+  /// these factors.
   struct Place {
     std::array<std::size_t, 3> nodes{};
     std::array<double, 3> factors{};
@@ -54,25 +56,26 @@ class CurveNodes {
   std::size_t keys_, pieces_;
 };
 
-/// The curves of all correction targets over one track: values (nodes, extras).
+/// The curves of all correction targets over one track. The values have the shape (nodes, extras).
 struct ExtraCurves {
   std::size_t extras = 0;
   std::vector<double> values;
 
-  /// Returns the weights at one node.
+  /// Returns the weights of all correction targets at one node.
   [[nodiscard]] std::span<const double> of(std::size_t node) const {
     return std::span(values).subspan(node * extras, extras);
   }
-  /// Writes the weights of the correction targets in the gap after a key, at the position `part` from 0 to 1.
+  /// Writes the weights of the correction targets in the gap after a key. `part` is the position in this gap, from 0 to
+  /// 1.
   void at(const CurveNodes& nodes, std::size_t key, double part, std::span<double> weights) const;
 };
 
 using TrackCurves = std::map<TrackName, ExtraCurves>;
 
-/// Extends a track by curves. A LINEAR track stays LINEAR, with the given pieces of each gap (straight_track), or
-/// becomes a cubic spline if `pieces` is empty. A cubic spline gets more keys at the ends of the curves' pieces; it
-/// plays as before, and holds the curves exactly. If that takes more than most_keys keys, the result has no values, but
-/// the number of keys that it would have.
+/// Extends a track by curves. A LINEAR track stays LINEAR if `pieces` has numbers of pieces for its gaps
+/// (straight_track), and otherwise becomes a cubic spline. A cubic spline gets more keys at the ends of the curves'
+/// pieces. The weights that it had play as before, and the curves are exact. If all this takes more than most_keys
+/// keys, the result has no values, but the number of keys that it would have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());
@@ -80,29 +83,30 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 /// The number of pieces into which each gap between two keys of a LINEAR track is split.
 using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 
-/// The drivers of a mesh's correction targets: formulas, which have one term in the weights of the mesh's own targets;
-/// sums, which have many; or curves over tracks.
+/// The data that drive the correction targets of a mesh. Formulas have one term in the weights of the mesh's own
+/// targets, and sums have many such terms. Curves give the weights over tracks.
 struct ExtraDrivers {
-  std::vector<ExtraWeight> formulas;  ///< one per correction target; all zero if there are sums or curves
-  std::vector<GltfExtraTarget> sums;  ///< one per correction target, or none; tracks have curves beside them
-  TrackCurves curves;                 ///< for each track; none if there are formulas
-  PoseList rest;                      ///< of curves: the weights in the poses that the file stores (MeshWeights)
+  std::vector<ExtraWeight> formulas;  ///< one for each correction target; all zero if there are sums or curves
+  std::vector<GltfExtraTarget> sums;  ///< one for each correction target, or none; then tracks also have curves
+  TrackCurves curves;                 ///< for curves, the weights in the poses that the file stores (MeshWeights)
+  PoseList rest;                      ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
   TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR; others become cubic splines
-  /// An angle in radians: cubic splines get more keys until the error of formulas turns no normal by more. If it is
-  /// infinite, splines get no more keys.
+  /// An angle in radians. Cubic splines get more keys until the errors of formulas turn no normal by more than this
+  /// angle. If it is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }
-  /// Returns correction target k as the file describes it; `index` is its index among all targets.
+  /// Returns correction target k in the form in which the file describes it. `index` is its index among all targets.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t k, std::size_t index) const;
-  /// Appends the weights of correction targets to a pose, by formulas and sums.
+  /// Returns a pose with the weights of correction targets appended. Formulas and sums give these weights.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
-  /// Appends the weights of correction targets to poses that stand still (outside of animations). If curves drive the
-  /// correction targets, these weights are zero in the expressions of an avatar, which come after the poses of `rest`.
+  /// Returns poses that stand still (outside of animations) with the weights of correction targets appended. If curves
+  /// drive the correction targets, these weights are zero in the expressions of an avatar, which come after the poses
+  /// of `rest`.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
-  /// Returns a track with the weights of correction targets. Cubic splines get more keys until the error of formulas
-  /// turns no normal by more than tolerance (radians) or spline_tolerance. If that takes more than most_keys keys, the
-  /// result has no values.
+  /// Returns a track with the weights of correction targets. Cubic splines get more keys until the errors of formulas
+  /// turn no normal by more than `tolerance` or spline_tolerance, in radians. If that takes more than most_keys keys,
+  /// the result has no values.
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;
 };

@@ -1,5 +1,6 @@
-// A skin is judged at all times at which its joints or the weights have a key, and half-way between these times: joints
-// that rotate against each other squash a mesh most at their keys or in the middle.
+// Reads skins, and leaves out skins that do not matter. A skin is examined at all times at which its joints or the
+// weights have a key, and half-way between these times. Joints that rotate against each other squash a mesh most at
+// their keys or half-way between keys.
 #include "workflow/bake/poses/mesh_skins.h"
 
 #include <algorithm>
@@ -10,11 +11,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kLookedAtPairs: the most samples at which a skin is judged. kFewestInstants: the fewest instants at which it is
-// judged.
+// kLookedAtPairs is the largest number of samples (a vertex at a time) at which a skin is examined. kFewestInstants is
+// the smallest number of times at which a skin is examined.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
-// Returns true if a skin, while a track is played, deforms these vertices by more than a rotation and an even scale.
+// Returns true if a skin deforms these vertices by more than a rotation and an even scale at some time of a track.
 bool is_uneven(MeshSkin skin, const WeightTrack& track, std::span<const std::uint32_t> vertices) {
   std::vector<double> times;
   const std::vector<double> keys = keys_of_both(track, skin);
@@ -45,7 +46,7 @@ std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin)
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights) {
   const std::vector<GltfNode>& nodes = document.nodes();
-  std::optional<MeshSkin> any;  // any skin that was read
+  std::optional<MeshSkin> any;  // some skin that was read, for its joints and shares
   const auto read = [&](std::size_t node, std::optional<std::size_t> animation) -> std::optional<MeshSkin> {
     Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation, any ? &*any : nullptr);
     if (!skin) return std::nullopt;
@@ -73,7 +74,7 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
     }
     if (is_any_even) skins.emplace_back();
   }
-  // An audit uses the same skin: that of the first node with a skin and this mesh.
+  // An audit uses the same skin for targets: the skin of the first node that has a skin and this mesh.
   const auto first = std::find_if(nodes.begin(), nodes.end(),
                                   [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
   if (first == nodes.end()) return;

@@ -1,7 +1,8 @@
-/// The skins by which the nodes of a file deform one mesh, if they matter to the choice of a bake. Private to workflow.
+/// Finds the skins of a mesh that matter to the choice of a bake. A skin is used by a node of the file. Private to
+/// workflow.
 ///
-/// A skin matters if it changes errors. A rotation with an even scale leaves the angle between two normals as it is, so
-/// a skin that does no more to any of the vertices is left out.
+/// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. If a skin
+/// does only this to all vertices, it is left out.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
 
@@ -17,12 +18,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the times of all keys of a track, and of the keys of a skin's joints while the track is played: ascending,
-/// each once.
+/// Returns the times of all keys of a track, and of all keys of a skin's joints while the track is played. The times
+/// are in seconds and in ascending order, and each occurs once.
 [[nodiscard]] std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin);
 
-/// Reads the skins of all nodes of a mesh into weights.skins, for the given vertices. A skin that cannot be read is
-/// left out; an audit reports why.
+/// Reads the skins of all nodes of a mesh into weights.skins, for these vertices. Leaves out a skin that cannot be
+/// read; an audit reports the reason.
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights);
 

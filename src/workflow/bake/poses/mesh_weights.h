@@ -15,38 +15,41 @@
 
 namespace chronormal::inline internal {
 
-/// The name of a track in a file: the animation, and the first of its tracks with the same keys.
+/// The name of a track in a file: the index of its animation, and the index of the first track there with the same
+/// keys.
 struct TrackName {
   std::size_t animation = 0, keys = 0;
   friend auto operator<=>(const TrackName&, const TrackName&) = default;
 };
 
-/// The skins by which nodes deform a mesh, except skins that only rotate and scale evenly (mesh_skins.h).
+/// The skins by which nodes deform a mesh. Skins that only rotate and scale evenly are left out (mesh_skins.h).
 struct MeshSkins {
-  /// For each track, the skins of all nodes that it drives; nullopt for nodes without such a skin. Empty if no skin was
-  /// read.
+  /// For each track, the skins of all nodes that the track drives. An entry is nullopt if its node has no such skin.
+  /// The list is empty if no skin was read.
   std::vector<std::vector<std::optional<MeshSkin>>> of_tracks;
-  std::optional<MeshSkin> standing;  ///< of the first node that has a skin, as the file poses it
+  std::optional<MeshSkin> standing;  ///< the skin of the first node that has one, as the file poses it
 
   [[nodiscard]] bool any() const;
-  /// Returns the skin for poses that no animation plays, such as a single target at weight 1, or nullptr.
+  /// Returns the skin for poses that no animation plays, such as a single target at weight 1. Returns nullptr if there
+  /// is no such skin.
   [[nodiscard]] const MeshSkin* as_standing() const { return standing ? &*standing : nullptr; }
 };
 
 struct MeshWeights {
-  std::vector<WeightTrack> tracks;  ///< of the animations; `use` refers to them
-  std::vector<TrackName> names;     ///< of each track
-  std::vector<TimeRange> ranges;    ///< of the animation of each track
-  PoseList poses;                   ///< that stand still: of the mesh, its nodes, and the expressions of an avatar
-  std::size_t stored_poses = 0;     ///< how many poses, the first ones, have weights of correction targets in the file
+  std::vector<WeightTrack> tracks;  ///< the tracks of the animations; `use` refers to them
+  std::vector<TrackName> names;     ///< the name of each track
+  std::vector<TimeRange> ranges;    ///< the time range of each track's animation
+  PoseList poses;                ///< poses that stand still: of the mesh, its nodes, and the expressions of an avatar
+  std::size_t stored_poses = 0;  ///< the number of poses, from the first on, for which the file stores all weights
   WeightUse use;
-  bool is_driven = false;       ///< an animation gives some moving target a weight
-  std::optional<RigPoses> rig;  ///< the poses to fit to, if nothing drives the mesh and a bake tries correction targets
-  MeshSkins skins = {};         ///< set by read_skins()
+  bool is_driven = false;  ///< true if an animation gives some moving target a weight
+  /// The poses to fit to, if no animation drives the mesh and a bake tries correction targets.
+  std::optional<RigPoses> rig;
+  MeshSkins skins = {};  ///< read_skins() sets these skins
 };
 
-/// Reads the weights of a mesh. Tracks with the same keys, which drive the mesh through several nodes, count once.
-/// Errors: see GltfDocument
+/// Reads the weights of a mesh. Tracks with the same keys drive the mesh through several nodes, and count once. Errors:
+/// see GltfDocument
 [[nodiscard]] Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

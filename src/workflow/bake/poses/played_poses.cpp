@@ -1,4 +1,4 @@
-// Chooses the instants at which a bake is judged; if there are too many, the keys and tracks that tell most.
+// Chooses the times at which a bake is judged. If there are too many, chooses the keys and tracks that show most.
 #include "workflow/bake/poses/played_poses.h"
 
 #include <algorithm>
@@ -41,8 +41,8 @@ struct Peak {
   std::size_t number = 0;
 };
 
-// Returns the targets with the largest weights between a key and the next one, largest first, with bounds of these
-// weights.
+// Returns the targets that have a weight between a key and the next key, with bounds of their weights. The largest
+// weights come first, and small ones are left out.
 std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   std::vector<Peak> result;
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -56,10 +56,11 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   return result;
 }
 
-// The largest value of each weight and of each product of two weights, and where it occurs.
+// For each weight and each product of two weights, the largest value, and the item in which this value occurs. Items
+// are keys or tracks.
 class Peaks {
  public:
-  // Adds the weights that are active at the same time in the item with this number.
+  // Adds an item with this number. `active` has the weights that are active in the item at the same time.
   void add(const std::vector<Peak>& active, std::size_t number) {
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a; b < active.size(); ++b) {
@@ -71,7 +72,8 @@ class Peaks {
     }
   }
 
-  // Returns at most `most` of these numbers, ascending: those with the largest peaks, and a fourth at even steps.
+  // Returns at most `most` of these numbers, in ascending order. Three quarters of them are the numbers with the
+  // largest peaks, and the rest is evenly spaced among the others.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
@@ -116,10 +118,10 @@ std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std
 
 namespace {
 
-// Positions in a gap between two keys at which a track is judged. The most telling positions come first.
+// Positions in a gap between two keys at which a track is judged, from 0 to 1. The most telling positions come first.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
-// Returns up to `room` instants of one track, at and after its telling keys.
+// Returns at most `room` times of one track, in seconds. They are at its telling keys and after them.
 std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   std::vector<double> times;
   const std::vector<std::size_t> keys = telling_keys(track, room);
@@ -140,7 +142,7 @@ std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   return times;
 }
 
-// Adds a pose, unless it looks the same as the one before.
+// Adds a pose, unless the last pose looks the same.
 void add_seen(PlayedPose pose, std::vector<PlayedPose>& poses) {
   if (poses.empty() || poses.back().track != pose.track || !(poses.back().seen == pose.seen))
     poses.push_back(std::move(pose));
@@ -153,7 +155,7 @@ PlayedPose pose_at(const PlayedTrack& played, std::size_t targets, std::size_t t
   return pose;
 }
 
-// Returns the times of all keys of a track and of a skin, and some times between neighbouring keys.
+// Returns the times of all keys of a track and of a skin, and some times between neighbouring keys, in seconds.
 std::vector<double> skinned_instants(const WeightTrack& track, const MeshSkin& skin) {
   const std::vector<double> keys = keys_of_both(track, skin);
   std::vector<double> times;

@@ -1,7 +1,7 @@
-/// The poses of a file: poses that viewers play from its tracks, each target alone, and poses that a program may set.
-/// Private to workflow.
+/// Finds the poses in which a mesh is judged: poses that viewers play from the tracks of a file, each target alone, and
+/// poses that a program may set. Private to workflow.
 ///
-/// Threads    pure; the poses are the same on every system.
+/// Threads    All functions are pure, and give the same poses on every system.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_PLAYED_POSES_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSES_PLAYED_POSES_H_
 
@@ -18,37 +18,41 @@
 
 namespace chronormal::inline internal {
 
-/// A pose of the mesh's own targets, and the place from which the weights of correction targets come: a time of a
-/// track, a pose that the file stores, or (if there is neither) the weights of the mesh's own targets.
+/// A pose of the mesh's own targets, and the place from which correction targets get their weights. The place is a time
+/// of a track, or a pose that the file stores. If there is neither, the weights follow from the weights of the mesh's
+/// own targets.
 struct PlayedPose {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  SeenPose seen;  ///< with the weights of the mesh's own targets
+  SeenPose seen;  ///< the weights of the mesh's own targets, and the skin
   std::size_t track = kNone;
-  double time = 0;  ///< of the track
+  double time = 0;  ///< the time on the track, in seconds
   std::size_t standing = kNone;
 };
 
-/// Returns the keys after which a track shows something new, because weights move, come to rest or jump there;
-/// ascending. If there are more than `most`, it prefers keys after which a weight, or the product of two weights, is
-/// larger than anywhere else, so that a wink in a long animation is included; the other keys are chosen at even steps.
+/// Returns keys of a track, in ascending order. After each of these keys, the track shows something new, because
+/// weights change, come to rest or jump there. If there are more than `most` such keys, prefers keys after which a
+/// weight, or the product of two weights, is larger than after all other keys, so that a wink in a long animation is
+/// included. The rest is evenly spaced among the other keys.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
-/// Returns the indices of at most `most` tracks, ascending. If there are more, it prefers tracks in which a weight, or
-/// the product of two weights, is larger than anywhere else; the other tracks are chosen at even steps. All tracks must
-/// have the same targets.
+/// Returns the indices of at most `most` tracks, in ascending order. If there are more tracks, prefers tracks in which
+/// a weight, or the product of two weights, is larger than in all other tracks. The rest is evenly spaced among the
+/// other tracks. All tracks must have the same targets.
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
-/// Returns the poses that a viewer plays from the tracks of a mesh, in order, without poses that look the same as the
-/// previous one. There are poses at each telling key and at instants up to the next one. If these are more than `most`,
-/// it takes fewer instants after each key, and then fewer keys. The share of a track depends on the number of its
-/// telling keys; each track has at least one pose.
+/// Returns the poses that a viewer plays from the tracks of a mesh, in order. Leaves out a pose that looks the same as
+/// the last one. There are poses at each telling key, and at several times up to the next telling key. If these are
+/// more than `most` poses, takes fewer times after each key, and then fewer keys. A track gets poses in proportion to
+/// its number of telling keys, but at least one.
 ///
-/// If nodes have skins, a track is judged with each of these skins: at its own keys, at keys of the joints, and at
-/// instants between. If these are more than `most`, some of them are chosen as above. The skins must outlive the poses.
+/// If nodes have skins, each track is judged with each of these skins: at its own keys, at keys of the joints, and at
+/// times between them. If these are more than `most` poses, some of them are chosen as above. The skins must outlive
+/// the poses.
 [[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 
-/// Returns poses in which one of these targets has a weight and all others have none, at `steps` weights up to 1.
+/// Returns poses in which one of these targets has a weight and all other targets have weight 0. For each target, there
+/// are poses at `steps` evenly spaced weights up to 1.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, std::size_t steps);
 
 }  // namespace chronormal::inline internal

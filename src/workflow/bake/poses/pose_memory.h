@@ -1,5 +1,5 @@
-/// Stores vectors that were computed for poses of a mesh. They are needed again and again, because each viewer and each
-/// candidate is judged in the same poses. Private to workflow.
+/// Stores vectors that were computed for poses of a mesh. Such vectors are needed many times, because each viewer and
+/// each candidate is judged in the same poses. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
 
@@ -14,13 +14,14 @@
 
 namespace chronormal::inline internal {
 
-/// A memory of vectors that stores as long as there is room, and then no more. Poses come in the same order each time,
-/// so dropping the oldest vectors would leave nothing to be found. Threads: all functions may run at once.
+/// Stores vectors as long as there is room, and after that stores no more. Poses come in the same order each time, so
+/// if new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions may run at once.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
 
-  /// Returns the vectors stored for a pose, or nullptr. They are valid as long as this object.
+  /// Returns the vectors that are stored for a pose, or nullptr if there are none. The vectors are valid as long as
+  /// this object.
   [[nodiscard]] const std::vector<Vec3d>* find(std::span<const double> pose) const {
     const std::vector<double> key(pose.begin(), pose.end());
     const std::scoped_lock lock(mutex_);
@@ -28,7 +29,7 @@ class PoseMemory {
     return found == kept_.end() ? nullptr : &found->second;
   }
 
-  /// Keeps a copy of vectors if there is room.
+  /// Stores a copy of the vectors of a pose if there is room.
   void keep(std::span<const double> pose, const std::vector<Vec3d>& vectors) {
     const std::size_t bytes = vectors.size() * sizeof(Vec3d) + pose.size() * sizeof(double);
     std::vector<double> key(pose.begin(), pose.end());
@@ -40,7 +41,7 @@ class PoseMemory {
  private:
   mutable std::mutex mutex_;
   std::map<std::vector<double>, std::vector<Vec3d>> kept_;
-  std::size_t room_;  // bytes
+  std::size_t room_;  // bytes that are left
 };
 
 }  // namespace chronormal::inline internal

@@ -9,11 +9,11 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Limits for the weights in memory. In files with thousands of targets, not every target is judged alone.
+// Limits for the weights in memory. In files with thousands of targets, not every target can be judged alone.
 constexpr std::size_t kMostWeights = 8000000, kMostSteps = 8, kFewestSteps = 2;
 constexpr unsigned kRigSeed = 3;
 
-// Tells whether two viewers play these tracks alike.
+// Returns true if two viewers play the same weights from these tracks.
 bool plays_alike(const Viewer& a, const Viewer& b, std::span<const WeightTrack> tracks) {
   if (a.tracks == b.tracks && a.weight_bits == b.weight_bits && a.least_weight == b.least_weight) return true;
   return std::all_of(tracks.begin(), tracks.end(), [&](const WeightTrack& track) {

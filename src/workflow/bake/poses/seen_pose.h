@@ -1,4 +1,4 @@
-/// A pose as it is rendered: weights, and the skin that transforms the blended normals. Private to workflow.
+/// A pose as a viewer renders it: weights, and the skin that transforms the blended normals. Private to workflow.
 ///
 /// Threads    const functions may run at once.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_SEEN_POSE_H_
@@ -20,34 +20,36 @@ namespace chronormal::inline internal {
 
 struct SeenPose {
   std::vector<double> weights;
-  const MeshSkin* skin = nullptr;  ///< nullptr: there is none, or it turns and scales evenly
-  double time = 0;                 ///< of the pose of its joints, if they move
+  const MeshSkin* skin = nullptr;  ///< nullptr if there is no skin, or if it only rotates and scales evenly
+  double time = 0;                 ///< the time of the pose of the skin's joints, in seconds, if they move
 
   friend bool operator==(const SeenPose&, const SeenPose&) = default;
 };
 
-/// Tells whether any of these poses has a skin.
+/// Returns true if any of these poses has a skin.
 [[nodiscard]] bool any_skinned(std::span<const SeenPose> poses);
-/// Returns poses that are all seen through the given skin, or without a skin if it is nullptr.
+/// Returns these poses, all with the given skin. If skin is nullptr, the poses have no skin.
 [[nodiscard]] std::vector<SeenPose> seen_through(PoseList poses, const MeshSkin* skin);
 /// Returns the weights of each pose.
 [[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
-/// Returns the weights of the poses, only once for neighbouring poses that differ only in the joints of a skin.
+/// Returns the weights of the poses. If neighbouring poses differ only in the joints of a skin, their weights occur
+/// once.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
-/// The skins of some poses, with the joints as each pose has them.
+/// The skins of some poses. Each skin has its joints as in the pose.
 class SkinsInPoses {
  public:
   explicit SkinsInPoses(std::span<const SeenPose> poses);
 
   [[nodiscard]] bool any() const noexcept { return !skins_.empty(); }
 
-  /// The transforms of one vertex in the poses from number `first` on.
+  /// The transforms of one vertex in `count` poses, beginning with pose `first`.
   class Vertex {
    public:
     Vertex(const SkinsInPoses& skins, std::uint32_t vertex, std::size_t first, std::size_t count);
-    /// Returns the normal that is rendered in a pose for a normal of any length. Without a skin this is the normal
-    /// itself; otherwise it is a unit vector, or (0, 0, 0) if the skin collapses the normal.
+    /// Returns the normal that a viewer renders in a pose for a normal of any length. If the pose has no skin, the
+    /// result is the normal itself. Otherwise the result is a unit vector, or (0, 0, 0) if the skin collapses the
+    /// normal.
     [[nodiscard]] Vec3d seen(SkinRule rule, std::size_t pose, const Vec3d& normal) const;
 
    private:
@@ -58,7 +60,7 @@ class SkinsInPoses {
   };
 
  private:
-  std::vector<std::optional<MeshSkin>> skins_;  // empty if there are none
+  std::vector<std::optional<MeshSkin>> skins_;  // empty if no pose has a skin
 };
 
 }  // namespace chronormal::inline internal

@@ -11,31 +11,31 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr int kMostHalvings = 10;  // most halvings of the piece between two keys of the file
+constexpr int kMostHalvings = 10;  // the most halvings of a gap between two keys
 
 using Cubic = std::array<double, 4>;
 using Sextic = std::array<double, 7>;
 
-// A weight at a key: its value, and its slopes before and after.
+// A weight at a key: its value, and its slopes before and after the key, per second.
 struct Knot {
   double in = 0, value = 0, out = 0;
 };
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// Returns pi if any value was clamped, and otherwise 0. A clamped value is no longer a product or a straight line, so
-// the error of the normal is unknown.
+// Returns pi if any value was clamped, and otherwise 0. A clamped value lies on no product or straight line, so the
+// error of the normal is unknown.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
   return 0;
 }
 
-// Return the slopes of a cubic at its ends, per second.
+// Return the slopes of a cubic at its two ends, per second.
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
-// Returns the weight of a correction target on a piece.
+// Returns the weight of a correction target on a piece, as a polynomial in Bernstein form.
 Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights) {
   const Sextic product = multiply(weights[extra.i], weights[extra.j]);
   const Sextic raised = multiply(weights[extra.i], Cubic{1, 1, 1, 1});
@@ -44,12 +44,13 @@ Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights)
   return result;
 }
 
-// Returns the slope of a correction weight, from the values a, b and the slopes of its two factors.
+// Returns the slope of a correction target's weight. a and b are the values of the two weights of which it is the
+// product, and slope_a and slope_b are their slopes.
 double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, double slope_b) {
   return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
 }
 
-// Bounds the distance between p and the cubic that has the values and slopes of p at both ends.
+// Returns a bound of the distance between p and the cubic that has the values and slopes of p at both ends.
 double cubic_error(const Sextic& p) {
   const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
   const Sextic raised = multiply(cubic, Cubic{1, 1, 1, 1});
@@ -58,8 +59,8 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Returns true if every correction weight is linear in time between all keys: one of its factors is constant there, or
-// the weight is not a product.
+// Returns true if the weight of every correction target is linear in time between all keys. This is so if one of its
+// two factors is constant there, or if the weight is not a product.
 bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
@@ -70,7 +71,7 @@ bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> ex
   return true;
 }
 
-// Writes only values, without tangents: for LINEAR and STEP tracks, and for single keys.
+// Writes values without tangents, for LINEAR and STEP tracks and for tracks with one key.
 void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras, std::vector<float>& values) {
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
@@ -79,12 +80,12 @@ void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras
   }
 }
 
-// A cubic spline that is built key by key; each key has a row of knots, one for each column.
+// A cubic spline that is built key by key. Each key has a row of knots, one for each column of weights.
 class Spline {
  public:
   explicit Spline(std::size_t columns) : columns_(columns) {}
 
-  // Adds a key; slopes are 0 until a piece sets them.
+  // Adds a key. Its slopes are 0 until a piece sets them.
   void add_key(double time) {
     times_.push_back(static_cast<float>(time));
     knots_.resize(knots_.size() + columns_);
@@ -119,7 +120,7 @@ class TrackExtender {
         most_keys_(most_keys),
         spline_(track.targets + extras.size()) {}
 
-  // Returns the track as a cubic spline.
+  // Returns the extended track as a cubic spline.
   ExtendedTrack spline() {
     ExtendedTrack result;
     result.interpolation = GltfInterpolation::kCubicSpline;
@@ -131,7 +132,7 @@ class TrackExtender {
     }
     result.keys = keys_;
     if (keys_ > most_keys_) return result;
-    // The slopes before the first key and after the last have no effect, so those of the file are kept.
+    // The slopes before the first key and after the last key have no effect, so those of the file are kept.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
     }
@@ -153,7 +154,7 @@ class TrackExtender {
           extras_[p].at(track_.value(0, extras_[p].i), track_.value(0, extras_[p].j));
   }
 
-  // Adds the key at `to`, and the keys that are needed before it.
+  // Adds the key at time `to`, and the keys that are needed between `from` and `to`.
   void add_pieces(double from, double to, const std::vector<Cubic>& weights, int halvings) {
     double error = 0, rounding = 0;
     for (const ExtraWeight& extra : extras_) {
@@ -161,7 +162,7 @@ class TrackExtender {
       error += extra.gain * cubic_error(exact);
       for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * extra.gain * std::fabs(b));
     }
-    // Times in files are float32, so a new key can only be at such a time.
+    // The file stores times as float32, so a new key can only be at a float32 time.
     const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
     if (track_.interpolation == GltfInterpolation::kCubicSpline && error > std::fmax(tolerance_, rounding) &&
         halvings > 0 && from < middle && middle < to) {
@@ -181,7 +182,7 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
-    // If there are too many keys, the rest is only counted.
+    // If there are too many keys, further keys are only counted.
     if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -203,7 +204,7 @@ class TrackExtender {
   const WeightTrack& track_;
   std::span<const ExtraWeight> extras_;
   double tolerance_;
-  std::size_t most_keys_, keys_ = 1;  // number of keys, with the first
+  std::size_t most_keys_, keys_ = 1;  // the number of keys, with the first
   Spline spline_;
   std::vector<Cubic> pieces_;
   double error_ = 0;
@@ -234,7 +235,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeig
     result.error = error_of_clamping(result.values);
     return result;
   }
-  // In a spline with one key, only the value counts.
+  // In a spline with one key, only the value has an effect.
   const std::size_t columns = track.targets + extras.size();
   result.values.assign(3 * columns, 0.0F);
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -278,7 +279,7 @@ ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, 
     if (key + 1 == track.size()) break;
     const double to = track.keys.times[key + 1];
     for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
-      // Times in files are float32, so a new key can only be at such a time.
+      // The file stores times as float32, so a new key can only be at a float32 time.
       const auto time = static_cast<float>(from + (to - from) * piece / pieces[key]);
       if (!(times.back() < time && static_cast<double>(time) < to)) continue;
       const double t = (static_cast<double>(time) - from) / (to - from);

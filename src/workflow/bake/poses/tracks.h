@@ -1,10 +1,11 @@
-/// Extends weight tracks by the weights of correction targets, which are quadratic in other weights. Private to
-/// workflow.
+/// Extends weight tracks by the weights of correction targets, which are quadratic in the weights of other targets.
+/// Private to workflow.
 ///
-/// Between the keys of a LINEAR track such a weight is quadratic in time. A cubic spline with the right tangents equals
-/// it exactly, so the track becomes a cubic spline. In a track that is a cubic spline already, the product of two
-/// weights has degree 6; keys are inserted until cubics between the keys are close enough. This does not change the
-/// other weights, because a cubic can be split exactly, by its value and slope at the new key.
+/// Between the keys of a LINEAR track, the weight of a correction target is quadratic in time. A cubic spline with the
+/// right tangents has exactly this weight, so the track becomes a cubic spline. If the track is a cubic spline already,
+/// the product of two of its weights has degree 6. Keys are then inserted until cubics between the keys are close
+/// enough to the product. New keys do not change the other weights, because a cubic can be split exactly, by its value
+/// and slope at the new key.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
 
@@ -20,59 +21,59 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds a weight or a slope to float32. Clamps it to the range of float32, which slopes exceed in pieces shorter than
-/// 1e-38 seconds.
+/// Rounds a weight or a slope to float32. Clamps the number to the range of float32, because slopes exceed this range
+/// in pieces that are shorter than 1e-38 seconds.
 [[nodiscard]] float to_file(double number) noexcept;
 
-/// One correction target in a track: its weight is linear w_i + quadratic w_i w_j.
+/// A correction target in a track. Its weight is linear w_i + quadratic w_i w_j.
 struct ExtraWeight {
   std::size_t i = 0, j = 0;
   double linear = 0, quadratic = 1;
-  /// A bound of the angle in radians by which a normal turns if the weight has an error of 1.
+  /// A bound of the angle, in radians, by which a normal turns if the weight of this target has an error of 1.
   double gain = 0;
 
   [[nodiscard]] double at(double w_i, double w_j) const noexcept { return linear * w_i + quadratic * w_i * w_j; }
-  /// Returns the correction target in the form of the file; `target` is its index there.
+  /// Returns the correction target in the form in which the file describes it. `target` is its index among all targets.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t target) const;
 };
 
 struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
-  std::vector<float> times;   ///< empty: unchanged
-  std::vector<float> values;  ///< of targets + correction weights, in the order of the file
-  double error = 0;           ///< a bound, in radians, of the remaining error; pi if float32 cannot hold a number
+  std::vector<float> times;   ///< in seconds; empty if the times do not change
+  std::vector<float> values;  ///< weights of the track's targets and of correction targets, in the order of the file
+  double error = 0;           ///< a bound, in radians, of the error that is left; pi if float32 cannot hold a number
   std::size_t keys = 0;
 };
 
-/// The memory for each key and weight of an extended track, while it is made and afterwards.
+/// The bytes of memory for each weight at each key of an extended track, while the track is made and afterwards.
 inline constexpr std::size_t kBytesPerWeight = 48;
 
-/// Extends a track by correction weights. Cubic splines get more keys until the error of these weights turns no normal
-/// by more than tolerance (radians), as far as float32 allows. If that takes more than most_keys keys, the result has
-/// no values, but the number of keys that it would have.
+/// Extends a track by the weights of correction targets. Cubic splines get more keys until the errors of these weights
+/// turn no normal by more than tolerance (radians), as far as float32 allows. If that takes more than most_keys keys,
+/// the result has no values, but the number of keys that it would have.
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            double tolerance,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Extends a LINEAR track that stays LINEAR: the gap between two keys gets the given number of equal, straight pieces.
-/// The weights in the file play as before (up to float32), and correction weights are right at all keys. If that takes
-/// more than most_keys keys, the result has no values, but the number of keys that it would have. pieces must have one
-/// number for each pair of neighbouring keys, none of them 0
+/// Extends a LINEAR track that stays LINEAR. The gap between two keys gets the given number of straight pieces of equal
+/// length. The weights in the file play as before (up to float32), and the weights of correction targets are right at
+/// all keys. If that takes more than most_keys keys, the result has no values, but the number of keys that it would
+/// have. pieces must have one number for each pair of neighbouring keys, and none of these numbers may be 0.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Writes the weights of correction targets in the gap after a key, at the position `part` from 0 to 1. `own` has the
-/// weights of the mesh's own targets there.
+/// A function that writes the weights of correction targets in the gap after a key. `part` is the position in the gap,
+/// from 0 to 1. `own` has the weights of the mesh's own targets at this position.
 using ExtrasAt =
     std::function<void(std::size_t key, double part, std::span<const double> own, std::span<double> extras)>;
 
-/// Extends a LINEAR track in the same way, by correction weights that a function computes.
+/// Extends a LINEAR track in the same way, but by weights of correction targets that a function computes.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, const ExtrasAt& extras_at,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Returns the track as it will be read from the file.
+/// Returns the extended track as it will be read from the file.
 [[nodiscard]] WeightTrack as_track(const WeightTrack& before, const ExtendedTrack& extended, std::size_t extra_count);
 
 }  // namespace chronormal::inline internal

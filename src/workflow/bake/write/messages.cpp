@@ -15,15 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The number of morphed attributes in viewers that keep them in vertex attributes. This is what WebGL 1 offers, and the
-// least that the glTF specification asks for.
+// The number of morphed attributes in viewers that keep these in vertex attributes. WebGL 1 offers room for this
+// number, and the glTF specification requires that viewers support at least this number.
 constexpr std::size_t kMorphedAttributes = 8;
-// A file that grows by the factor kLargeTimes gets a warning; if it has more than kFewExtras correction targets,
-// kLargeTimesOfMany is enough.
+// A file that grows by the factor kLargeTimes gets a warning. If it has more than kFewExtras correction targets, growth
+// by the factor kLargeTimesOfMany is enough for a warning.
 constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
 constexpr std::size_t kFewExtras = 8;
 
-// Rounds up to hundredths of a degree, so that an error beyond the tolerance is never printed as within it.
+// Rounds an angle up to hundredths of a degree, so that a warning never prints an error beyond the tolerance as within
+// it.
 double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
 
 std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
@@ -67,7 +68,7 @@ std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings) {
   std::vector<std::string> texts;
   for (const MeshWarning& warning : warnings) {
     const auto meshes = meshes_of.extract(warning.sentence);
-    if (meshes.empty()) continue;  // this sentence has its text already
+    if (meshes.empty()) continue;  // an earlier mesh has the same sentence, and its text names all of them
     const auto& [names, count] = meshes.mapped();
     const std::string more = count > kMostNamed ? " and " + std::to_string(count - kMostNamed) + " more" : "";
     texts.push_back(names + more + ": " + warning.sentence);
@@ -124,7 +125,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
-  // If no limit was requested, there is no warning, because the report states the remaining error.
+  // If no limit was requested, there is no warning, because the report states the remaining error anyway.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
@@ -209,7 +210,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
         std::to_string(baked.without_base) +
         " vertices have faces without area in the base; their normals are wrong at weights near 0 and right otherwise");
   }
-  // The viewers that can be named support more targets, but other viewers support only this number.
+  // The viewers that an option can name support more targets, but other viewers support only this number.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) +
          " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "

@@ -1,4 +1,4 @@
-/// Texts that a bake writes: warnings for people, and a file that tells programs how to drive correction targets.
+/// Writes the texts of a bake: warnings for people, and a file that tells programs how to drive correction targets.
 /// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_MESSAGES_H_
@@ -12,29 +12,29 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the name of a correction target in a mesh whose targets have names: "chronormal w0*w1".
+/// Returns the name of a correction target, such as "chronormal w0*w1", for meshes whose targets have names.
 [[nodiscard]] std::string name_of_extra(const GltfExtraTarget& extra);
 
-/// Writes how to drive the correction targets of all meshes, as the text of a file (docs/formats.md).
+/// Returns the text of a file that tells programs how to drive the correction targets of all meshes (docs/formats.md).
 [[nodiscard]] std::string drivers_file(const GltfDocument& document, const std::vector<BakedMesh>& meshes);
 
 /// A warning about one mesh.
 struct MeshWarning {
   std::string mesh, sentence;
 };
-/// Returns warnings as text, "MESH: sentence". A sentence that applies to several meshes appears once, with all their
-/// names.
+/// Returns warnings as text, in the form "MESH: sentence". A sentence that applies to several meshes appears once, with
+/// the names of all these meshes.
 [[nodiscard]] std::vector<std::string> said_once(const std::vector<MeshWarning>& warnings);
 
-/// Adds a sentence for primitives that stay flat, if there are any.
+/// Adds a warning if primitives of the mesh stay flat.
 void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings);
-/// Adds a sentence if float32 cannot hold the weights of a mesh's correction targets. `error` is the error of its
-/// tracks.
+/// Adds a warning if float32 cannot hold the weights of a mesh's correction targets. `error` is the error of the mesh's
+/// tracks in radians.
 void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings);
-/// Adds a sentence if no candidate for a mesh is within the tolerance and the limits.
+/// Adds a warning if no candidate for a mesh is within the tolerance and the limits.
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings);
-/// Adds a sentence for everything else that was baked in an unexpected way.
+/// Adds warnings for everything else that was baked in a way which the user may not expect.
 void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshPlan& plan, const BakeOptions& options,
                    const BakedMesh& baked, std::vector<MeshWarning>& warnings);
 

@@ -12,7 +12,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns a weight as JSON. JSON has no infinity, so a weight beyond float32 becomes the largest float.
+// Returns a weight as JSON text. JSON has no infinity, so a weight beyond float32 becomes the largest float.
 std::string weight_text(double weight) {
   constexpr auto kMostWeight = static_cast<double>(std::numeric_limits<float>::max());
   return json_number(static_cast<float>(std::clamp(weight, -kMostWeight, kMostWeight)));
@@ -50,7 +50,7 @@ MeshWriter::MeshWriter(const GltfDocument& document, const GltfShading& shading,
       has.tangents |= target.tangents;
     }
     has.normals |= is_shaded(p);
-    // A target must have at least one attribute.
+    // The specification requires at least one attribute in each target.
     has.positions |= !has.normals && mesh_.primitives[p].vertex_count > 0;
   }
 }
@@ -102,7 +102,7 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
     const GltfPrimitive::Target& has = mesh_.primitives[p].targets[target];
-    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");  // others have more targets
+    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");  // other primitives have more targets
     if (attributes_[p].positions && !has.positions) edit_.set(pointer + "/POSITION", std::to_string(zeros_of(p)));
     if (deltas && is_shaded(p))
       edit_.set(pointer + "/NORMAL", std::to_string(deltas_of(p, *deltas)));
@@ -138,14 +138,14 @@ void MeshWriter::append_weights(std::span<const GltfExtraTarget> extras, const P
       append(std::string("/nodes/").append(std::to_string(n)).append("/weights"), node.weights, ++pose);
   }
   if (mesh_.target_names.empty()) return;
-  // Older versions of UniVRM name targets in each primitive, and not in the mesh.
+  // Older versions of UniVRM store the names of targets in each primitive instead of the mesh.
   std::vector<std::string> names;
   if (edit_.has(pointer_ + "/extras/targetNames")) names.push_back(pointer_ + "/extras/targetNames");
   for (std::size_t p = 0; p < mesh_.primitives.size(); ++p) {
     const std::string of_primitive = pointer_of(p) + "/extras/targetNames";
     if (edit_.has(of_primitive) && edit_.text(of_primitive).starts_with("[")) names.push_back(of_primitive);
   }
-  // Names must be unique: PlayCanvas finds targets by them.
+  // Names must be unique, because PlayCanvas finds targets by their names.
   std::set<std::string> taken(mesh_.target_names.begin(), mesh_.target_names.end());
   for (const GltfExtraTarget& extra : extras) {
     const std::string of_extra = name_of_extra(extra);

@@ -1,5 +1,5 @@
-/// Writes one mesh as edits of the file: arrays of normals and deltas, and everything whose length is the number of
-/// targets, such as weights and names. Private to workflow.
+/// Writes one mesh as edits of the file. Writes the arrays of normals and deltas, and all lists with an item for each
+/// target, such as weights and names. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 
@@ -17,12 +17,12 @@
 
 namespace chronormal::inline internal {
 
-/// Accessors of zeros, one for each number of vertices.
+/// The accessors that hold only zeros. There is one for each number of vertices.
 class ZeroVectors {
  public:
   ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
   [[nodiscard]] std::size_t of(std::size_t vertices);
-  /// Returns true if zeros are stored as bytes, instead of as an accessor without a buffer view.
+  /// Returns true if zeros are stored as bytes. Otherwise an accessor of zeros has no buffer view.
   [[nodiscard]] bool are_dense() const noexcept { return dense_; }
 
  private:
@@ -31,8 +31,9 @@ class ZeroVectors {
   std::map<std::size_t, std::size_t> accessors_;
 };
 
-/// A writer of targets one by one, so that only the arrays of one target are in memory. All targets of a primitive must
-/// have the same attributes (section 3.7.2.2 of the specification): if one has an attribute, the others get zeros.
+/// Writes targets one by one, so that only the arrays of one target are in memory. All targets of a primitive must have
+/// the same attributes (section 3.7.2.2 of the specification). If one target has an attribute, the other targets get
+/// zeros.
 class MeshWriter {
  public:
   /// Prepares a mesh for writing. `smooth` must be the value with which the shading was read. All arguments must
@@ -42,27 +43,27 @@ class MeshWriter {
   /// Returns true if the vertices of a primitive show normals of elements.
   [[nodiscard]] bool is_shaded(std::size_t primitive) const { return part_[primitive].has_value(); }
 
-  /// Replaces the base normals of some parts; `normals` has those of all parts, (V, 3). Errors: kInvalidInput if Draco
-  /// compresses a part that changes.
+  /// Replaces the base normals of some parts. `normals` has the normals of all parts, (V, 3). Errors: kInvalidInput if
+  /// Draco compresses a part that changes.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
   /// Makes all targets change tangents, in primitives that have tangents.
   void add_tangents();
-  /// Writes the deltas of normals and tangents of one of the mesh's own targets. Without deltas, only adds attributes
-  /// that other targets have and this one lacks.
+  /// Writes the deltas of normals and tangents of one of the mesh's own targets. If there are no deltas, only adds the
+  /// attributes that other targets have and this target lacks.
   void write_target(std::size_t target, const std::optional<TargetDeltas>& of_normals,
                     const std::optional<TargetDeltas>& of_tangents = {});
-  /// Adds a target that moves no vertex.
+  /// Appends a correction target, which moves no vertex.
   void append_target(const TargetDeltas& of_normals);
-  /// Sets weights and names of the appended targets. If no formula gives their weights, `rest` has these for each pose
+  /// Sets the weights and names of the appended targets. If no formula gives the weights, `rest` has them for each pose
   /// that stands still (outside of animations), in the order of MeshWeights.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
-  /// Writes the mark of the bake (docs/formats.md): into the mesh, where the next bake and an audit look for it, and,
-  /// if there are correction targets, also into the nodes that carry the mesh, because some viewers pass on only the
-  /// extras of nodes. Returns the nodes whose extras are not an object; these stay as they are.
+  /// Writes the mark of the bake (docs/formats.md) into the mesh, where the next bake and an audit look for it. If
+  /// there are correction targets, also writes the mark into the nodes that have the mesh, because some viewers pass
+  /// only the extras of nodes to programs. Returns the nodes whose extras are not an object. These nodes do not change.
   [[nodiscard]] std::vector<std::size_t> set_mark(const GltfBakeMark& mark);
 
  private:
-  // The attributes that all targets of a primitive will have.
+  // The attributes that all targets of a primitive will have when the mesh is written.
   struct Attributes {
     bool positions = false, normals = false, tangents = false;
   };
@@ -78,8 +79,8 @@ class MeshWriter {
   ZeroVectors& zeros_;
   GltfEdit& edit_;
   SharedParts parts_;
-  std::string pointer_;                           // JSON pointer of the mesh
-  std::vector<std::optional<std::size_t>> part_;  // for each primitive, its part if it is shaded
+  std::string pointer_;                           // the JSON pointer of the mesh
+  std::vector<std::optional<std::size_t>> part_;  // for each primitive that is shaded, the index of its part
   std::vector<Attributes> attributes_;            // one for each primitive
 };
 

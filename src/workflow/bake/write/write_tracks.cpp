@@ -1,6 +1,6 @@
-// A sampler may be shared by channels that drive other meshes, or something other than weights. If one of these
-// channels needs it, the sampler stays as it is; otherwise the first mesh changes it. Every further mesh gets a new
-// sampler.
+// Writes tracks into the file. Several channels may share a sampler. Some of them may drive other meshes, or values
+// that are not weights. If such a channel needs the sampler, the sampler does not change, and each mesh gets a new
+// sampler. Otherwise the first mesh changes the sampler, and each further mesh gets a new one.
 #include "workflow/bake/write/write_tracks.h"
 
 #include <algorithm>
@@ -25,12 +25,12 @@ std::string item(const std::string& list, std::size_t index) {
 
 std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   const std::string text = edit.text(pointer);
-  double value = 0;  // a double, since 4.0 is an index too
+  double value = 0;  // a double, since JSON may also write an index as 4.0
   const bool is_number = from_chars(text.data(), text.data() + text.size(), value).ec == std::errc{};
   return is_number ? static_cast<std::size_t>(value) : 0;
 }
 
-// Returns the number of items in an array of the source.
+// Returns the number of items in an array of the file, which is named by its JSON pointer.
 std::size_t size_of(const GltfEdit& edit, const std::string& list) {
   std::size_t beyond = 1;
   while (edit.has(item(list, beyond - 1))) beyond *= 2;
@@ -50,14 +50,14 @@ std::string_view name_of(GltfInterpolation interpolation) {
   return interpolation == GltfInterpolation::kLinear ? "LINEAR" : "CUBICSPLINE";
 }
 
-// A sampler in the form in which it is written.
+// A sampler of an animation, as the bake writes it.
 struct Sampler {
-  std::string input, output;  // indices of accessors
+  std::string input, output;  // indices of accessors, as text
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   bool has_new_input = false, is_converted = false;
 };
 
-// Returns the mesh that a JSON pointer names together with its weights, or with one of them.
+// Returns the mesh whose weights a JSON pointer names. The pointer may name all weights, or one of them.
 std::optional<std::size_t> mesh_of_weights(const GltfDocument& document, std::string_view rest) {
   const bool of_node = rest.starts_with("/nodes/");
   if (!of_node && !rest.starts_with("/meshes/")) return std::nullopt;
@@ -93,8 +93,8 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
 
 namespace {
 
-// Refuses files in which KHR_animation_pointer drives single weights, or the weights of a mesh without a node, because
-// the weights of correction targets could not be animated there.
+// Returns an error if KHR_animation_pointer drives single weights, or the weights of a mesh without a node. The weights
+// of correction targets could not be animated there.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
@@ -106,7 +106,7 @@ Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> m
   return Success{};
 }
 
-// Returns the samplers of an animation that channels use for something other than weights of nodes.
+// Returns the samplers of an animation that channels use for values other than the weights of nodes.
 std::set<std::size_t> samplers_of_others(const GltfDocument& document, const GltfEdit& edit, std::size_t a) {
   const GltfAnimation& animation = document.animations()[a];
   std::set<std::size_t> of_weights, samplers;
@@ -169,7 +169,8 @@ class TrackWriter {
   [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
 
  private:
-  // Returns the mesh that a track drives, as an index into meshes_, or nullptr if it is not one of these meshes.
+  // Returns the index in meshes_ of the mesh that a track drives. Returns nullptr if the mesh is not one of these
+  // meshes.
   [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
     const GltfNode& node = document_.nodes()[track.node];
     const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();

@@ -15,27 +15,28 @@
 
 namespace chronormal::inline internal {
 
-/// A mesh that got at least one correction target.
+/// A mesh to which the bake has added correction targets.
 struct GrownMesh {
   std::size_t mesh = 0;
   ExtraDrivers drivers;
-  bool keeps_kind = false;  ///< LINEAR tracks stay LINEAR, and cubic splines get no keys
+  bool keeps_kind = false;  ///< if true, LINEAR tracks stay LINEAR, and cubic splines get no new keys
 };
 
-/// Finds a channel in which KHR_animation_pointer drives weights that no track can hold: a single weight of the mesh,
-/// or weights of a mesh without a node. Returns its JSON pointer, or nothing if there is none.
+/// Finds a channel in which KHR_animation_pointer drives weights that no track of glTF can hold: a single weight of the
+/// mesh, or weights of a mesh without a node. Returns the JSON pointer of what the channel drives, or nothing if there
+/// is no such channel.
 [[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
                                                           const GltfEdit& edit);
 
 struct WrittenTracks {
-  std::vector<double> errors;      ///< of each mesh: a bound of the error after keys are inserted, in radians
-  std::vector<std::size_t> bytes;  ///< of each mesh: the bytes by which its tracks grow
-  std::size_t converted = 0;       ///< tracks that became cubic splines
+  std::vector<double> errors;      ///< for each mesh, a bound of the error that is left, in radians
+  std::vector<std::size_t> bytes;  ///< for each mesh, the bytes by which its tracks grow
+  std::size_t converted = 0;       ///< the number of tracks that became cubic splines
 };
 
-/// Extends all tracks that drive these meshes, in all animations. Cubic splines get more keys until the error of
-/// correction weights turns no normal by more than tolerance (radians). Errors: see GltfDocument; kInvalidInput if an
-/// extension drives weights of any of these meshes.
+/// Extends all tracks that drive these meshes, in all animations. Cubic splines get more keys until the errors of
+/// correction targets' weights turn no normal by more than tolerance (radians). Errors: see GltfDocument; kInvalidInput
+/// if an extension drives weights of any of these meshes.
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
                                                  double tolerance, GltfEdit& edit);
 
