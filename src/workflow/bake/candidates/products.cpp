@@ -371,7 +371,7 @@ std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
   return of_all;
 }
 
-// How much a correction target turns normals.
+// The angles by which a correction target turns normals.
 struct Worth {
   double squares = 0;  // squares of angles, added up over vertices and poses
   double worst = 0;    // the largest angle in degrees

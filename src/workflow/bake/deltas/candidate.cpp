@@ -138,7 +138,7 @@ bool changes(const GltfShading& shading, const Candidate& candidate) {
 }
 
 std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate) {
-  constexpr std::size_t kTerm = 40;  // bytes of a term; it is written to the mesh and to its node
+  constexpr std::size_t kTerm = 40;  // the bytes of a term, which is written to the mesh and to its node
   std::size_t total = bytes_of_tracks(weights, candidate.drivers);
   for (const GltfExtraTarget& sum : candidate.drivers.sums) total += kTerm * (sum.linear.size() + sum.quadratic.size());
   const SharedParts parts(shading);

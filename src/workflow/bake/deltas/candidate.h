@@ -1,5 +1,5 @@
-/// A candidate for what a bake writes for a mesh: deltas of the mesh's own targets, correction targets, and their
-/// drivers. Private to workflow.
+/// A candidate: the data that a bake may write for a mesh. It has deltas of the mesh's own targets, correction targets,
+/// and their drivers. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 
@@ -19,44 +19,46 @@
 namespace chronormal::inline internal {
 
 struct Candidate {
-  std::string_view name;              ///< as in BakedCandidate::name
-  std::vector<VertexVectors> own;     ///< of each target of the mesh: the deltas of all vertices that show a normal
-  std::vector<VertexVectors> extras;  ///< of each correction target
-  ExtraDrivers drivers;               ///< of the correction targets
-  std::size_t left_out = 0;           ///< correction targets beyond a limit, which would have gained least
-  double track_error = 0;             ///< radians: the worst error of straight pieces between keys
-  double fit_error = 0;               ///< radians: a bound for the deltas of single targets
-  bool animations_only = false;       ///< its deltas mean nothing for a target alone
+  std::string_view name;              ///< the name, as in BakedCandidate::name
+  std::vector<VertexVectors> own;     ///< deltas of each target of the mesh, for all vertices that show a normal
+  std::vector<VertexVectors> extras;  ///< deltas of each correction target
+  ExtraDrivers drivers;               ///< the data that drive the correction targets
+  std::size_t left_out = 0;  ///< the number of correction targets that a limit excluded; they would have helped least
+  double track_error = 0;    ///< radians: the largest error of straight pieces between keys
+  double fit_error = 0;      ///< radians: a bound of the error of single targets
+  bool animations_only = false;  ///< if true, the deltas are right only in animations, and not for a target alone
 };
 
-/// Returns the deltas of a candidate ordered by vertex. The columns are the mesh's own targets, followed by the
+/// Returns the deltas of a candidate, vertex by vertex. The columns are the mesh's own targets, followed by the
 /// correction targets.
 [[nodiscard]] VertexColumns columns_of(const Candidate& candidate, std::span<const std::uint32_t> vertices);
 
-/// Returns, for each target, the nonzero normal deltas that the file stores for vertices that show a normal.
+/// Returns for each target the normal deltas that the file stores. Leaves out zeros, and vertices that show no normal.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
-/// Converts the arrays of deltas of one target to a column.
+/// Returns the arrays of deltas of one target as a column.
 [[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
 
-/// Returns the vertices whose normal a target may turn, by its faces or by its stored deltas.
+/// Returns the vertices that a bake judges: those whose normal some target may turn, by its faces or by its stored
+/// deltas.
 [[nodiscard]] std::vector<std::uint32_t> judged_vertices(const DeltaSource& source,
                                                          const std::vector<VertexVectors>& stored);
 
-/// Returns for each target the vertices that it may turn, as indices into `vertices`.
+/// Returns for each target the vertices that the target may turn, as indices into `vertices`.
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> numbers_of_targets(const DeltaSource& source,
                                                                          const std::vector<VertexVectors>& stored,
                                                                          std::span<const std::uint32_t> vertices);
 
-/// Returns the deltas of a target of the mesh as the file will store them; nothing if all of them stay as they are.
+/// Returns the deltas of a target of the mesh as the file will store them. Returns nothing if all of these deltas stay
+/// as they are.
 [[nodiscard]] std::optional<TargetDeltas> own_deltas(const GltfShading& shading, const Candidate& candidate,
                                                      std::size_t target);
 /// Returns the deltas of a correction target.
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
 /// Returns true if a candidate has other deltas than the file, or has correction targets.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
-/// Estimates the bytes that a candidate takes: its arrays of deltas, the drivers of its correction targets, and the
-/// growth of the tracks that drive them.
+/// Estimates the bytes that a candidate takes in the file. They are the bytes of its arrays of deltas and of the
+/// drivers of its correction targets, and the bytes by which tracks grow that drive these targets.
 [[nodiscard]] std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate);
 
 }  // namespace chronormal::inline internal

@@ -1,6 +1,6 @@
-// Every delta starts as a term of the quadratic form n(w) of an element (terms.h), or as the best single delta made of
-// its linear and its square term. It is turned and scaled for each vertex that shows the element, to fit the stored
-// normal.
+// Computes the deltas of vertices. Every delta starts as a term of the quadratic form n(w) of an element (terms.h), or
+// as the best single delta that is computed from its linear and its square term. The delta is then turned and scaled
+// for each vertex that shows the element, to fit the stored normal of the vertex.
 #include "workflow/bake/deltas/deltas.h"
 
 #include <cmath>
@@ -13,11 +13,11 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kDeltasBlock = 1024;
-// The shortest stored base normal, which should have length 1, that can get deltas. No viewer renders a shorter one
-// right.
+// The length of the shortest stored base normal that can get deltas. A stored normal should have length 1, and no
+// viewer renders shorter normals than this right.
 constexpr double kShortest = 1e-3;
-// The longest stored normal that stays as it is. With deltas of 1e6 times its length it can be squared in float32, and
-// so can its inverse.
+// The length of the longest stored normal that stays as it is. If deltas are up to 1e6 times as long, float32 can still
+// hold the square of the sum and the inverse of this square.
 constexpr double kLongestStored = 1e10;
 
 Vec3d stored_normal(std::span<const float> normals, std::size_t vertex) {
@@ -29,7 +29,7 @@ VertexTerms terms_of_vertex(const DeltaSource& source, std::uint32_t element, st
   return {source.terms.base_of(element), source.plan.largest[element], stored_normal(source.base_normals, vertex)};
 }
 
-// Returns the largest error of the best single delta, over the weights of a file.
+// Returns the largest error of the best single delta at the weights of a file, in radians.
 double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
   if (range.low == 0 && range.high == 1) return best.error;
   const Vec3d base = unit_normal_at(normals, 0).vector;
@@ -38,14 +38,14 @@ double error_within(const WeightRange& range, const ControlNormals& normals, con
   return largest_line_error(normals_between(normals, range.low, range.high), from, to);
 }
 
-// The result for a block of deltas.
+// The results for a block of vertices: tells if any delta is not zero, and has the largest error in radians.
 struct Found {
   bool any = false;
   double error = 0;
 };
 
-// Gathers the deltas of all vertices that show one of these elements. find_delta(element, vertex, delta, error) writes
-// the delta of a vertex, and returns true if there is one.
+// Collects the deltas of all vertices that show one of these elements. find_delta(element, vertex, delta, error) writes
+// the delta of a vertex, and returns true if the vertex has a delta.
 template <class FindDelta>
 TargetDeltas gather(const GltfShading& shading, std::span<const std::uint32_t> elements, const FindDelta& find_delta) {
   TargetDeltas result;

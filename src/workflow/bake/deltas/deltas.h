@@ -1,8 +1,8 @@
-/// Computes the arrays of a bake: base normals and deltas of one mesh, and their errors. Everything here depends only
-/// on the mesh that was read and on the plan; write_mesh.h puts the arrays into the file. Private to workflow.
+/// Computes the base normals and the deltas that a bake writes for one mesh, and their errors. The results depend only
+/// on the mesh that was read and on the plan. write_mesh.h puts the arrays into the file. Private to workflow.
 ///
-/// Shapes     V = vertices of the shading, part after part; a part has a contiguous range of them.
-/// Threads    on all cores; the same bits on any number of them.
+/// Shapes     V is the number of vertices of the shading, part after part. The vertices of a part follow each other.
+/// Threads    Uses all cores. The results have the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
 
@@ -24,41 +24,41 @@ struct DeltaSource {
   std::span<const float> base_normals;  ///< (V, 3), as the file will store them
 };
 
-/// The base normals of a file that change.
+/// The base normals of a mesh after some of them were replaced.
 struct NewBaseNormals {
-  std::vector<float> normals;     ///< (V, 3), with the unchanged ones; empty if all stay
-  std::vector<bool> is_replaced;  ///< of each part: some of its normals are new
-  std::size_t rescaled = 0;       ///< vertices whose normal was brought to length 1
+  std::vector<float> normals;     ///< (V, 3), also the unchanged normals; empty if no normal changes
+  std::vector<bool> is_replaced;  ///< for each part, true if some of its normals are new
+  std::size_t rescaled = 0;       ///< the number of vertices whose normal was scaled to length 1
 };
 
-/// Replaces the base normals of some parts by those of the geometry. If a vertex has no normal by geometry, it keeps
-/// its stored normal, or gets (0, 0, 1) if that is zero: a file cannot say that there is none. In other parts, only
-/// normals longer than 1e10 or shorter than 1e-10 change, to length 1: no viewer can square them in float32, nor add
-/// deltas to them. is_recomputed has one entry for each part.
+/// Replaces the base normals of some parts by the normals of the geometry. A vertex without a normal by geometry keeps
+/// its stored normal. If the stored normal is zero, it becomes (0, 0, 1), because a file cannot say that a vertex has
+/// no normal. In other parts, only normals longer than 1e10 or shorter than 1e-10 change. They get length 1, because no
+/// viewer can square such normals in float32, nor add deltas to them. is_recomputed has one entry for each part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 
-/// The numbers of vertices to which no right delta can be added.
+/// The numbers of vertices that cannot be rendered right with any delta.
 struct BaseFaults {
-  std::size_t without_base = 0;    ///< the faces have no area in the base
-  std::size_t without_stored = 0;  ///< the stored base normal is zero, or nearly
+  std::size_t without_base = 0;    ///< vertices whose faces have no area in the base
+  std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero or nearly zero
 };
 
 [[nodiscard]] BaseFaults find_base_faults(const DeltaSource& source);
 
-/// The deltas that one target adds to the normals of a mesh.
+/// The deltas that one target adds to the normals of a mesh, as arrays for the file.
 struct TargetDeltas {
-  /// (vertices, 3) of each part; empty if no normal changes.
+  /// (vertices, 3) for each part. The list is empty if no normal changes.
   std::vector<std::vector<float>> of_parts;
-  double error = 0;  ///< a bound of the remaining angle, over the weights of the file, in radians
+  double error = 0;  ///< a bound, in radians, of the error that is left at the weights of the file
 };
 
-/// Returns the deltas of one of the mesh's own targets: the sum of its own terms at weight 1, or the best single delta
-/// if the plan says so; no deltas if the target moves no vertex. The error does not cover fitted lines, which have
-/// their own error.
+/// Returns the deltas of one of the mesh's own targets. They are the sum of the target's own terms at weight 1, or the
+/// best single delta if the plan requires this. If the target moves no vertex, there are no deltas. The error does not
+/// include fitted lines, which have their own error.
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
-/// Returns the deltas of the correction target for two targets. For one target with itself, returns the deltas of the
+/// Returns the deltas of the correction target for two targets. If both are the same target, returns the deltas of the
 /// term that is zero at the weights 0 and 1 (docs/theory.md, eq. 45).
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
 

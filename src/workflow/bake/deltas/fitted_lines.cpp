@@ -15,33 +15,34 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The most rounds of a fit. A viewer scales the sum to length 1, so the sum may have any length. Each round fits to the
-// length that is nearest to the result of the round before.
+// The largest number of rounds of a fit. A viewer scales the sum to length 1, so the sum may have any length. Each
+// round fits the sum to the length that is nearest to the length after the last round.
 constexpr int kRounds = 12;
-// A round is the last one if more than this part of the previous round's squared error remains.
+// A round is the last one if its squared error is more than this part of the squared error of the round before.
 constexpr double kStandstill = 0.99;
-// If a sum points away from the true normal, the fit aims at a sum that has this part of its length along the true
-// normal.
+// If a sum points away from the true normal, the next round fits it to a vector along the true normal. The vector has
+// this part of the length of the sum.
 constexpr double kLeastPart = 0.1;
-// A normal that is shorter than this share of its longest term is not judged.
+// If the length of a normal is below this part of its longest term, the normal is not judged.
 constexpr double kLeastLine = 1e-4;
-// kRidge: the strength of the pull towards the best delta of each target alone, relative to the average information in
-// the weights. Deltas cannot be told apart if their weights differ by only a thousandth. kLeastWeight: weights of a
-// thousandth tell nothing about a delta.
+// kRidge is the strength of the pull towards the best delta of each target alone, relative to the average information
+// in the weights. The pull decides if the weights of two targets differ by only a thousandth, because their deltas then
+// cannot be told apart. Weights below kLeastWeight tell nothing about a delta.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
-// The error in radians below which no fit is made. Directions are rounded to a third of it.
+// An element whose error is below this, in radians, is not fitted. Directions are rounded to a third of this error.
 constexpr double kLeastError = 1e-4;
-// If more targets than this move an element, each target keeps its best delta alone.
+// If more targets than this move an element, each target keeps the best delta that it has alone.
 constexpr std::size_t kMostTargets = 64;
-// kSums: the most weighted deltas that a round adds up. The others limit the number of poses.
+// kSums is the largest number of weighted deltas that a round adds up. The other constants limit the number of poses.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
-// The most poses at which the final error is measured. With few elements, these include all keys.
+// The largest number of poses in which the final error is measured. If there are few elements, these poses include all
+// keys.
 constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kLineBlock = 64;
 
-using Matrix = std::vector<std::vector<double>>;  // weights: a row for each pose
+using Matrix = std::vector<std::vector<double>>;  // a row of weights for each pose
 
-// A direction, rounded to 3e-5; (0, 0, 0) if it is not judged.
+// A direction whose components are rounded to 3e-5. (0, 0, 0) stands for a normal that is not judged.
 using Rounded = std::array<std::int16_t, 3>;
 
 Rounded rounded(const Vec3d& unit) {
@@ -53,10 +54,10 @@ Vec3d direction(const Rounded& r) {
   return unit({static_cast<double>(r[0]), static_cast<double>(r[1]), static_cast<double>(r[2])});
 }
 
-// An element with its active targets and their deltas.
+// An element, its active targets, and their deltas.
 struct Element {
   std::uint32_t index = 0;
-  Vec3d base;  // of length 1, or zero
+  Vec3d base;  // n(0) with length 1, or zero
   std::vector<std::uint32_t> targets;
   std::vector<Vec3d> deltas;
 
@@ -67,7 +68,7 @@ struct Element {
   }
 };
 
-// The error of one element over all poses.
+// The errors of one element, added up over all poses: the sum of squared angles, and the largest angle in radians.
 struct Misfit {
   double squares = 0, worst = 0;
 };
@@ -76,7 +77,7 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// A fit of the deltas of one element.
+// Fits the deltas of one element.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -97,8 +98,8 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // Starts from the best deltas of each target alone, and replaces them by the best deltas of all rounds. Returns true
-  // if these are better.
+  // Searches better deltas, beginning with the best delta of each target alone. If the best deltas of all rounds are
+  // better, writes them to `deltas` and returns true.
   bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
@@ -116,11 +117,11 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
-  /// Returns the largest remaining angle in radians.
+  /// Returns the largest angle that is left, in radians.
   [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:
-  // A target, by its index in the element, and its weight.
+  // The index of an active target in its element, and its weight in a pose.
   struct Active {
     std::size_t k;
     double w;
@@ -128,7 +129,7 @@ class Fit {
   struct Row {
     Vec3d right, alone, shown;         // the true direction, the sum of single deltas, and the present sum
     std::size_t first = 0, count = 0;  // range in active_
-    double part = 0;                   // its weight in the fit; for small errors, this makes them angles
+    double part = 0;                   // its weight in the fit, by which small errors become angles
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
     return std::span(active_).subspan(row.first, row.count);
@@ -157,7 +158,7 @@ class Fit {
     for (const Row& row : rows_) {
       for (const auto& [i, w] : active(row)) {
         for (const auto& [j, v] : active(row)) {
-          if (j > i) break;  // targets are ascending
+          if (j > i) break;  // the targets are in ascending order
           matrix[i * size + j] += row.part * w * v;
         }
         trace += row.part * w * w;
@@ -191,7 +192,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// The elements whose targets are active at the same time in some pose.
+// Finds the elements whose targets are active at the same time in some pose.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)
@@ -209,7 +210,7 @@ class Together {
     }
   }
 
-  // Returns the elements that were found, with the best deltas of each target alone.
+  // Returns these elements, with the best delta of each target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {
@@ -243,16 +244,16 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // If the base has no normal to begin at, the sum should be right at weight 1.
+    // If the base has no normal, the sum cannot begin at this normal and should be right at weight 1.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }
 
   const NormalTerms& terms_;
-  std::vector<std::size_t> active_;                     // targets
+  std::vector<std::size_t> active_;                     // the active targets
   std::vector<std::vector<std::uint32_t>> targets_of_;  // for each element, its active targets
-  std::vector<std::size_t> place_;                      // of each target, its index in active_
-  std::vector<bool> pairs_;  // (active, active): whether two are active together; below the diagonal
+  std::vector<std::size_t> place_;                      // for each target, its index in active_
+  std::vector<bool> pairs_;  // (active, active), below the diagonal: true if both are active together
 };
 
 }  // namespace
@@ -262,7 +263,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
   const Together together(shading, terms, use);
   std::vector<Element> elements = together.elements(is_shown);
   if (elements.empty()) return;
-  // Calls body(n, direction) on all cores, for each element that is judged in a pose.
+  // Calls body(n, direction) for each element that is judged in a pose, on all cores.
   const auto judge = [&](const std::vector<double>& pose, const auto& body) {
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
     const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();
@@ -287,7 +288,7 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
     std::vector<Vec3d> deltas = elements[n].deltas;
     Fit fit(elements[n], poses, std::span(right).subspan(n * poses.size(), poses.size()));
     is_fitted[n] = fit.improve(deltas) ? 1 : 0;
-    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // a smaller error is only rounding
+    if (fit.worst() > kLeastError) errors[n] = fit.worst();  // a smaller error is only rounding error
     elements[n].deltas = std::move(deltas);
   });
   right = std::vector<Rounded>();

@@ -1,7 +1,7 @@
-// An entry of a term can turn the normal of its element by no more than a bound: its length divided by the shortest
-// normal of the element in any pose. A heap yields the entries from the largest bound down, and the search ends when
-// the bound is below the largest turn found. Angles are compared by their tangents; only the largest one is converted
-// to an angle.
+// Measures pairs. An entry of a term, which belongs to one element, turns the normal of this element by at most a
+// bound. The bound is the length of the entry divided by the shortest normal of the element in any pose. A heap returns
+// the entries from the largest bound down. The search ends when the bound is below the largest turn that was found.
+// Angles are compared by their tangents, and only the largest tangent is converted to an angle.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <algorithm>
@@ -15,42 +15,43 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kHeldNormals: the most normals in memory at once. If a mesh has more, kSomeElements of its elements are handled at
-// once.
+// kHeldNormals is the largest number of normals in memory at a time. If a mesh has more, kSomeElements of its elements
+// are handled together.
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
-// The number of terms that are held in memory at a time, to measure them.
+// The number of entries of terms that are in memory at a time.
 constexpr std::size_t kHeldEntries = 1000000;
-// The direction of a normal is not judged if its length is below this part of its terms.
+// The direction of a normal is not judged if the length of the normal is below this part of its largest term.
 constexpr double kLeastLength = 1e-4;
-// A factor on bounds that is larger than any rounding error, so that a bound stays a bound.
+// Bounds are multiplied by this factor. It is larger than any rounding error, so a bound stays a bound.
 constexpr double kSlack = 1 + 1e-9;
 constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
-// Returns the correction target of a pair. The correction target of a target with itself is zero at weight 1, and
-// removes the excess of the square term between 0 and 1.
+// Returns the correction target of a pair. If both targets are the same, its weight is zero at weight 1, and it removes
+// the part by which the square term is too large between 0 and 1.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
-// Returns the factor with which a pose multiplies the term of a correction target.
+// Returns the factor of a correction target's term in a pose.
 double weight_of_term(const ExtraWeight& extra, const std::vector<double>& pose) {
   const double of_extra = extra.at(pose[extra.i], pose[extra.j]);
   return extra.i == extra.j ? -of_extra : of_extra;
 }
 
-// Returns the tangent of the angle between a unit vector and another one; infinity from a right angle on.
+// Returns the tangent of the angle between a unit vector and another vector. Returns infinity for a right angle and
+// larger angles.
 double tangent_between(const Vec3d& unit, const Vec3d& other) {
   const double along = dot(unit, other);
   return along > 0 ? length(cross(unit, other)) / along : std::numeric_limits<double>::infinity();
 }
 
-// Returns the largest possible tangent of the angle between a unit vector and another vector, if the length of their
-// difference is this.
+// Returns a bound of the tangent of the angle between a unit vector and another vector. `difference` is the length of
+// the difference of the two vectors.
 double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
 
 double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? portable::atan(tangent) : std::numbers::pi; }
 
-// Returns the entries of the term of a pair for elements that are shown, without zeros.
+// Returns the term of a pair without zeros, and without elements that no vertex shows.
 BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, const std::vector<bool>& is_shown) {
   BlendTerm term = terms.pair(i, j);
   std::size_t kept = 0;
@@ -66,7 +67,7 @@ BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, con
   return term;
 }
 
-// The entries of a term whose elements are in [first, last).
+// The range of the entries of a term whose elements are in [first, last).
 struct Entries {
   std::size_t begin = 0, end = 0;
 };
@@ -116,14 +117,14 @@ void PosedNormals::hold(std::size_t first) {
   });
 }
 
-// One pair while it is measured.
+// A pair while it is measured.
 struct PairMeter::Candidate {
   ExtraWeight extra;
-  BlendTerm term;                                       // only shown entries; freed after it is measured
-  double aside = 0;                                     // largest part across a normal, relative to that normal
-  double size = 0;                                      // largest length of the term, relative to the normal
-  double tangent = 0;                                   // tangent of the largest angle
-  std::vector<std::pair<double, std::uint32_t>> poses;  // factor of the term, and the pose; largest first
+  BlendTerm term;      // without elements that no vertex shows; freed after the measurement
+  double aside = 0;    // length of the largest part across a normal, relative to the normal
+  double size = 0;     // length of the largest value, relative to the normal
+  double tangent = 0;  // the tangent of the largest angle
+  std::vector<std::pair<double, std::uint32_t>> poses;  // the factor of the term, and its pose; the largest first
 };
 
 PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
@@ -135,7 +136,8 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       longest_base_(longest_base_normal(shading, terms)),
       normals_(shading, terms, poses) {}
 
-// The first test is cheap and decides for most normals, because its limit is at least that of the second test.
+// The first test takes little time and decides for most normals, because its limit is at least as high as the limit of
+// the second test.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -192,7 +194,7 @@ void PairMeter::measure(std::span<Candidate> candidates) {
   }
   for (std::size_t first = 0; first < elements && !candidates.empty(); first += normals_.chunk()) {
     normals_.hold(first);
-    // Finds, for each element, the inverse length of its shortest normal that is judged.
+    // Finds for each element the inverse length of its shortest judged normal.
     std::vector<double> inverse(std::min(normals_.chunk(), elements - first), 0.0);
     parallel_each(inverse.size(), kElements, [&](std::size_t n) {
       const auto e = static_cast<std::uint32_t>(first + n);
@@ -229,7 +231,8 @@ std::vector<MeasuredPair> PairMeter::measure(std::span<const Pair> pairs) {
   measure_held();
   std::vector<MeasuredPair> result;
   for (Candidate& candidate : candidates) {
-    // An error along the normal turns it only in combination with others, so that part counts little.
+    // The part of an error along the normal turns the normal only together with other errors, so this part counts
+    // little.
     candidate.extra.gain = 1.02 * candidate.aside + 1e-3 * candidate.size;
     result.push_back({candidate.extra, candidate.size, angle_of_tangent(candidate.tangent)});
   }
@@ -250,7 +253,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // Holds the remainders of the normals of these elements in all poses: (elements, poses).
+      // The normals of these elements in all poses without the terms that are left out, (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);
       const std::size_t begin = first + range.first;

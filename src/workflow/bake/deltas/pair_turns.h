@@ -1,11 +1,11 @@
-/// Measures the angle by which normals turn if the correction target of a pair is left out, at poses of the file.
+/// Measures the angles by which normals turn if the correction target of a pair is left out, in poses of the file.
 /// Private to workflow.
 ///
 /// A pair with the term T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Only
-/// the largest angle over all elements and poses counts. An angle is at most asin(|weight| |T| / |n|), so elements are
-/// examined from the largest such bound down, and most elements are never examined.
+/// the largest angle over all elements and poses is needed. An angle is at most asin(|weight| |T| / |n|). Elements are
+/// examined from the largest such bound down, so that most elements need not be examined.
 ///
-/// Threads    on all cores; the same bits on any number of them.
+/// Threads    Uses all cores. The results have the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
 
@@ -22,14 +22,14 @@
 
 namespace chronormal::inline internal {
 
-/// A pair of two targets, or of one target with itself, and the effect of its correction target.
+/// A pair of two targets, or of one target with itself, and how its correction target turns normals.
 struct MeasuredPair {
-  ExtraWeight extra;  ///< with its gain
-  double size = 0;    ///< the largest length of its term, relative to the normals where it is
-  double turn = 0;    ///< radians: the largest angle by which leaving it out turns a normal, in the measured poses
+  ExtraWeight extra;  ///< the weight of the correction target, with its gain
+  double size = 0;    ///< the largest length of the pair's term, relative to the normal of the element
+  double turn = 0;    ///< radians: the largest turn of a normal without the pair, in the measured poses
 };
 
-/// Normals of elements in poses. Memory holds those of a limited number of elements at a time.
+/// The normals of elements in poses. Only the normals of a limited number of elements are in memory at a time.
 class PosedNormals {
  public:
   struct Normal {
@@ -37,15 +37,15 @@ class PosedNormals {
     double size = 0;
   };
 
-  /// Creates an object that holds no normals yet. All arguments must outlive it.
+  /// Creates an object that has no normals yet. All arguments must outlive the object.
   PosedNormals(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses);
 
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the number of elements that are held at once: hold(first) holds the elements [first, first + chunk()).
+  /// Returns the number of elements in memory. hold(first) computes the elements [first, first + chunk()).
   [[nodiscard]] std::size_t chunk() const noexcept { return chunk_; }
-  /// Computes the normals of elements from `first` on, unless they are held already.
+  /// Computes the normals of the elements from `first` on, unless they are in memory already.
   void hold(std::size_t first);
-  /// Returns the normals of one element in all poses.
+  /// Returns the normals of one element in all poses. The element must be in memory.
   [[nodiscard]] std::span<const Normal> of(std::uint32_t element) const {
     return std::span(normals_).subspan((element - first_) * poses_.size(), poses_.size());
   }
@@ -62,16 +62,15 @@ class PairMeter {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;
 
-  /// is_shown tells for each element whether some vertex shows it, and `largest` has the length of its largest term so
-  /// far. All arguments must outlive this object.
+  /// Creates a meter. is_shown tells for each element if some vertex shows it. `largest` has the length of the largest
+  /// term that is known for each element. All arguments must outlive this object.
   PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
             const std::vector<bool>& is_shown, std::vector<double>& largest);
 
-  /// Measures the pairs (i <= j), and leaves out pairs without any term. Raises `largest` to the lengths of their
-  /// terms.
+  /// Measures pairs (i, j) with i <= j, and leaves out pairs that have no term. Raises `largest` to the lengths of
+  /// their terms where these are longer.
   [[nodiscard]] std::vector<MeasuredPair> measure(std::span<const Pair> pairs);
-  /// Returns the largest angle in radians by which a normal turns if all of these correction targets are left out
-  /// together.
+  /// Returns the largest angle in radians by which a normal turns if all of these correction targets are left out.
   [[nodiscard]] double turn_without(std::span<const ExtraWeight> extras);
 
  private:

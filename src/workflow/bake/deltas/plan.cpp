@@ -1,7 +1,7 @@
-// A target's own terms are always written; only pairs of targets are chosen. Each pair that is active at the same time
-// in some pose is a candidate for a correction target. Its worth is the angle by which normals turn without it, at
-// poses of the file. The pairs that turn normals least are left out, as many as turn a normal by at most the tolerance
-// together.
+// Plans a bake. The terms of each single target are always written, and only pairs of targets are chosen. Each pair
+// that is active at the same time in some pose is a candidate for a correction target. The worth of a candidate is the
+// angle by which normals turn without it, in poses of the file. The candidates with the smallest worth are left out, as
+// many as together turn a normal by at most the tolerance.
 #include "workflow/bake/deltas/plan.h"
 
 #include <algorithm>
@@ -16,21 +16,21 @@ namespace {
 
 constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
-// Limits for the number of poses at which pairs are measured. Small meshes are measured at all poses.
+// Limits for the number of poses in which pairs are measured. Small meshes are measured in all poses.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
 
 std::string place_of(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// The data of the file about a mesh.
+// The data of the file that tell which targets of a mesh are active together.
 struct MeshUse {
   const GltfShading& shading;
   const NormalTerms& terms;
   const WeightUse& use;
   bool is_driven;
 
-  // If there are no animations, a viewer may set any weights.
+  // If there are no animations, a program may set any weights, so all targets count as active together.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
   [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
     const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };
@@ -40,7 +40,7 @@ struct MeshUse {
   }
 };
 
-// Returns true if float32 can hold the products of weights, multiplied by deltas of any size.
+// Returns true if float32 can hold the products of two weights, also after a multiplication by deltas of any size.
 bool products_fit(const MeshUse& mesh) {
   constexpr double kLargestProduct = 1e30;
   double largest = 0;
@@ -49,10 +49,10 @@ bool products_fit(const MeshUse& mesh) {
   return largest * largest <= kLargestProduct;
 }
 
-// The weights at which pairs are measured.
+// The poses in which pairs are measured.
 struct Poses {
   std::vector<std::vector<double>> weights;
-  bool are_all = false;  // whether the file has no other poses
+  bool are_all = false;  // true if the file has no other poses
 };
 
 std::vector<bool> shown_elements(const GltfShading& shading) {
@@ -69,7 +69,8 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
   return ranges;
 }
 
-// Returns the targets that get the best single delta: those that nothing drives, or all that move.
+// Tells for each target if it gets the best single delta. These are the targets that nothing drives or, for encodings
+// other than exact, all targets that move.
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -79,7 +80,8 @@ std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encodin
 
 void note_length(const Vec3d& value, double& largest) { largest = std::fmax(largest, length(value)); }
 
-// Returns for each element the length of the largest linear or square term of any single target.
+// Returns for each element the length of its largest linear or square term. Takes the terms of single targets, but not
+// those of pairs.
 std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<bool>& is_line) {
   std::vector<double> largest(mesh.shading.groups.size(), 0.0);
   const auto note_lengths = [&](const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {
@@ -99,7 +101,7 @@ std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<boo
 
 using Pairs = std::vector<PairMeter::Pair>;
 
-// Returns the pairs of targets that can move the same normal at the same time.
+// Lists the pairs of targets that can move the same normal at the same time.
 Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
   Pairs pairs;
   for (std::size_t i = 0; i < mesh.use.targets(); ++i) {
@@ -132,12 +134,12 @@ Poses poses_to_measure_at(const MeshUse& mesh) {
   return poses;
 }
 
-// Leaves out the pairs that turn normals least, as many as turn a normal by at most the tolerance together. All other
+// Leaves out the pairs that turn normals least, as many as together turn a normal by at most the tolerance. All other
 // pairs get correction targets.
 void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, const Poses& poses, PairMeter& meter,
                    double tolerance, MeshPlan& plan) {
-  // If the file has other poses than the measured ones, such as one wink in a long animation, the turn of a pair is
-  // bounded by its largest weight.
+  // If the file has more poses than were measured, a short movement in a long animation, such as a wink, may have been
+  // missed. The turn of a pair is then bounded by its largest weight in the file.
   for (MeasuredPair& candidate : candidates)
     if (!poses.are_all) candidate.turn = candidate.size * mesh.largest_weight(candidate.extra);
   std::vector<std::size_t> order(candidates.size());
@@ -149,7 +151,8 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   while (count < order.size() && (turn + candidates[order[count]].turn) * kDegreesPerRadian <= tolerance)
     turn += candidates[order[count++]].turn;
   order.resize(count);
-  // A term along a normal does not turn it alone, but several of them together may be longer than the normal.
+  // A term along a normal does not turn this normal alone, but the sum of several such terms may be longer than the
+  // normal.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

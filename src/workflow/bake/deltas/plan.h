@@ -1,5 +1,4 @@
-/// Plans the bake of one mesh: which pairs of targets get a correction target, and which are left out. Private to
-/// workflow.
+/// Plans the bake of one mesh. The plan tells which pairs of targets get a correction target. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
 
@@ -14,22 +13,23 @@
 
 namespace chronormal::inline internal {
 
-/// The range of the weights of a file, extended to contain 0 and 1.
+/// The range of the weights that a file gives a target, extended to contain 0 and 1.
 struct WeightRange {
   double low = 0, high = 1;
 };
 
 struct MeshPlan {
   BakeEncoding encoding = BakeEncoding::kExact;
-  bool is_driven = false;           ///< an animation gives some moving target a weight
-  bool products_fit = true;         ///< products of weights fit into float32; otherwise nothing can be exact
-  std::vector<bool> is_line;        ///< of each target: it gets the best single delta
-  std::vector<WeightRange> ranges;  ///< of each target: the weights that its error is stated for
-  FittedLines lines;                ///< of targets that are active together, for the encoding endpoint
-  std::vector<ExtraWeight> extras;  ///< ascending (i, j)
-  std::vector<bool> is_shown;       ///< of each element: some vertex shows it
-  std::vector<double> largest;      ///< of each element: the length of its largest term
-  double left_out = 0;              ///< degrees: how far the pairs that were left out turn a normal
+  bool is_driven = false;  ///< true if an animation gives some moving target a weight
+  /// True if products of weights fit into float32; otherwise the encoding exact is impossible.
+  bool products_fit = true;
+  std::vector<bool> is_line;        ///< for each target, true if it gets the best single delta
+  std::vector<WeightRange> ranges;  ///< for each target, the weights for which its error is stated
+  FittedLines lines;                ///< deltas of targets that are active together, for the encoding endpoint
+  std::vector<ExtraWeight> extras;  ///< the correction targets, in ascending order of (i, j)
+  std::vector<bool> is_shown;       ///< for each element, true if some vertex shows it
+  std::vector<double> largest;      ///< for each element, the length of its largest term
+  double left_out = 0;              ///< degrees: the angle by which a normal turns without the pairs that were left out
 };
 
 /// Returns the requested encoding, or kSmallest if none was requested.
@@ -37,8 +37,8 @@ struct MeshPlan {
   return options.encoding.value_or(BakeEncoding::kSmallest);
 }
 
-/// Decides what to write. `use` has the weights that the file gives the mesh; is_driven is true if animations set any
-/// of them. Pure. Errors: kInvalidInput if there would be too many pairs.
+/// Decides what a bake writes for a mesh. `use` has the weights that the file gives the mesh. is_driven is true if
+/// animations set any of these weights. The function is pure. Errors: kInvalidInput if there would be too many pairs.
 [[nodiscard]] Result<MeshPlan> plan_mesh(const GltfDocument& document, const GltfShading& shading,
                                          const NormalTerms& terms, const WeightUse& use, bool is_driven,
                                          const BakeOptions& options);

@@ -1,5 +1,5 @@
-// Computes right normals. Their length always comes from area weighting, in the base and in every pose, even if another
-// weighting determines their direction (AuthorSum::with_area_length()).
+// Computes right normals. The length of a right normal comes from area weighting, in the base and in every pose, even
+// if another weighting determines its direction (AuthorSum::with_area_length()).
 #include "workflow/bake/deltas/right_normals.h"
 
 #include <cmath>
@@ -10,8 +10,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kRightBlock = 256;
-// The direction of a normal is not judged if its length is below this part of its terms. The limit of an audit is five
-// times as high.
+// The direction of a normal is not judged if the length of the normal is below this part of its largest term. The limit
+// in audits is five times as high.
 constexpr double kLeastTerms = 2e-5;
 
 }  // namespace
@@ -55,7 +55,7 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
 
 bool RightNormals::is_judged(std::uint32_t element, const Vec3d& normal) const noexcept {
   const double least = kLeastTerms * std::max(base_lengths_[element], largest_[element]);
-  return max_abs(normal) > least || length(normal) > least;  // the first test decides mostly
+  return max_abs(normal) > least || length(normal) > least;  // the first test decides for most normals
 }
 
 std::vector<Vec3d> RightNormals::normals_of(std::span<const double> pose,

@@ -1,9 +1,9 @@
 /// The true normals of vertices in any pose. Private to workflow.
 ///
-/// Units      a right normal has the true direction and the length |n(w)| / |n(0)|, by area (1 if n(0) is zero); it is
-///            (0, 0, 0) if n(w) is so short beside its terms that its direction means nothing.
-/// Poses      weights of the mesh's own targets, one for each; further weights may follow, which are ignored.
-/// Threads    const functions may run at once; they run on all cores.
+/// Units      A right normal has the true direction. Its length is |n(w)| / |n(0)| by area, or 1 if n(0) is zero. It is
+///            (0, 0, 0) if n(w) is so short compared with its terms that its direction means nothing.
+/// Poses      A pose has the weights of the mesh's own targets. Further weights may follow, and are ignored.
+/// Threads    const functions may run at the same time. Each function uses all cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
 
@@ -22,8 +22,8 @@ namespace chronormal::inline internal {
 
 class RightNormals {
  public:
-  /// Takes the base normals (V, 3) that the file will store, and for each element the length of its largest term. All
-  /// arguments must outlive this object.
+  /// Creates the object. base_normals has the base normals that the file will store, (V, 3), and `largest` the length
+  /// of the largest term of each element. All arguments must outlive this object.
   RightNormals(const GltfShading& shading, const NormalTerms& terms, std::span<const float> base_normals,
                const std::vector<double>& largest);
 
@@ -32,18 +32,18 @@ class RightNormals {
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
   /// Returns the stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Return the normals of all elements, or of some, without the rotation that the author's own base normals add.
-  /// O(vertices + elements)
+  /// Return the normals of all elements, or of some elements, in a pose. They do not have the rotation that the
+  /// author's own base normals add. Take O(vertices + elements).
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
-  /// Returns the right normal of a vertex, given the normal of its element.
+  /// Returns the right normal of a vertex. of_element is the normal of its element in the same pose.
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
   /// Calls visit(n, first, right) for each vertex and each batch of poses. n is the index of the vertex in the list,
   /// and `right` has the unit normals of this vertex in the poses from number `first` on. Calls for different n may run
-  /// at the same time; the batches follow each other. Cost: for each pose all positions, and the normals of these
-  /// vertices.
+  /// at the same time, but a batch begins after the batch before it has ended. Computes all positions in each pose, and
+  /// the normals of these vertices.
   template <class Visit>
   void for_each(std::span<const std::uint32_t> vertices, const PoseList& poses, const Visit& visit) const {
     constexpr std::size_t kBytes = std::size_t{32} << 20, kFewest = 4, kTogether = 8, kVertices = 64;
@@ -53,7 +53,7 @@ class RightNormals {
     std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
     for (std::size_t first = 0; first < poses.size(); first += batch) {
       const std::size_t count = std::min(batch, poses.size() - first);
-      // Several poses are written at once, so that they fill whole cache lines.
+      // Several poses are written together, so that they fill whole cache lines.
       parallel_blocks(count, std::min(batch, kTogether), [&](IndexRange some) {
         std::vector<std::vector<Vec3d>> directions;
         for (std::size_t p = some.first; p < some.end(); ++p)
@@ -75,7 +75,8 @@ class RightNormals {
   }
 
  private:
-  // The elements of some vertices, ascending, and the index of each vertex's element in that list.
+  // The elements of some vertices, in ascending order. of_vertices has for each vertex the index of its element in this
+  // list.
   struct Places {
     Places(const GltfShading& shading, std::span<const std::uint32_t> vertices);
     std::vector<std::uint32_t> elements;
@@ -84,7 +85,7 @@ class RightNormals {
   // Returns n(w) of some elements.
   [[nodiscard]] std::vector<Vec3d> normals_of(std::span<const double> pose,
                                               std::span<const std::uint32_t> elements) const;
-  // Returns the unit normals of some elements; (0, 0, 0) where there is no direction.
+  // Returns the unit normals of some elements, or (0, 0, 0) for a normal without a direction.
   [[nodiscard]] std::vector<Vec3d> directions_of(std::span<const double> pose,
                                                  std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_judged(std::uint32_t element, const Vec3d& normal) const noexcept;
@@ -93,7 +94,7 @@ class RightNormals {
   const NormalTerms& terms_;
   std::span<const float> base_normals_;
   const std::vector<double>& largest_;
-  std::vector<Vec3d> base_;           // n(0) of each element, kept because it is often needed
+  std::vector<Vec3d> base_;           // n(0) of each element; kept, since it is often needed
   std::vector<double> base_lengths_;  // lengths of base_
   std::vector<std::uint32_t> all_elements_;
   std::vector<ShownTurn> turns_;  // one for each vertex

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kComponents = 3;
 
-// Returns true if two parts have equal floats in an array with `width` numbers per vertex. The array may be empty.
+// Returns true if two parts have equal floats in an array with `width` floats for each vertex. The array may be empty.
 bool have_same(const std::vector<float>& all, std::size_t width, const GltfPart& a, const GltfPart& b) {
   const auto begin = [&](const GltfPart& part) {
     return all.begin() + static_cast<std::ptrdiff_t>(width * part.first_vertex);
@@ -17,7 +17,7 @@ bool have_same(const std::vector<float>& all, std::size_t width, const GltfPart&
   return all.empty() || std::equal(begin(a), begin(a) + static_cast<std::ptrdiff_t>(width * a.vertex_count), begin(b));
 }
 
-// The entries of a target that lie in a part: [first, last).
+// The range [first, last) of the entries of a target that belong to a part.
 struct PartEntries {
   std::size_t first = 0, last = 0;
 };

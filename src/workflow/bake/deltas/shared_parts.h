@@ -1,11 +1,11 @@
-/// Primitives of a mesh that share vertex arrays. Exporters split a mesh into one primitive for each material; all of
-/// them use the same arrays, and each shows some of the vertices. A bake then also writes one array for all of them.
-/// Private to workflow.
+/// Finds primitives of a mesh that share vertex arrays. Exporters split a mesh into one primitive for each material.
+/// All of these primitives use the same arrays, and each primitive shows some of the vertices. A bake then also writes
+/// one array for all of them. Private to workflow.
 ///
-///     part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows 2, 3, 4 of the same arrays: the deltas of
-///     both are one array, of the vertices 0 to 4
+/// For example, part 0 shows the vertices 0, 1, 2 of some arrays, and part 1 shows the vertices 2, 3, 4 of the same
+/// arrays. Both parts then get one array of deltas, for the vertices 0 to 4.
 ///
-/// Threads    pure
+/// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
 
@@ -20,22 +20,23 @@ namespace chronormal::inline internal {
 
 class SharedParts {
  public:
-  /// Finds the parts that share arrays. The shading must have its deltas, and outlive this object. O(bytes of all
-  /// arrays) if there are several parts.
+  /// Finds the parts that share arrays. The shading must have its deltas, and must outlive this object. Takes O(bytes
+  /// of all arrays) if there are several parts.
   explicit SharedParts(const GltfShading& shading);
 
-  /// Gives parts with the same vertices the same array, unless a vertex has two different deltas.
+  /// Gives parts with the same vertices the same array of deltas, unless some vertex has different deltas in two parts.
   void join(TargetDeltas& deltas) const;
-  /// Returns the bytes of the arrays for these deltas, sparse or not, each array once. The deltas must be joined.
+  /// Returns the bytes that the arrays for these deltas take, sparse or dense. Counts a shared array once. join() must
+  /// have been called for the deltas.
   [[nodiscard]] std::size_t bytes_of(const TargetDeltas& deltas) const;
-  /// Returns the bytes for deltas of some vertices, which need not be joined.
+  /// Returns the bytes that the deltas of some vertices take in the file. join() need not have been called.
   [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const;
 
  private:
   [[nodiscard]] bool are_alike(const GltfPart& a, const GltfPart& b) const;
 
   const GltfShading& shading_;
-  std::vector<std::vector<std::size_t>> groups_;  // groups of parts with the same vertices; each has at least one part
+  std::vector<std::vector<std::size_t>> groups_;  // groups of parts with the same vertices; no group is empty
 };
 
 }  // namespace chronormal::inline internal

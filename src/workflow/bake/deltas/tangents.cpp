@@ -11,8 +11,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kStale = 1;            // degrees
-constexpr double kThinnest = 1e-12;     // squared sine of the narrowest face that carries a tangent
-constexpr double kLeastUpright = 1e-6;  // smallest part of a tangent that must remain across the normal
+constexpr double kThinnest = 1e-12;     // squared sine of the smallest angle between two edges that carry a tangent
+constexpr double kLeastUpright = 1e-6;  // length of the shortest part across the normal that a tangent may have
 
 Vec3d tangent_of(const GltfShading& shading, std::size_t vertex) {
   const float* const t = shading.tangents.data() + 4 * vertex;
@@ -24,7 +24,7 @@ Vec3d normal_of(const DeltaSource& source, std::size_t vertex) {
   return to_double(Vec3f{n[0], n[1], n[2]});
 }
 
-// Returns the true unit normals of the vertices at weight 1 of a target; (0, 0, 0) for a vertex without one.
+// Returns the true unit normals of the vertices at weight 1 of a target. A vertex without a normal gets (0, 0, 0).
 std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) {
   const GltfShading& shading = source.shading;
   std::vector<double> weights(shading.set.targets.size(), 0.0);
@@ -42,7 +42,8 @@ std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) 
   return result;
 }
 
-// Returns a vector in the plane of two edges, transformed as the edges change; zero if the face is too thin.
+// Returns a vector in the plane of two edges after the edges have changed. Returns zero if the face between the edges
+// is too thin.
 Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::array<Vec3d, 2>& to) {
   const double aa = dot(from[0], from[0]), ab = dot(from[0], from[1]), bb = dot(from[1], from[1]);
   const double determinant = aa * bb - ab * ab;
@@ -51,8 +52,8 @@ Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::
   return ((a * bb - b * ab) / determinant) * to[0] + ((b * aa - a * ab) / determinant) * to[1];
 }
 
-// Returns the tangents of all vertices at weight 1 of a target, of any length: they move with their faces. If the
-// target moves no face around a vertex, its tangent is that of the base.
+// Returns the tangents of all vertices at weight 1 of a target, after they have moved with their faces. The tangents
+// have any length. If the target moves no face around a vertex, returns the tangent of the base for this vertex.
 std::vector<Vec3d> carried_tangents(const GltfShading& shading, std::size_t target) {
   const std::size_t vertices = shading.element_of_vertex.size();
   std::vector<double> weights(shading.set.targets.size(), 0.0), after(3 * vertices);

@@ -1,16 +1,21 @@
-/// Computes the changes that targets make to the tangents of normal-mapped primitives, so that tangents stay
-/// perpendicular to the right normals and keep length 1. Private to workflow.
+/// Computes the changes that targets make to the tangents of normal-mapped primitives. Tangents stay perpendicular to
+/// the right normals, and keep length 1. Private to workflow.
 ///
-///     carried    a tangent lies in the faces around its vertex and follows each of them, as texture coordinates do: if
-///                it is a e1 + b e2 of the edges of a face in the base, it is a e1' + b e2' at weight 1 of a target.
-///                The results are weighted by the angle of the face there, as in MikkTSpace.
-///     upright    the part of the tangent along the right normal is removed, and the rest is scaled to length 1
-///     stale      at weight 1 of the target, the angle between a stored tangent and the right normal is farther from 90
-///                degrees than in the base, by more than a degree. One such vertex is enough to compute all tangents of
-///                the target anew; otherwise they all stay as they are
+///     carried    A tangent lies in the faces around its vertex and moves with each of them, as texture coordinates do.
+///     If it
+///                is a e1 + b e2 for the edges e1, e2 of a face in the base, it is a e1' + b e2' at weight 1 of a
+///                target.
+///                The results of several faces are added up, weighted by the angle of the face at the vertex, as in
+///                MikkTSpace.
+///     upright    The part of the tangent along the right normal is removed, and the rest is scaled to length 1.
+///     stale      A stored tangent is stale if at weight 1 of the target its angle to the right normal is farther from
+///     90
+///                degrees than in the base, by more than a degree. If one vertex has a stale tangent, all tangents of
+///                the
+///                target are computed anew. Otherwise all of them stay as they are.
 ///
-/// With several active targets, changes of tangents add up; they are then as accurate as normals with one delta per
-/// target.
+/// If several targets are active, their changes of a tangent add up. Tangents are then as accurate as normals with one
+/// delta for each target.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_TANGENTS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_TANGENTS_H_
 
@@ -23,11 +28,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns for each target whether its stored tangents are stale. If no viewer adds up tangents, all are false. The
-/// shading must have its deltas. O(corners) for each target that moves something.
+/// Returns for each target if its stored tangents are stale. If no viewer adds up tangents, all results are false. The
+/// shading must have its deltas. Takes O(corners) for each target that moves a vertex.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
-/// Returns the deltas of a target for tangents: (vertices, 3) for each part, empty for parts without tangents.
+/// Returns the deltas of tangents for a target. They are (vertices, 3) for each part, and empty for parts without
+/// tangents.
 [[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,5 @@
-// Finds the terms of a mesh: by area from products of positions, and by other weightings from fits to samples.
+// Computes the terms of a mesh. By area, they follow from products of positions. By other weightings, they are fitted
+// to samples.
 #include "workflow/bake/deltas/terms.h"
 
 #include <algorithm>
@@ -23,7 +24,8 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// Returns a function that gives the positions of vertices at t, where 0 is the base and 1 the positions `to`.
+// Returns a function that returns the positions of vertices at t. At t = 0 they are those of the base, and at t = 1
+// `to`.
 auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
   return [&set, &to, t](std::uint32_t v) {
     const float* const from = set.base.data() + 3 * std::size_t{v};
@@ -68,12 +70,12 @@ void NormalTerms::fit_targets() {
   fits_.resize(set.targets.size());
   for (std::size_t i = 0; i < set.targets.size(); ++i) {
     Fit& fit = fits_[i];
-    // Elements whose faces do not move are skipped: their terms would be only rounding error.
+    // Elements whose faces do not move are left out, because their terms would be only rounding errors.
     fit.elements = truth_.elements_of(i);
     if (fit.elements.empty()) continue;
     std::vector<float> to = set.base;
     add_deltas(set.targets[i], to);
-    // Holds the true normals at each eighth of the weight, except at 0.
+    // The true normals at each eighth of the weight, except at 0.
     std::array<std::vector<Vec3d>, kSamples + 1> right;
     for (std::size_t s = 1; s <= kSamples; ++s) {
       const double weight = static_cast<double>(s) / kSamples;
@@ -113,7 +115,8 @@ BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
     return term;
   }
   if (i == j) return {fits_[i].elements, fits_[i].square, {}};
-  // Computes the true normals with both targets at weight 1, minus the sum of their single terms.
+  // The term of the pair is the true normal with both targets at weight 1, minus the sum of the terms of the single
+  // targets.
   std::vector<float> to = shading_.set.base;
   add_deltas(shading_.set.targets[i], to);
   add_deltas(shading_.set.targets[j], to);
@@ -191,7 +194,7 @@ std::vector<Vec3d> NormalTerms::weighted_at(std::span<const double> weights,
   if (const std::vector<Vec3d>* kept = sampled_.find(weights)) return take(*kept);
   std::vector<double> positions(shading_.set.base.size());
   blend_positions(shading_.set, weights, positions);
-  // Computes all elements, and keeps them, only if more than a quarter of them are requested.
+  // If more than a quarter of all elements are requested, computes all elements, and stores them for later calls.
   if (4 * elements.size() > shading_.groups.size()) return take(sample_all(weights, positions));
   const AuthorTruth::Pose pose = truth_.pose(weights);
   truth_.for_each(elements, placed(positions), pose,
@@ -204,7 +207,7 @@ ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& sq
 }
 
 ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept {
-  // Evaluates the polar form of the quadratic.
+  // The polar form of the quadratic, whose values are the control normals on a part of the interval.
   const auto at = [&normals](double s, double t) {
     return ((1 - s) * (1 - t)) * normals.n0 + ((1 - s) * t + s * (1 - t)) * normals.m + (s * t) * normals.n1;
   };
@@ -217,7 +220,7 @@ VertexTerms::VertexTerms(const Vec3d& base, double largest, const Vec3d& stored)
   const double of_base = length(base);
   if (has_base(base, largest)) {
     scale_ = of_base > 0 ? length_ / of_base : 0;
-    // If the author's normal points to the other side of the surface, the true normal is the opposite one.
+    // If the author's normal points to the other side of the surface, the true normal is the opposite of n(w).
     if (dot(base_, stored_) < 0) {
       base_ = -base_;
       side_ = -1;
@@ -234,7 +237,7 @@ Vec3d VertexTerms::turn(const Vec3d& v) const noexcept {
 
 Vec3d VertexTerms::end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept {
   if (max_abs(base_) > 0) return length_ * turn(delta);
-  // The best delta leads away from the limit of the true direction at weight 0. In the file, deltas lead away from N.
+  // The best single delta begins at the limit of the true direction at weight 0, but a delta in the file begins at N.
   return length_ * (unit_normal_at(normals, 0).vector + delta - stored_);
 }
 

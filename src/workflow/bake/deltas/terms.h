@@ -1,5 +1,5 @@
-/// The terms of the normals of one mesh, for any weighting, and how they become deltas of its vertices. Private to
-/// workflow.
+/// Computes the terms of the normals of one mesh, for any weighting, and converts them to deltas of vertices. Private
+/// to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
 
@@ -19,13 +19,13 @@
 
 namespace chronormal::inline internal {
 
-/// The true normals of all elements as a quadratic form in the weights. With area weights the form is exact. With other
-/// weightings the true normal is no polynomial, and the form is fitted. It then has the true direction, and the length
-/// by area, if one target has the weight 0, 1/2 or 1, or if two have the weight 1.
+/// The true normals of all elements as a quadratic form in the weights. If normals are weighted by area, the form is
+/// exact. If not, the true normal is no polynomial, and the form is fitted to it. The fitted form has the true
+/// direction, and the length by area, if one target has the weight 0, 1/2 or 1, or if two targets have the weight 1.
 class NormalTerms {
  public:
-  /// Fits the terms of all targets if the true normals are not weighted by area. The shading and its truth must outlive
-  /// this object.
+  /// Fits the terms of all targets, if the true normals are not weighted by area. The shading and its truth must
+  /// outlive this object.
   NormalTerms(const GltfShading& shading, const AuthorTruth& truth);
 
   /// Returns n(0) of an element.
@@ -35,38 +35,39 @@ class NormalTerms {
   /// Return the linear term A_i of a target and the term C_ij of a pair (docs/theory.md), without rounding noise.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
-  /// Return terms whose values are looked up element by element.
+  /// Return terms as functions, which compute or find the value of one element at a time.
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;
-  /// Returns the elements in which a target may have terms, ascending.
+  /// Returns the elements in which a target may have terms, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i) const {
     return is_fitted() ? fits_[i].elements : by_area_.elements(i);
   }
-  /// Returns the elements in which the pair may have a term, ascending.
+  /// Returns the elements in which the pair may have a term, in ascending order.
   [[nodiscard]] std::vector<std::uint32_t> elements(std::size_t i, std::size_t j) const;
-  /// Returns true if two targets can have a term as a pair: if both move the same face or, for fitted weightings, the
-  /// same element.
+  /// Returns true if two targets can have a term as a pair. This is so if both move the same face or, if the weighting
+  /// is fitted, the same element.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const;
-  /// Return normals at some weights, computed from the blended positions: exact_at() the right ones with the length by
-  /// area, by_area_at() those weighted by area, whatever the weighting.
+  /// Return the normals of all elements at some weights, computed from the blended positions. exact_at() returns the
+  /// true normals with the length by area, and by_area_at() returns the normals by area for any weighting.
   [[nodiscard]] std::vector<Vec3d> exact_at(std::span<const double> weights) const;
   [[nodiscard]] std::vector<Vec3d> at(std::span<const double> weights) const { return exact_at(weights); }
   [[nodiscard]] std::vector<Vec3d> by_area_at(std::span<const double> weights) const {
     return normals_from_positions(shading_, weights);
   }
-  /// Returns the normals of some elements by a fitted weighting at some weights, with the length by area.
+  /// Returns the true normals of some elements at some weights, for a fitted weighting. The normals have the length by
+  /// area.
   [[nodiscard]] std::vector<Vec3d> weighted_at(std::span<const double> weights,
                                                std::span<const std::uint32_t> elements) const;
   [[nodiscard]] bool is_fitted() const noexcept { return !truth_.is_plain(); }
-  /// Returns true if the file has the author's normals at keys, and the true normals equal them there.
+  /// Returns true if the file has the author's normals at keys, and the true normals are equal to them there.
   [[nodiscard]] bool follow_keys() const { return truth_.follows_keys(); }
   /// Returns the largest angle between the fitted and the true normals of a single target, in radians, measured at
-  /// eighths of its weight; 0 by area.
+  /// eighths of its weight. Returns 0 if normals are weighted by area.
   [[nodiscard]] double fit_error(std::size_t i) const { return is_fitted() ? fits_[i].error : 0; }
 
  private:
-  // The terms of one target, for the elements of the faces that it moves.
+  // The terms of one target, for the elements of the faces that the target moves.
   struct Fit {
     std::vector<std::uint32_t> elements;
     std::vector<Vec3d> linear, square;
@@ -75,21 +76,22 @@ class NormalTerms {
   static constexpr std::size_t kMostSampledBytes = std::size_t{256} << 20;
 
   void fit_targets();
-  // Returns the true normals of all elements at some weights, with the length by area. Keeps them while there is room.
+  // Returns the true normals of all elements at some weights, with the length by area. Stores them for later calls as
+  // long as there is room.
   [[nodiscard]] std::vector<Vec3d> sample_all(std::span<const double> weights, std::span<const double> positions) const;
 
   const GltfShading& shading_;
   const AuthorTruth& truth_;
   BlendTerms by_area_;
-  std::vector<Vec3d> base_;  // set if the truth is fitted, or if it takes little memory
+  std::vector<Vec3d> base_;  // set if the truth is fitted, or if the list takes little memory
   std::vector<Fit> fits_;
-  mutable PoseMemory sampled_{kMostSampledBytes};  // all elements
+  mutable PoseMemory sampled_{kMostSampledBytes};  // stored normals of all elements
 };
 
 /// A term whose values are computed or looked up when they are needed. Threads: const functions may run at once.
 class NormalTerms::Term {
  public:
-  /// Returns whether an element has the term, and writes its value.
+  /// Returns true if an element has the term, and writes its value.
   [[nodiscard]] bool find(std::uint32_t element, Vec3d& value) const;
 
  private:
@@ -101,18 +103,19 @@ class NormalTerms::Term {
   BlendTerm fitted_;
 };
 
-/// Returns the control normals of a single target from weight 0 to 1, from its terms.
+/// Returns the control normals of a single target from weight 0 to 1. They follow from the terms of the target.
 [[nodiscard]] ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
 
-/// Returns the control normals from weight `from` to weight `to`, given those from 0 to 1.
+/// Returns the control normals from weight `from` to weight `to`. `normals` are the control normals from 0 to 1.
 [[nodiscard]] ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept;
 
-/// A map that turns and scales the terms of an element for a vertex that shows it: it divides them by |n(0)|,
-/// multiplies by the length of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is nearly
-/// zero, a division is impossible; the terms are then made so long that N does not matter beside them.
+/// Turns and scales the terms of an element for a vertex that shows the element. Divides a term by |n(0)|, multiplies
+/// it by the length of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is nearly zero,
+/// this division is impossible. The terms then become so long that N hardly matters in the sum.
 class VertexTerms {
  public:
-  /// Takes n(0) of the element, the length of its largest term, and the stored normal of the vertex.
+  /// Creates the map. base is n(0) of the element, `largest` the length of its largest term, and stored the stored
+  /// normal of the vertex.
   VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept;
 
   [[nodiscard]] static bool has_base(const Vec3d& base, double largest) noexcept {
@@ -122,11 +125,11 @@ class VertexTerms {
     return largest <= kLongest * length_of_base;
   }
 
-  /// Converts a term of n(w).
+  /// Returns a term of n(w) as a delta of the vertex.
   [[nodiscard]] Vec3d operator()(const Vec3d& term) const noexcept { return scale_ * turn(term); }
-  /// Converts the best single delta, for which |n(0)| is 1.
+  /// Returns the best single delta as a delta of the vertex. The argument is scaled so that |n(0)| is 1.
   [[nodiscard]] Vec3d end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept;
-  /// Converts a fitted delta (fitted_lines.h), for which |n(0)| is 1.
+  /// Returns a fitted delta (fitted_lines.h) as a delta of the vertex. The argument is scaled so that |n(0)| is 1.
   [[nodiscard]] Vec3d fitted_delta(const Vec3d& delta) const noexcept;
 
  private:

@@ -1,6 +1,6 @@
-// turning_unit() looks for u = q + x right, where q = base - shown / weight, |u| = 1, and the sum weight x right is not
-// zero. The part of q across `right` is fixed. The part of u along `right` follows from |u| = 1, and may have either
-// sign.
+// Finds unit vectors. turning_unit() needs a vector u = q + x right with |u| = 1, where q = base - shown / weight, and
+// the sum weight x right must not be zero. The part of u across `right` is that of q. The part of u along `right`
+// follows from |u| = 1, and may have either sign.
 #include "workflow/bake/deltas/unit_targets.h"
 
 #include <cmath>
@@ -12,13 +12,13 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr int kDirections = 16;
-constexpr int kSteps = 24;                 // steps of a bisection, to 1e-7 of the arc
-constexpr double kShortestSum = 1.0 / 16;  // length of the shortest sum of unit normals; rounding turns shorter ones
+constexpr int kSteps = 24;                 // steps of a bisection, which finds a point to 1e-7 of the arc
+constexpr double kShortestSum = 1.0 / 16;  // shorter sums of unit normals turn by rounding
 
-// Slightly below 1, since differences are rounded to float32.
+// The largest component that fits. It is slightly below 1, since differences are rounded to float32.
 constexpr double kMost = 1 - 1e-6;
 
-// Returns a point of the arc at this part of its length. If the ends are opposite, uses any arc between them.
+// Returns the point of the arc at this part of its length. If the two ends are opposite, uses any arc between them.
 Vec3d on_arc(const Vec3d& from, const Vec3d& to, double part) {
   const Vec3d aside = to - dot(from, to) * from;
   const Vec3d across = length(aside) > 1e-9 ? unit(aside) : any_perpendicular(from);
@@ -61,8 +61,8 @@ std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& ve
   const Vec3d middle = base + 0.5 * vector;
   const double room = 1 - dot(middle, middle);
   if (!(room >= 0)) return std::nullopt;
-  // The two unit vectors may lie on either side of the middle in any direction across it. Takes the direction with the
-  // smallest components.
+  // The two unit vectors lie on two sides of the middle, in any direction across it. The direction with the smallest
+  // components is chosen.
   const Vec3d x = any_perpendicular(max_abs(middle) > 0 ? unit(middle) : Vec3d{1, 0, 0});
   const Vec3d y = max_abs(middle) > 0 ? cross(unit(middle), x) : Vec3d{1, 0, 0};
   std::optional<std::array<Vec3d, 2>> best;

@@ -1,5 +1,5 @@
-/// Vectors of vertices in columns, where each column (a target) has one weight. Files store them column by column;
-/// adding them up needs them vertex by vertex. Private to workflow.
+/// Stores vectors of vertices in columns. Each column belongs to a target, and has one weight in a pose. Files store
+/// vectors column by column, but the sum of a vertex needs them vertex by vertex. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
 
@@ -12,7 +12,7 @@
 
 namespace chronormal::inline internal {
 
-/// Vectors of some vertices, ascending; all others are zero.
+/// The vectors of some vertices, in ascending order of the vertices. All other vertices have the vector (0, 0, 0).
 struct VertexVectors {
   std::vector<std::uint32_t> vertices;
   std::vector<Vec3f> vectors;
@@ -20,7 +20,7 @@ struct VertexVectors {
   [[nodiscard]] Vec3f at(std::size_t vertex) const noexcept;
 };
 
-/// The nonzero deltas of each vertex in one candidate, with their columns.
+/// The deltas of each vertex in one candidate that are not zero, with the columns to which they belong.
 struct VertexColumns {
   struct Entry {
     std::uint32_t column = 0;
@@ -28,7 +28,7 @@ struct VertexColumns {
 
     friend bool operator==(const Entry&, const Entry&) = default;
   };
-  std::vector<std::size_t> first;  ///< (n + 1)
+  std::vector<std::size_t> first;  ///< (n + 1), the first entry of each vertex
   std::vector<Entry> entries;
 
   [[nodiscard]] std::span<const Entry> of(std::size_t n) const {
@@ -36,7 +36,8 @@ struct VertexColumns {
   }
 };
 
-/// Reorders columns of vectors, each for its own vertices, into lists of columns for each vertex.
+/// Reorders vectors. Each input column has its own vertices, and the result has a list of columns for each of
+/// `vertices`.
 [[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
                                       std::span<const std::uint32_t> vertices);
 

@@ -88,9 +88,9 @@ using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each correction target; all zero if there are sums or curves
   std::vector<GltfExtraTarget> sums;  ///< one for each correction target, or none; then tracks also have curves
-  TrackCurves curves;                 ///< for curves, the weights in the poses that the file stores (MeshWeights)
-  PoseList rest;                      ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
-  TrackPieces pieces;                 ///< of the LINEAR tracks that stay LINEAR; others become cubic splines
+  TrackCurves curves;                 ///< the curves of each track; empty if there are formulas
+  PoseList rest;                      ///< for curves, the weights in the poses that the file stores (MeshWeights)
+  TrackPieces pieces;                 ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
   /// An angle in radians. Cubic splines get more keys until the errors of formulas turn no normal by more than this
   /// angle. If it is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();

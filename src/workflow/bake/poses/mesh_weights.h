@@ -40,7 +40,7 @@ struct MeshWeights {
   std::vector<TrackName> names;     ///< the name of each track
   std::vector<TimeRange> ranges;    ///< the time range of each track's animation
   PoseList poses;                ///< poses that stand still: of the mesh, its nodes, and the expressions of an avatar
-  std::size_t stored_poses = 0;  ///< the number of poses, from the first on, for which the file stores all weights
+  std::size_t stored_poses = 0;  ///< the number of poses of the mesh and its nodes; those of expressions follow them
   WeightUse use;
   bool is_driven = false;  ///< true if an animation gives some moving target a weight
   /// The poses to fit to, if no animation drives the mesh and a bake tries correction targets.

@@ -1,5 +1,5 @@
-// Areas and sums are computed from rows of points in blocks (normals/groups/kernels/vector_areas.h); polygons with more
-// than three corners are computed one by one.
+// Computes areas and sums from rows of points, block by block (normals/groups/kernels/vector_areas.h). Polygons with
+// more than three corners are computed one by one.
 #include "workflow/bake/sequence/area_sums.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kAreaBlock = 4096;            // elements
-constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces per block if all areas are computed first
+constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces in a block, if all areas are computed first
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   std::uint32_t first = ~std::uint32_t{0}, end = 0;
@@ -27,7 +27,7 @@ IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   return end == 0 ? IndexRange{} : IndexRange{first, end - first};
 }
 
-// Returns the normal of a polygon; components that are only rounding error of its products become zero.
+// Returns the normal of a polygon, with twice its area as length. Components that are only rounding errors become zero.
 Vec3d polygon_area(std::span<const std::uint32_t> face, const double* points) {
   const auto point = [&](std::size_t c) {
     const double* const row = points + kAreaRow * std::size_t{face[c]};

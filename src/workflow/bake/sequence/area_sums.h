@@ -1,10 +1,10 @@
-/// Normals of elements as sums of the vector areas of the faces around them. Private to workflow.
+/// Computes normals of elements as sums of the vector areas of the faces around them. Private to workflow.
 ///
-/// Each block of elements computes the areas of its faces itself, so that they stay in a cache near the core. Faces
-/// between two blocks are computed twice. If faces and elements are not in a similar order, there would be too many
-/// such faces; then the areas of all faces are computed first.
+/// Each block of elements computes the areas of its faces itself, so that these areas stay in a cache near the core.
+/// Areas of faces between two blocks are computed twice. If faces are in a very different order than elements, there
+/// are too many such faces, and the areas of all faces are computed first.
 ///
-/// Threads    each function uses all cores (core/parallel.h); the same bits on any number of threads.
+/// Threads    Each function uses all cores (core/parallel.h). The results have the same bits on any number of threads.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_AREA_SUMS_H_
 
@@ -21,7 +21,7 @@
 
 namespace chronormal::inline internal {
 
-/// A point, or its displacement, for each vertex: rows of four doubles, of which three count.
+/// Rows with a point, or its displacement, for each vertex. A row has four doubles, of which the first three are used.
 using PointRows = AlignedArray<double>;
 
 class AreaSums {
@@ -29,24 +29,25 @@ class AreaSums {
   /// Divides the elements into blocks. The topology and the groups must outlive this object.
   AreaSums(const Topology& topology, const NormalGroups& groups);
 
-  /// Calls body(elements, sums_of_a, sums_of_b) for blocks of elements, with the sums of the areas at the points a and
-  /// at the points b. The sums are valid until body returns. If b is nullptr, sums_of_b is empty.
+  /// Calls body(elements, sums_of_a, sums_of_b) for each block of elements. The sums are those of areas for the points
+  /// a and for the points b. They are valid until body returns. If b is nullptr, sums_of_b is empty.
   using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
-  /// Does the same, but more exactly. If the areas of an element cancel to less than 2^-20 of their size, their sum is
-  /// hardly more than rounding error; then of_a() or of_b() computes it. These are called on several threads at once.
+  /// Calls body in the same way, but with more exact sums. If the areas of an element cancel to less than 2^-20 of
+  /// their size, their sum is hardly more than rounding error, and of_a() or of_b() computes it instead. Both functions
+  /// are called on several threads at the same time.
   using Exact = std::function<Vec3d(std::size_t element)>;
   void each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b, const Body& body) const;
 
  private:
-  // Replaces sums of areas that cancel. first_face is the index of the face in the first row of areas.
+  // Replaces sums of areas that cancel. first_face is the index of the face to which the first row of areas belongs.
   void settle(const double* areas, std::size_t first_face, IndexRange elements, const Exact& exact,
               std::span<Vec3d> sums) const;
   void write_areas(const PointRows& points, IndexRange faces, double* areas) const;
 
   const Topology* topology_;
   const NormalGroups* groups_;
-  std::vector<IndexRange> faces_of_block_;  // for each block, the faces around its elements and all faces between these
+  std::vector<IndexRange> faces_of_block_;  // for each block, the first to the last face around its elements
   bool are_scattered_ = false;
 };
 

@@ -1,4 +1,4 @@
-// Starts at each key and extends the line to the next key as far as its certificate allows.
+// Chooses keys. Extends the line that starts at a key as far as its certificate allows, and puts the next key there.
 #include "workflow/bake/sequence/fewest_keys.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kKeyBlock = 128;
 
-// An instant: a segment, and the local time t in it, from 0 to 1.
+// An instant: a segment, and the time t in this segment, from 0 to 1.
 struct Instant {
   std::size_t segment = 0;
   double t = 0;
@@ -28,15 +28,15 @@ std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std:
   return result;
 }
 
-// Converts a time to an instant; keyframe k is at time k. The last keyframe is at the end of the last segment, and all
-// others are at the start of a segment.
+// Converts a time to an instant. Keyframe k is at time k. The last keyframe is at the end of the last segment, and all
+// other keyframes are at the start of a segment.
 Instant instant_of(double time, std::size_t segments) {
   const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
   return {segment, time - static_cast<double>(segment)};
 }
 
-// Returns the directions of elements at a key. An element without a direction in the key's segment takes the direction
-// from the previous segment.
+// Returns the directions of elements at a key. If an element has no direction in the key's segment, returns its
+// direction in the segment before.
 template <class OfSegment>
 std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
   const std::vector<ControlNormals>& normals = of_segment(at.segment);
@@ -49,14 +49,14 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
   return result;
 }
 
-// Holds all keyframes that affect the directions at two instants and in between: those of the segments of the instants,
-// and of the segment before the first.
+// Reads all keyframes that affect the directions at two instants and between them into memory. These are the keyframes
+// of the segments with these instants, and of the segment before the first one.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// A judge of straight lines between the normals at two instants. Times count keyframes: keyframe k is at k. After a
-// keyframe could not be read, status() has the error, and no answer is valid.
+// Judges straight lines between the normals at two instants. Times count keyframes: keyframe k is at time k. If a
+// keyframe could not be read, status() has the error, and all other results are invalid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
@@ -102,8 +102,8 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out (of all later judgements) the elements of a segment for which even the line from a to b within it
-  // exceeds the tolerance.
+  // Leaves out elements of a segment from all later judgements. These are the elements for which even the line from a
+  // to b in the segment exceeds the tolerance.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;
     const Instant start = at(a);
@@ -121,12 +121,12 @@ class LineJudge {
     for (const auto& flags : left_out_) count += static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
     return count;
   }
-  // Frees the data of segments before this one.
+  // Frees the data of the segments before this segment.
   void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
 
  private:
-  // The part of a line from a to b that lies in a segment: its range of local t, and its range on the line, from 0 to
-  // 1.
+  // The part of a line from a to b that lies in one segment, as a range of t in the segment, and as a range on the line
+  // from 0 to 1.
   struct Part {
     double from_t, to_t, from_share, to_share;
   };
@@ -158,7 +158,8 @@ class LineJudge {
   [[nodiscard]] Vec3d position(const Instant& at, std::size_t v) const {
     return lerp(to_double(position(at.segment, v)), to_double(position(at.segment + 1, v)), at.t);
   }
-  // Returns true if all vertices of the keyframes between a and b lie on the straight line from a to b.
+  // Returns true if all vertices of the keyframes between a and b lie on the straight lines between their positions at
+  // a and b.
   [[nodiscard]] bool is_straight(double a, double b) {
     if (!hold(a, b)) return false;
     const Instant start = at(a), end = at(b);
@@ -183,8 +184,8 @@ class LineJudge {
 
 double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
 
-// Returns the last step, at most `to`, that a line from step `from` can reach. The line certainly reaches `reached`,
-// which may equal `from`.
+// Returns the last step that a line from step `from` can reach, but at most `to`. The caller knows that the line can
+// reach the step `reached`, which may be equal to `from`.
 std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
   std::size_t beyond = to + 1;
   while (beyond - reached > 1) {

@@ -13,16 +13,16 @@ namespace {
 
 constexpr std::size_t kHarmlessBlock = 256;
 constexpr double kWorthIt = 2e-3;    // radians: a smaller gain would only fill the file
-constexpr std::size_t kJudged = 40;  // the number of instants at which a segment is judged, without its first key
+constexpr std::size_t kJudged = 40;  // instants in a segment at which it is judged; its first key is not among them
 
-// Returns the weight 4 t (1 - t) as the LINEAR track plays it, in straight pieces.
+// Returns the weight 4 t (1 - t) of a bend as the LINEAR track plays it, in straight pieces.
 double bend_weight(double t) {
   const double at = t * kBendPieces, piece = std::min(std::floor(at), kBendPieces - 1.0);
   const auto exact = [](double n) { return 4 * (n / kBendPieces) * (1 - n / kBendPieces); };
   return exact(piece) + (at - piece) * (exact(piece + 1) - exact(piece));
 }
 
-// Returns the largest angle between rendered and true normals in a segment.
+// Returns the largest angle between rendered and true normals in a segment, in radians.
 double worst_angle(const ControlNormals& n, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
   double worst = 0;
   for (std::size_t j = 1; j <= kJudged; ++j) {

@@ -1,5 +1,5 @@
-// Bakes a sequence. A viewer renders normalize(N + sum_k w_k D_k). Each key has a target whose weight is a hat (1 at
-// the key, falling linearly to 0 at both neighbours), and each segment has one more target with the weight t (1 - t).
+// Bakes a sequence. A viewer renders normalize(N + sum_k w_k D_k). Each key has a target whose weight is a hat: it is 1
+// at the key and falls linearly to 0 at both neighbours. Each segment has one more target with the weight t (1 - t).
 // The sum is then eq. 41 of docs/theory.md (section 15), so the normals are exact.
 //
 //     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
@@ -10,9 +10,9 @@
 //     fewest_keys                     the instants that need keys                                   fewest_keys
 //     SequenceFile                    the arrays, the weights that drive them, and the mark, as a GLB   sequence_file
 //
-// The steps are passes over the keyframes. A pass holds two keyframes at a time or, to choose keys, those between two
-// keys. The arrays go to a spool. So memory does not grow with the number of keyframes, unless a weighting other than
-// area is fitted.
+// Each step goes through all keyframes. Two keyframes are in memory at a time or, while keys are chosen, the keyframes
+// between two keys. The arrays of the file are written to a spool. For this reason memory does not grow with the number
+// of keyframes, unless a weighting other than area is fitted.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,8 +46,8 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
-// Returns the weighting that the stored normals of keyframe 0 clearly follow, or area if there is none. Returns area
-// too if the fits of all segments, which must be in memory, would be too large.
+// Returns the weighting that the stored normals of keyframe 0 clearly follow. Returns area if there is no such
+// weighting, or if the fits of all segments, which must be in memory, would be too large.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
@@ -68,7 +68,7 @@ Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const B
       .detected;
 }
 
-// Returns the times as the file stores them: float32, shifted so that none is below 0.
+// Returns the times of keyframes as the file stores them: in float32, and shifted so that no time is below 0.
 Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::string>& warnings) {
   const double shift = std::max(-motion.keyframes[0].time, 0.0);
   if (shift > 0)
@@ -77,7 +77,7 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
-    // The slope of a weight is up to 1 / (time between two keys), which float32 must be able to hold.
+    // The slope of a weight is up to 1 / (time between two keys). float32 must be able to hold this slope.
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
@@ -89,13 +89,13 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Wraps the elements of encodings that do not limit deltas for compressors.
+// Wraps elements without counting deltas beyond 1, for encodings that do not limit deltas for compressors.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// Counts the polygons that cross themselves, because some of their triangles face the other way.
+// Counts the polygons that cross themselves, so that some of their triangles face the other way.
 std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
@@ -116,7 +116,7 @@ std::size_t count_crossing(const Topology& topology, const std::vector<float>& p
   return count;
 }
 
-// Returns the largest error bound of the fits of a weighting, in degrees; 0 if normals are weighted by area.
+// Returns the largest error bound of the fits of a weighting, in degrees. Returns 0 if normals are weighted by area.
 double largest_bound(const SequenceNormals& normals) {
   double largest = 0;
   for (const std::vector<double>& bounds : normals.bounds()) {
@@ -137,8 +137,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
                               "faces have no area there, or much less than later");
 }
 
-// Adds the targets of the encoding exact to the file, and notes which segments bend. If the elements are not final,
-// returns false as soon as a segment shows that they must be different.
+// Adds the targets of the encoding exact to the file, and records which segments bend. If the elements may still
+// change, returns false as soon as a segment needs other elements.
 Result<bool> try_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, bool are_final,
                        const Step& step, SequenceTargets& targets, SequenceFile& file) {
   return each_exact_segment(normals, elements, are_final, [&](std::size_t s, const ExactSegment& values) {
@@ -157,8 +157,8 @@ bool any_frees_base(const std::vector<SequenceElement>& elements) {
   return std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
 }
 
-// Writes the targets of the encoding exact. For almost every sequence the first segment determines the elements, and
-// one pass over the keyframes is enough; otherwise it takes three passes.
+// Writes the targets of the encoding exact. In almost every sequence the first segment determines the elements, and the
+// keyframes are read once. Otherwise they are read three times.
 Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
                    SequenceTargets& targets, SequenceFile& file) {
   std::size_t furthest = 0;
@@ -182,7 +182,7 @@ Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>&
   return Success{};
 }
 
-// Adds the targets of the encoding endpoint to the file. Returns the largest remaining angle, in degrees.
+// Adds the targets of the encoding endpoint to the file. Returns the largest angle that is left, in degrees.
 Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               const Step& step, SequenceFile& file) {
   EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
@@ -199,7 +199,7 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
   return largest;
 }
 
-// Returns the number of targets that all of these viewers support.
+// Returns the largest number of targets that all of these viewers support.
 std::size_t room_for_targets(std::span<const Viewer> viewers) {
   std::size_t room = std::numeric_limits<std::size_t>::max();
   for (const Viewer& viewer : viewers)
@@ -218,7 +218,8 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Chooses the segments that get a bend: as many as there is room for, and those in which it reduces errors most.
+// Chooses the segments that get a bend. If there is not enough room for all, chooses those in which bends reduce errors
+// most.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
   const std::size_t segments = normals.keys() - 1;
@@ -235,8 +236,8 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
   return is_bent;
 }
 
-// Adds the targets of the encoding harmless to the file, and notes which segments bend. Returns the largest remaining
-// angle, in degrees.
+// Adds the targets of the encoding harmless to the file, and records which segments bend. Returns the largest angle
+// that is left, in degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
@@ -267,7 +268,7 @@ Result<double> write_harmless(const SequenceNormals& normals, const std::vector<
   return kDegreesPerRadian * largest;
 }
 
-// Chooses keys, and adds a target for each key except the first. Returns the times of all keys.
+// Chooses keys, and adds a target for each key except the first one. Returns the times of all keys, in seconds.
 Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormals& normals,
                                       const std::vector<SequenceElement>& elements, const std::vector<float>& keyframes,
                                       double tolerance, const Step& step, SequenceFile& file, SequenceBake& report) {
@@ -324,7 +325,8 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
                          std::string(viewer.beyond));
 }
 
-// Moves all viewers to the named viewers. A sequence has no choice of candidates, and is made for all of them alike.
+// Returns the options with all viewers among the named viewers. A sequence has no candidates to choose from, so the
+// bake is the same for all viewers.
 BakeOptions for_all_viewers(const BakeOptions& asked) {
   BakeOptions options = with_viewers(asked);
   options.viewers.insert(options.viewers.end(), options.spared.begin(), options.spared.end());
@@ -332,7 +334,7 @@ BakeOptions for_all_viewers(const BakeOptions& asked) {
   return options;
 }
 
-// Bakes a sequence: writes the arrays of the file to the spool, and finally passes all bytes of the file to `take`.
+// Bakes a sequence. Writes the arrays of the file to the spool, and in the end passes all bytes of the file to `take`.
 Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked, Spool spool,
                                  const GlbBuilder::Take& take) {
   const BakeOptions options = for_all_viewers(asked);
@@ -369,7 +371,8 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  if (!is_exact && normals.bounds().empty()) {  // exact checks deltas while it writes, and fits were checked before
+  // Exact checks deltas while it writes, and fits are checked when they are made.
+  if (!is_exact && normals.bounds().empty()) {
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }
   const bool are_units = encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kKeys;

@@ -16,11 +16,12 @@ namespace {
 
 constexpr std::size_t kBlock = 256;
 
-// Limits for the length of an element's normals, relative to its normal at key 0. Beyond these limits, the base normal
-// N cannot be the normal at key 0.
+// Limits for the length of an element's normals, relative to its normal at key 0. If a normal is beyond these limits,
+// the base normal N cannot be the normal at key 0.
 constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40;
 
-// The lengths of the control normals of an element: at key 0, and the smallest and largest of all segments.
+// The lengths of the control normals of an element: the length at key 0, and the smallest and the largest of all
+// segments.
 struct Sizes {
   double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;
 };
@@ -39,8 +40,8 @@ void look_at(const ControlNormals& n, bool is_first, SequenceElement& element, S
 }
 
 // Decides the base normal N of an element. Usually N = n_0 / |n_0|, where n_0 is the normal at key 0. This is
-// impossible if n_0 = 0, and it loses the directions at other keys in float32 if the normals there are much shorter
-// than n_0.
+// impossible if n_0 = 0. If normals at other keys are much shorter than n_0, their directions would be lost in float32,
+// so N is then different too.
 void settle(const Sizes& sizes, SequenceElement& element) {
   constexpr double kWidest = 0x1p-60;
   const auto& [at_key_0, smallest, largest] = sizes;
@@ -52,11 +53,11 @@ void settle(const Sizes& sizes, SequenceElement& element) {
   element.scale = element.frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
 }
 
-// Returns true if a segment does not change the element that settle() made from the segments before it.
+// Returns true if a segment agrees with the data that settle() found for an element from the segments before it.
 bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
   if (element.has_none) return rounded_to_float(unit_normal_at(n, 0).vector) == Vec3d{};
   if (element.frees_base) return false;
-  // A length is at least the largest component, and less than twice that.
+  // The length of a vector is at least its largest component, and less than twice this component.
   const double largest = std::max({max_abs(n.n0), max_abs(n.m), max_abs(n.n1)});
   if (largest >= kMuchSmaller * element.scale && 2 * largest <= kMuchLarger * element.scale) return true;
   const double size = size_of(n);
@@ -64,14 +65,14 @@ bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
 }
 
 Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
-  // A delta that is only the rounding error of N is dropped, since it would needlessly fill the file.
+  // A delta that is only the rounding error of N would needlessly make the file larger, so it is dropped.
   constexpr double kNothing = 0x1p-23;
   const Vec3d delta = (1 / element.scale) * at_key - element.normal;
   return !element.has_none && !(max_abs(delta) < kNothing) ? delta : Vec3d{};
 }
 
 Vec3d bend_delta(const SequenceElement& element, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
-  // A bend that turns no normal by more than 1e-8 rad is dropped (degree() has the same limit).
+  // A bend that turns no normal by more than 1e-8 rad is dropped. degree() has the same limit.
   constexpr double kNothing = 0x1p-28;
   const double size = std::max(max_abs(from), max_abs(to));
   return !(max_abs(bend) <= kNothing * size) ? (-1 / element.scale) * bend : Vec3d{};
@@ -81,7 +82,7 @@ VectorView<float> view_of(std::vector<float>& values) {
   return VectorView<float>::packed(values.data(), values.size() / 3);
 }
 
-// Returns the elements as the first `segments` segments determine them.
+// Returns the data of elements that follow from the first `segments` segments.
 Result<std::vector<SequenceElement>> elements_of(const SequenceNormals& normals, std::size_t segments) {
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());
@@ -151,9 +152,9 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
   return true;
 }
 
-// Finds the deltas of a key for the smallest error in the segment before it. The directions in a segment depend only on
-// the ratio of the lengths at its two keys. So every segment can have the best ratio, and the lengths are products of
-// ratios.
+// Finds the deltas of a key with the smallest error in the segment before it. The directions in a segment depend only
+// on the ratio of the lengths at its two keys. For this reason every segment can have the best ratio, and the lengths
+// at keys are products of ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
   constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;  // beyond these lengths, sums in float32 lose digits

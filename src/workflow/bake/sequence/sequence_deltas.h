@@ -1,5 +1,5 @@
-/// Computes base normals and deltas of the elements of a sequence. Everything here depends only on the normals of the
-/// sequence; sequence_file.h writes the results to a file. Private to workflow.
+/// Computes base normals and deltas of the elements of a sequence. The results depend only on the normals of the
+/// sequence. sequence_file.h writes them to a file. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_DELTAS_H_
 
@@ -13,42 +13,45 @@
 
 namespace chronormal::inline internal {
 
-/// The normal that a file shows if an element has none.
+/// The normal that a file shows for an element without a normal.
 inline constexpr Vec3d kAnyNormal{0, 0, 1};
 
-/// The data of one element that depend on the whole sequence.
+/// The data of one element that follow from the whole sequence.
 struct SequenceElement {
-  Vec3d normal;             ///< N: unit, float32
-  double scale = 1;         ///< the divisor of its normals
-  bool frees_base = false;  ///< N is not its normal at key 0, which then needs a target
-  bool has_none = true;     ///< it has no area in the whole sequence
+  Vec3d normal;             ///< N, a unit vector in float32
+  double scale = 1;         ///< the number by which the element's normals are divided
+  bool frees_base = false;  ///< if true, N is not its normal at key 0, so key 0 needs a target
+  bool has_none = true;     ///< true if it has no area in the whole sequence
 };
 
-/// Examines all segments to find the elements. The deltas must have been checked. Errors: from reading keyframes.
+/// Examines all segments to find the data of elements. check_deltas() must have been called. Errors: from reading
+/// keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
-/// Finds the elements from the first segment alone; for almost every sequence the result is the same. Errors:
-/// kInvalidInput if a delta is too large for float32; errors from reading keyframes.
+/// Finds the data of elements from the first segment alone. In almost every sequence the result is that of
+/// sequence_elements(). Errors: kInvalidInput if a delta is too large for float32; errors from reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals);
 
-/// The targets of one segment for the encoding exact, as float32 vectors one after the other.
+/// The targets of one segment for the encoding exact. Vectors are in float32, three numbers each.
 struct ExactSegment {
-  std::vector<float> positions;  ///< deltas of positions, from key 0 to the second key
-  std::vector<float> start;      ///< of elements: what key 0 adds to N, in segment 0 only
-  std::vector<float> key;        ///< what the second key adds to N
-  std::vector<float> bend;       ///< what the segment adds to the hats of its keys
-  bool bends = false;            ///< any normal bends; otherwise `bend` is not valid
+  std::vector<float> positions;  ///< deltas of the positions of vertices, from key 0 to the second key
+  std::vector<float> start;      ///< for each element, what key 0 adds to N; only in segment 0
+  std::vector<float> key;        ///< for each element, what the second key adds to N
+  std::vector<float> bend;       ///< for each element, what the segment adds to the sum of both keys
+  bool bends = false;            ///< true if any normal bends; otherwise `bend` is not valid
 };
 
-/// Calls body(segment, values) for every segment in order, until it returns an error. Holds the keys of one segment at
-/// a time. If the elements are not final, returns false as soon as a segment shows that sequence_elements() would
-/// return different ones. Errors: kInvalidInput if a delta is too large for float32; errors of body, and of the stream.
+/// Calls body(segment, values) for every segment in order, until it returns an error. Has the keys of one segment in
+/// memory at a time. If the elements may still change, returns false as soon as a segment shows that
+/// sequence_elements() would return different elements. Errors: kInvalidInput if a delta is too large for float32;
+/// errors of body, and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
     const SequenceNormals& normals, std::span<const SequenceElement> elements, bool are_final,
     const std::function<Status(std::size_t segment, const ExactSegment& values)>& body);
 
-/// The deltas of a key for the encoding endpoint, with which the errors in the segment before the key are smallest, and
-/// the largest angle that remains in that segment, in radians. `before` are the deltas of the previous key. `bounds`
-/// has the error bounds of fits, which are added to the angles; it may be empty.
+/// The deltas of a key for the encoding endpoint. They make the errors in the segment before the key as small as
+/// possible. `error` is the largest angle that is left in this segment, in radians. end_deltas() computes the deltas
+/// from `before`, the deltas of the key before. `bounds` has the error bounds of fits, which are added to the angles,
+/// and may be empty.
 struct EndDeltas {
   std::vector<Vec3d> deltas;
   double error = 0;

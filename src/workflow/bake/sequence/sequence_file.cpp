@@ -58,7 +58,7 @@ SequenceVertices make_vertices(const Topology& topology, const NormalGroups& gro
   return result;
 }
 
-// Writes a vector for each vertex of a file.
+// Writes a vector for each vertex of the file into `room`, and returns these vectors.
 template <class VectorAt>
 std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room, const VectorAt& vector_at) {
   constexpr std::size_t kVectorBlock = 8192;
@@ -75,8 +75,8 @@ std::optional<std::size_t> bend_of_segment(const SequenceTargets& targets, std::
   return static_cast<std::size_t>(found - targets.bent_segments.begin());
 }
 
-// Returns the track for the encoding exact: each key has a hat (its weight is 1 at the key and falls to 0 at both
-// neighbours), and each bent segment the weight t (1 - t).
+// Returns the track for the encoding exact. The weight of each key is a hat: it is 1 at the key and falls to 0 at both
+// neighbours. The weight of each bent segment is t (1 - t).
 SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<float>& times) {
   enum Row : std::size_t { kIn, kValue, kOut, kRows };
   const auto fill = [&targets, &times](std::size_t row, std::span<float> values) {
@@ -87,8 +87,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
     if (row % kRows == kValue) return set_key(key, 1);
     const bool is_in = row % kRows == kIn;
     if (key == (is_in ? 0 : targets.keys - 1)) return;
-    // Slopes are per second. A reader computes the length of the segment from the float32 times in the file, so this
-    // does too.
+    // Slopes are per second. A viewer computes the length of a segment from the float32 times in the file, so the same
+    // is done here.
     const std::size_t s = is_in ? key - 1 : key;
     const auto slope = static_cast<float>(1 / (double{times[s + 1]} - double{times[s]}));
     set_key(s, -slope);
@@ -98,8 +98,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
   return {times, kRows * targets.keys, targets.count(), fill};
 }
 
-// Returns the track for the other encodings: each key has a hat, and each bent segment the weight 4 t (1 - t), with
-// more keys inside the segment.
+// Returns the track for the other encodings. The weight of each key is a hat, and the weight of each bent segment is 4
+// t (1 - t), which needs more keys in the segment.
 SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
   struct TrackKey {
     std::size_t key;
@@ -117,7 +117,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
     const double from = times[k], length = double{times[k + 1]} - from;
     for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
       const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
-      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no such time between the keys
+      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between these two keys
       add(time, {k, (double{time} - from) / length});
     }
   }
@@ -136,7 +136,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
   return track;
 }
 
-// Describes the bend of a segment, t (1 - t) or 4 t (1 - t), as a product of the weights of two keys. If key 0 has no
+// Describes the weight of each bend, t (1 - t) or 4 t (1 - t), as a product of the weights of two keys. If key 0 has no
 // target, its weight is 1 minus the sum of all others.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
@@ -261,7 +261,7 @@ Result<std::size_t> SequenceFile::finish(const SequenceTrack& track, std::string
   const std::size_t input = builder_.add_scalars(track.times, {true, true}),
                     output = builder_.add_table(track.rows, track.width, track.fill);
   std::move(bends_.begin(), bends_.end(), std::back_inserter(targets_));
-  // Numbers accessors in the order in which the document refers to them.
+  // Numbers accessors in the order in which the JSON refers to them.
   std::vector<std::size_t> order;
   std::unordered_map<std::size_t, std::size_t> number_of;
   const auto number = [&](std::size_t accessor) {

@@ -1,4 +1,5 @@
-/// A GLB file that plays a sequence: one mesh, its targets, and one animation of their weights. Private to workflow.
+/// Writes a GLB file that plays a sequence. The file has one mesh, its targets, and one animation of their weights.
+/// Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_FILE_H_
 
@@ -24,8 +25,8 @@
 
 namespace chronormal::inline internal {
 
-/// The meaning of the targets: first one for each key (key 0 only if some normal needs it), then one for each segment
-/// in which normals bend.
+/// The meaning of the targets in the file. First, each key has a target (key 0 only if some normal needs it). Then each
+/// segment in which normals bend has a target.
 struct SequenceTargets {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool has_key_0 = false;
@@ -34,76 +35,76 @@ struct SequenceTargets {
 
   [[nodiscard]] std::size_t of_keys() const noexcept { return keys - (has_key_0 ? 0U : 1U); }
   [[nodiscard]] std::size_t count() const noexcept { return of_keys() + bent_segments.size(); }
-  /// Returns the target of a key, which must have one.
+  /// Returns the target of a key. The key must have a target.
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// The vertices of a file: first the vertices of the motion, then copies of them, one for each further normal of a
-/// vertex.
+/// The vertices of a file. First come the vertices of the motion. If a vertex shows several normals, copies of it
+/// follow, one for each further normal.
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-  std::vector<std::uint32_t> vertex;     ///< of each: its vertex in the motion
-  std::vector<std::uint32_t> element;    ///< of each: the element whose normal it shows; kNone if it has no face
-  std::vector<std::uint32_t> of_corner;  ///< of each corner of the motion
+  std::vector<std::uint32_t> vertex;   ///< for each vertex, its vertex in the motion
+  std::vector<std::uint32_t> element;  ///< for each vertex, the element whose normal it shows; kNone if it has no face
+  std::vector<std::uint32_t> of_corner;  ///< for each corner of the motion, its vertex
 
-  bool are_of_motion = false;  ///< there are no copies
-  bool are_elements = false;   ///< vertex i shows the normal of element i, and there are no other elements
+  bool are_of_motion = false;  ///< true if there are no copies
+  bool are_elements = false;   ///< true if vertex i shows element i, and there are no other elements
 
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }
-  /// Returns the position of each vertex of the file, from the positions of the motion (V, 3). The result is the given
-  /// array if there are no copies, or a new array in `room`.
+  /// Returns the positions of the file's vertices. of_motion has the positions of the motion's vertices, (V, 3). The
+  /// result is this array if there are no copies, and otherwise a new array in `room`.
   [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
-  /// Returns the vector of each vertex of the file, from the vectors of elements (E, 3); vertices without a face get
-  /// `none`. The result is the given array or a new array in `room`.
+  /// Returns the vectors of the file's vertices. of_elements has the vectors of elements, (E, 3), and vertices without
+  /// a face get `none`. The result is the given array, or a new array in `room`.
   [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
                                                std::vector<float>& room) const;
 };
 
-/// The keys of an animation and the values of its weights, as rows with one value for each target. Each key has one row
-/// or, in a cubic spline, three: in-tangents, weights and out-tangents. Rows are computed one at a time, because their
-/// number and their width both grow with the number of keys.
+/// The keys of an animation, and the values of its weights. The values are rows with one value for each target. Each
+/// key has one row or, in a cubic spline, three rows: in-tangents, weights and out-tangents. Rows are computed one at a
+/// time, because the number of rows and the length of a row both grow with the number of keys.
 struct SequenceTrack {
   std::vector<float> times;
   std::size_t rows = 0, width = 0;
   std::function<void(std::size_t row, std::span<float> values)> fill;  ///< writes one row over zeros
 };
 
-/// The file while it grows, target by target. Its arrays go to the spool as they are made.
+/// The file while targets are added to it. Its arrays are written to the spool as soon as they are made.
 class SequenceFile {
  public:
-  /// Begins the file with key 0: its positions are `base`, with the normals of the elements. Polygons become fans of
-  /// triangles and keep the normals of the polygons. The topology must outlive this object.
+  /// Begins the file with key 0, which has the positions `base` and the normals of the elements. Polygons become fans
+  /// of triangles, but keep the normals of the polygons. The topology must outlive this object.
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
-  /// Moves the node to the origin that was subtracted from positions.
+  /// Moves the node of the mesh to the origin that was subtracted from positions.
   void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
 
-  /// Begins again with other elements, as if nothing had been added.
+  /// Begins the file again with other elements. Targets that were added are lost.
   void restart(std::span<const float> base, std::span<const SequenceElement> elements);
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertices_.size(); }
 
-  /// Adds a target for a key. `positions` has its float32 deltas from key 0, as SequenceNormals returns them, and is
-  /// empty for key 0 itself. `normals` has one float32 vector for each element, (E, 3).
+  /// Adds a target for a key. `positions` has the key's float32 deltas from key 0, as SequenceNormals returns them; for
+  /// key 0, it is empty. `normals` has one vector for each element, (E, 3).
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for a bend of a segment; a segment may have several. Bends come after all other targets, in whatever
-  /// order they are added.
+  /// Adds a target for a bend of a segment. A segment may have several bends. In the file, bends come after all other
+  /// targets, in any order of the calls.
   void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
-  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have with `more`
-  /// bytes; errors of the spool.
+  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have too many with
+  /// `more` bytes; errors of the spool.
   [[nodiscard]] Status check(std::uint64_t more = 0) const;
-  /// Adds the animation, assembles the file, and passes its bytes to `take`. Returns the number of bytes. `targets`
+  /// Adds the animation, completes the file, and passes its bytes to `take`. Returns the number of bytes. `targets`
   /// must describe the targets that were added. Errors: see GlbBuilder::finish()
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
 
  private:
-  // Finishes the file with this track. `rest` has the weights that the mesh has when no animation plays.
+  // Finishes the file with this track. `rest` has the weights that the mesh shows while no animation plays.
   [[nodiscard]] Result<std::size_t> finish(const SequenceTrack& track, std::string_view interpolation,
                                            const GltfBakeMark& mark, const std::vector<int>& rest,
                                            const GlbBuilder::Take& take);
@@ -112,7 +113,7 @@ class SequenceFile {
   std::array<double, 3> origin_ = {};
   struct Target {
     std::string name;
-    std::size_t positions = 0, normals = 0;  // accessors
+    std::size_t positions = 0, normals = 0;  // indices of accessors
   };
 
   void begin(std::span<const float> base, std::span<const SequenceElement> elements);
@@ -128,7 +129,7 @@ class SequenceFile {
   bool dense_zeros_;
   Expansion expansion_;
   GlbBuilder builder_;
-  std::size_t triangles_ = 0, base_positions_ = 0, base_normals_ = 0;  // accessors
+  std::size_t triangles_ = 0, base_positions_ = 0, base_normals_ = 0;  // indices of accessors
   std::optional<std::size_t> zero_positions_;
   std::vector<Target> targets_, bends_;
   std::vector<float> rounded_, room_;  // scratch memory for arrays of the file

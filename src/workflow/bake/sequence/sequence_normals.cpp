@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kVertexBlock = 8192;  // vertices in one task
 
-// Writes coordinate_at(i) for the three coordinates of each vertex; i is the index of the coordinate.
+// Writes three coordinates for each vertex. coordinate_at(i) returns coordinate i, counted over all vertices.
 template <class CoordinateAt>
 void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coordinate_at) {
   constexpr std::size_t kRow = 4;
@@ -32,7 +32,7 @@ void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coord
   });
 }
 
-// Returns the float32 delta of a coordinate, as a file stores it.
+// Returns the float32 delta of a coordinate from key 0, as a file stores it.
 float delta_of(float position, float base) { return position - base; }
 
 bool is_far(float delta) {
@@ -67,7 +67,7 @@ Status SequenceNormals::check_deltas(std::size_t keys) const {
 }
 
 Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> deltas) {
-  constexpr std::size_t kTogether = 4096;  // deltas that are checked together, without a branch for each
+  constexpr std::size_t kTogether = 4096;  // deltas that are checked together without branches
   for (std::size_t first = 0; first < deltas.size(); first += kTogether) {
     const std::span<const float> some = deltas.subspan(first, std::min(kTogether, deltas.size() - first));
     bool any_far = false;
@@ -81,8 +81,8 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
 }
 
 Status SequenceNormals::fit(Weighting weighting) {
-  // Every fit has at both ends the length of the normal by area. So the fits of neighbouring segments agree at their
-  // common key, up to rounding.
+  // At both ends of a segment, every fit has the length of the normal by area. For this reason the fits of neighbouring
+  // segments agree at their common key, up to rounding.
   constexpr double kSame = 1e-6;
   for (std::size_t s = 0; s + 1 < keys(); ++s) {
     if (Status status = hold(s, s + 1); !status) return status;
@@ -134,8 +134,9 @@ void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) 
 
 namespace {
 
-// Returns a function for the exact sums of the areas at the points a + b, computed in integers. The arrays a and b are
-// made when they are first needed. (At t = 1/2 of a segment from a to b, points are half of a + b, and areas a fourth.)
+// Returns a function that computes exact sums of the areas at the points a + b, in integers. The arrays a and b are
+// made when they are first needed. At t = 1/2 of a segment from a to b, the points are half of a + b, and the areas are
+// a fourth.
 template <class MakeA, class MakeB>
 AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
                            const MakeB& make_b) {
@@ -155,7 +156,7 @@ AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups,
   };
 }
 
-// Returns the deltas of a keyframe, multiplied by sign (1 or -1). Computes them on this thread.
+// Returns the deltas of a keyframe, multiplied by sign, which is 1 or -1. Computes them on the calling thread.
 std::vector<float> signed_deltas(std::span<const float> positions, std::span<const float> base, float sign) {
   std::vector<float> result(base.size());
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = sign * delta_of(positions[i], base[i]);
@@ -194,8 +195,8 @@ std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   return vector_areas(positions, exact_at_key(key));
 }
 
-// Computes the bend d = sum of de x df. It is twice the vector area of the polygon whose corners are the displacements
-// of the corners.
+// Computes the bend d = sum of de x df of each element. The bend is twice the vector area of the polygon whose corners
+// are the displacements of the corners.
 std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;
@@ -216,7 +217,7 @@ void SequenceNormals::each_computed_block(std::size_t segment, Rows& rows, const
 }
 
 void SequenceNormals::find_offsets(VectorView<const float> stored) {
-  constexpr double kNone = 1e-4;  // radians; a smaller offset does not count
+  constexpr double kNone = 1e-4;  // radians; a smaller angle to the geometry's normal is ignored
   if (stored.count == 0) return;
   const std::vector<Vec3d> n = computed_at_key(0);
   std::vector<ShownTurn> turns(n.size());

@@ -1,8 +1,8 @@
 /// Computes the normals of a sequence in the form of eq. 40 of docs/theory.md: one normal for each key, and one bend
 /// for each segment. Private to workflow.
 ///
-/// A viewer sees the positions base + delta, both in float32. Normals are computed from these positions, in double.
-/// (They differ from the positions of the motion by half an ulp of the delta.)
+/// A viewer renders the positions base + delta, where both are float32. Normals are computed in double from these
+/// positions, which differ from the positions of the motion by half an ulp of the delta.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_SEQUENCE_NORMALS_H_
 
@@ -24,36 +24,36 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0 and, if the weighting is not area, all keyframes to fit all segments. If `stored` has the normals of
-  /// the corners at key 0, (corners, 3), their rotation away from the geometry's normals is applied at every instant.
-  /// Stream and groups must outlive the result. Errors: kUsage if the fits of two neighbouring segments do not agree at
-  /// their common key, because one target per key cannot represent both; errors of check_deltas(), if there are fits,
-  /// and of the stream. Memory: for key 0, and for the fits.
+  /// Reads key 0. If the weighting is not area, also reads all keyframes, to fit all segments. `stored` may have the
+  /// normals of the corners at key 0, (corners, 3). Their rotation away from the geometry's normals is then applied at
+  /// every instant. The stream and the groups must outlive the result. The memory is that of key 0 and of the fits.
+  /// Errors: kUsage if the fits of two neighbouring segments do not agree at their common key, because one target of a
+  /// key cannot represent both; errors of check_deltas(), if there are fits, and of the stream.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
-  /// Holds the positions of the keys from first to last, until the next call. The functions below may only be called
-  /// for keys and segments that are held. Errors: from the stream.
+  /// Keeps the positions of the keys from first to last in memory, until the next call. The functions below may only be
+  /// called for keys and segments in memory. Errors: from the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
   /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; errors of
   /// the stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
-  /// Checks the deltas of one key in the same way.
+  /// Checks the deltas of one key. Errors: kInvalidInput if a delta is too large for float32.
   [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
 
-  /// Returns the positions of key 0: (V, 3).
+  /// Returns the positions of key 0, (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
-  /// Returns the float32 deltas of a key from key 0, as a file stores them: (V, 3).
+  /// Returns the float32 deltas of a key from key 0, as a file stores them, (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
-  /// Writes the float32 deltas of a key into existing memory.
+  /// Writes the float32 deltas of a key from key 0 into existing memory.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
-  /// Tells whether stored normals differ from the normals of the geometry.
+  /// Returns true if stored normals differ from the normals of the geometry.
   [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
-  /// Return the normals n of all elements at a key, and their bends d in a segment. O(corners), on all cores; with
-  /// fits, a copy.
+  /// Return the normals n of all elements at a key, and the bends d of all elements in a segment. Take O(corners), on
+  /// all cores. If there are fits, only copy the results.
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
 
@@ -61,18 +61,18 @@ class SequenceNormals {
   struct Rows {
     PointRows positions, displacements;
   };
-  /// Calls body(elements, n, d) for blocks of elements on all cores. n are their normals at the second key of a
-  /// segment, and d their bends in the segment.
+  /// Calls body(elements, n, d) for blocks of elements, on all cores. n are the normals of these elements at the second
+  /// key of a segment, and d their bends in the segment.
   void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
-  /// Returns error bounds of the fits for each segment and element, in radians; pi if no bound could be proven. Empty
-  /// if normals are weighted by area.
+  /// Returns error bounds of the fits in radians, for each segment and element. A bound is pi if none could be proven.
+  /// The list is empty if normals are weighted by area.
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  // Compute normals from the geometry, without offsets of stored normals.
+  // Compute normals from the geometry, without the rotation of stored normals.
   [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
   void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
@@ -87,7 +87,8 @@ class SequenceNormals {
   // Write the points at a key, and their displacements in a segment.
   void write_positions(std::size_t key, PointRows& rows) const;
   void write_displacements(std::size_t segment, PointRows& rows) const;
-  // Return exact sums of areas at a key, and of the displacements in a segment, for elements whose areas cancel.
+  // Return functions that compute exact sums for elements whose areas cancel: at a key, and of the displacements in a
+  // segment.
   [[nodiscard]] AreaSums::Exact exact_at_key(std::size_t key) const;
   [[nodiscard]] AreaSums::Exact exact_bend(std::size_t segment) const;
   [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points, const AreaSums::Exact& exact) const;
@@ -97,11 +98,12 @@ class SequenceNormals {
   AreaSums sums_;
   std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
-  std::vector<ShownTurn> turns_;  // of elements; empty if no stored normal differs
+  std::vector<ShownTurn> turns_;  // rotation of each element; empty if no stored normal differs
   std::vector<std::vector<double>> bounds_;
 };
 
-/// Returns the control normals of an element, from its normals at both keys of a segment and its bend there (eq. 5).
+/// Returns the control normals of an element in a segment (eq. 5). from and to are its normals at both keys, and bend
+/// is its bend.
 [[nodiscard]] inline ControlNormals control_normals_of(const Vec3d& from, const Vec3d& to, const Vec3d& bend) noexcept {
   return {from, 0.5 * (from + to - bend), to};
 }
@@ -115,8 +117,8 @@ struct SegmentForm {
   }
 };
 
-/// Calls body(segment, form) for the first `segments` segments, one after the other, until it returns an error. Holds
-/// the keys of one segment at a time. Errors: from body, and from the stream.
+/// Calls body(segment, form) for the first `segments` segments, one after the other, until it returns an error. Has the
+/// keys of one segment in memory at a time. Errors: from body, and from the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;
