@@ -208,7 +208,7 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));
   const double angle = angle_between(u0, u1), sine = portable::sin(angle);
-  constexpr double kStraight = 1e-9;  // near 0 and 180 degrees the arc is a line, or undefined
+  constexpr double kStraight = 1e-9;  // for smaller sines, the arc between the normals is a straight line or undefined
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
 }

@@ -51,7 +51,7 @@ class BlendSource {
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
   /// Returns the weights of the placed moment.
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
-  /// Counts the calls of place() that changed anything.
+  /// Returns the number of calls of place() that have changed positions.
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
@@ -99,8 +99,9 @@ class BlendSource {
   MeshSkin* skin_;
   std::vector<AffineTransform> carriers_;  // one transform for each output, if there is a skin
   std::size_t placed_ = 0;
-  std::vector<std::optional<std::vector<Delta>>> moved_;  // deltas of each involved target, once requested
-  std::vector<ShownTurn> turns_;                          // turns of outputs
+  // Deltas of each involved target; nullopt until they are needed.
+  std::vector<std::optional<std::vector<Delta>>> moved_;
+  std::vector<ShownTurn> turns_;  // for each output, how the author's normal is rotated from the geometry's
   std::optional<SegmentEnds> ends_;
   bool known_ = false;
   std::size_t samples_, segment_ = 0;

@@ -483,7 +483,7 @@ void audit_openings(const MeshAudit& mesh, Audit& result) {
   }
 }
 
-// Returns the requested poses of the mesh.
+// Returns the poses of the mesh that the options request: the given poses, or random poses.
 PoseList asked_poses(const GltfDocument& document, const AuditOptions& options, std::size_t mesh) {
   constexpr unsigned kSeed = 51;
   const GltfMesh& of_mesh = document.meshes()[mesh];

@@ -1,4 +1,4 @@
-/// Faults and notes about the mesh of a glTF file, in the words of an audit. Private to workflow.
+/// Finds faults of the mesh of a glTF file, and notes about it, as an audit reports them. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
 

@@ -27,7 +27,8 @@ inline constexpr double kRoundingOfTerms = 1e-13;
 /// of d p[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
-  constexpr double kOfVector = 1.7320508075688772 / (1 << 24);  // relative to the largest of three coordinates
+  // Change of a vector, relative to its largest coordinate.
+  constexpr double kOfVector = 1.7320508075688772 / (1 << 24);
   double sum = 0;
   for (std::size_t c = 0; c < corners; ++c) {
     const Vec3d chord = vertex((c + 1) % corners) - vertex((c + corners - 1) % corners);

@@ -255,7 +255,8 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
       const JudgedOutput& output = outputs[range.first + k];
       const Vec3d& normal = placed.normals.elements[output.element];
       const double least = kVanished * largest[output.element];
-      const bool has_normal = max_abs(normal) > least || length(normal) > least;  // the first test decides mostly
+      // The first test decides for most normals.
+      const bool has_normal = max_abs(normal) > least || length(normal) > least;
       result.set(range.first + k,
                  {some[k], source.hides(output, normal), has_normal, placed.normals.sizes[output.element] > least});
     }
@@ -346,7 +347,7 @@ struct MeasuredSample {
   const PlacedPart& placed;
   std::span<const double> largest;  ///< the result of largest_control_normals()
   std::span<const double> next;     ///< positions of the next samples in the segment, from 0 to 1
-  const RightOutputs& right;        ///< of all outputs
+  const RightOutputs& right;        ///< true normals of all outputs
   const MotionError& error;
   std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
 };

@@ -29,7 +29,7 @@ constexpr std::size_t kMostSamples = 128;
 struct Block {
   IndexRange outputs, elements;
   std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
-  std::vector<std::uint32_t> faces, face_ends;  // for each element, as numbered in the block
+  std::vector<std::uint32_t> faces, face_ends;  // faces of each element, as numbered in the block
 };
 
 std::vector<Block> make_blocks(const JudgedPart& part) {
@@ -196,7 +196,8 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
                       AuditSubject& subject) {
   const Motion& motion = segments.stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
-  std::vector<std::vector<double>> largest;  // of each block; an element between two blocks is in both
+  // Lengths of the elements of each block; an element between two blocks is in both.
+  std::vector<std::vector<double>> largest;
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);
   // The segments that are in memory at the same time are examined together, because neighbours share a keyframe and its

@@ -29,7 +29,7 @@ using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const 
 /// The segments of a subject in a motion, in the form that measure() needs.
 struct SegmentsOfRun {
   MotionStream& stream;
-  std::span<const std::size_t> of_motion;  ///< their indices in the motion
+  std::span<const std::size_t> of_motion;  ///< indices of these segments in the motion
   AuditRun& run;
 
   [[nodiscard]] auto keys() const {

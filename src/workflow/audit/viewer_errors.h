@@ -44,7 +44,7 @@ class ViewerErrors {
   [[nodiscard]] std::vector<ViewerError> take() { return std::move(errors_); }
 
  private:
-  // Returns the weights that a viewer plays at a sample and at the next ones in its segment.
+  // Returns the weights that a viewer plays at a sample, and at the samples that follow in its segment.
   [[nodiscard]] std::vector<std::vector<double>> now_and_next(std::size_t viewer, const MeasuredSample& sample) const;
 
   const JudgedPart& part_;
@@ -55,7 +55,7 @@ class ViewerErrors {
   RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them
   double size_ = 0;                         // size of the mesh
   std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones; empty until needed
-  std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before any
+  std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before the first
   std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample
   std::vector<ViewerError> last_, errors_;  // one for each viewer: at the last sample, and over all samples
 };

@@ -48,10 +48,10 @@ using AuditShard = ShardOf<Audit, SegmentErrors>;
 
 /// A judged sample of a subject. Spans and references are valid during the call.
 struct AuditSample {
-  std::size_t subject_index = 0;  ///< its future index in Audit::subjects
-  const AuditSubject& subject;    ///< errors not filled in yet
+  std::size_t subject_index = 0;  ///< the index that it will have in Audit::subjects
+  const AuditSubject& subject;    ///< its errors are not known yet
   std::size_t segment = 0;        ///< index in the subject, or in the motion
-  double t = 0;                   ///< t within the segment
+  double t = 0;                   ///< position in the segment, from 0 to 1
   double at = 0;                  ///< the weight, or the time in seconds
   const JudgedPart& part;
   std::span<const double> largest;  ///< for each element of the part, the length of its largest control normal
@@ -70,7 +70,7 @@ struct AuthorOfMesh {
 
   GltfShading shading;
   AuthorTruth truth;
-  AuthoredWeighting weighting;  ///< of the base normals
+  AuthoredWeighting weighting;  ///< the weighting that the base normals follow
 };
 
 /// The meshes of an audited file, keyed by index.

@@ -197,14 +197,14 @@ class Elements {
   std::optional<NormalGroups> groups_;
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
-  std::size_t samples_ = 0;  // for groups
+  std::size_t samples_ = 0;  // set only for groups
   // The number of corners above which the normal of a face is computed once for all groups that contain the face. These
   // stored normals take less than 400 bytes for each corner.
   std::size_t many_corners_ = 0;
-  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // by segment, for groups
-  std::vector<std::uint32_t> large_;                             // faces of more than many_corners_, for groups
-  std::map<std::size_t, SharedFaces> shared_;                    // by segment, for groups
-  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;   // areas of large_ at each sample, by segment
+  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // for groups, by segment: control normals of faces
+  std::vector<std::uint32_t> large_;           // for groups: faces with more than many_corners_ corners
+  std::map<std::size_t, SharedFaces> shared_;  // for groups, by segment
+  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;  // by segment: areas of large_ at each sample
   double shared_ns_ = 0;
 };
 

@@ -57,7 +57,8 @@ struct ReportOptions {
 
 /// A vertex at the moment of its largest error.
 struct ReportPlace {
-  std::size_t part = 0, motion = 0, sample = 0, vertex = 0;  ///< indices in Report::parts and below
+  /// In Report::parts, in the part, in the motion, in the part.
+  std::size_t part = 0, motion = 0, sample = 0, vertex = 0;
   double degrees = 0;
   std::string label;   ///< the name of the vertex, such as "mesh 0, primitive 1, vertex 5051"
   std::string moment;  ///< the moment as text, such as "jawOpen at 0.55" or "talk at 1.25 s"

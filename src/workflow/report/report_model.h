@@ -86,7 +86,7 @@ struct ModelWeights {
 };
 
 struct ModelMotion {
-  AuditSubject subject;  ///< errors not filled in
+  AuditSubject subject;  ///< without errors
   std::size_t subject_index = 0;
   std::vector<double> at;               ///< (S) the weight, or the time in seconds
   std::vector<std::uint32_t> segments;  ///< (S) the segment of each sample; empty for glTF

@@ -68,7 +68,7 @@ class KnownParts {
 
  private:
   std::vector<std::string> parts_;
-  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;  // the first checksum of each name, and its part
+  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;  // for each name, its first checksum and part
 };
 
 }  // namespace chronormal::inline internal

@@ -272,7 +272,8 @@ class Mending {
   // Returns by how many more elements would follow their sums if a run of triangles were one polygon. Elements that
   // only come nearer to their sums do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    std::vector<std::pair<std::size_t, std::size_t>> before;  // the polygons that the run dissolves
+    // Polygons that the run takes apart: first triangle, count.
+    std::vector<std::pair<std::size_t, std::size_t>> before;
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
     if (!polygons_.join(first, count)) return 0;
@@ -302,7 +303,7 @@ class Mending {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<StoredKey> keys_;
-  std::vector<char> whole_;  // one for each element
+  std::vector<char> whole_;  // for each element, 1 if it adds up its whole point
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
   // Elements that may still be tried; bounds the time for normals that no polygon corrects.

@@ -64,7 +64,7 @@ class Polygons {
   /// number of quads.
   std::size_t join_quads(std::span<const GltfPart> parts);
 
-  /// Returns the polygon that a triangle belongs to, named by the polygon's first triangle.
+  /// Returns the polygon to which a triangle belongs. A polygon has the index of its first triangle.
   [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
     return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
   }
@@ -195,7 +195,7 @@ class AuthorSums {
 
   Weighting weighting_ = Weighting::kArea;
   std::vector<std::uint32_t> loop_offsets_ = {0}, loops_;  // vertices of polygons
-  std::vector<std::uint32_t> offsets_ = {0};               // ranges of elements in sums_
+  std::vector<std::uint32_t> offsets_ = {0};               // for each element, its range in sums_
   std::vector<Corner> sums_;
 };
 

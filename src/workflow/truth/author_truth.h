@@ -50,7 +50,7 @@ class AuthorTruth {
     std::uint32_t first_edge = 0, edge_count = 0;  ///< all edges around the element, in edges()
     std::uint32_t edge = kNone;                    ///< the edge from which azimuths are measured, in edges()
     double side = 1;                               ///< -1 if the author shows the side opposite to r
-    Vec3d base_z, base_x;                          ///< replace the edge, if there is none
+    Vec3d base_z, base_x;                          ///< directions that replace the edge, if no edge can be used
     PlaneOffset base;
   };
   /// The difference between the offset of a target at weight 1 and the offset of the base.
@@ -72,13 +72,13 @@ class AuthorTruth {
   /// computed exactly.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
   /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
-  /// that keeps the truth records this in its mark.
+  /// that keeps such a truth notes this in its mark.
   [[nodiscard]] bool follows_keys() const noexcept { return !is_plain() || any_split_; }
   [[nodiscard]] std::span<const StaleKey> stale() const noexcept { return stale_; }
   /// Returns the number of elements that have an offset.
   [[nodiscard]] std::size_t offset_count() const noexcept { return frames_.size(); }
-  /// Return the frames, the frame of each element (or kNone; the list is empty if no element has a frame), and the
-  /// edges around them.
+  /// Return the frames, the index of each element's frame, and the edges around the elements that have frames. The
+  /// index is kNone for an element without a frame. If no element has a frame, the list of indices is empty.
   [[nodiscard]] std::span<const Frame> frames() const noexcept { return frames_; }
   [[nodiscard]] std::span<const std::uint32_t> frame_of_element() const noexcept { return frame_of_element_; }
   [[nodiscard]] std::span<const OffsetEdge> edges() const noexcept { return edges_; }

@@ -31,7 +31,7 @@ struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
 
-/// Returns the mean angle between z and the edges around its point, in radians, or 1 if there is no edge.
+/// Returns the mean angle in radians between z and edges that leave the point of z. Returns 1 if there is no edge.
 template <class PositionOf>
 [[nodiscard]] double mean_edge_angle(std::span<const OffsetEdge> edges, const Vec3d& z, const PositionOf& position) {
   double sum = 0;

@@ -67,7 +67,7 @@ struct Share {
 // Properties of shares whose deltas are short, for viewers that limit the length of deltas.
 struct ShortShares {
   bool are_units = false;   // N + E has the length of N, so that viewers that store directions keep E
-  bool keep_along = false;  // keeps the part of E along N
+  bool keep_along = false;  // if true, keeps the part of E along N
 };
 
 struct LowRank {
@@ -87,7 +87,7 @@ struct LowRankLimits {
 
 // The instants to which a fit is made.
 struct Rows {
-  std::vector<std::size_t> instants;  // ascending
+  std::vector<std::size_t> instants;  // their indices, ascending
   std::vector<PlaceOfRows> places;    // instants half-way between neighbouring nodes of a piece
   std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };

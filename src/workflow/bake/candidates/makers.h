@@ -24,11 +24,14 @@ namespace chronormal::inline internal {
 
 /// The lengths that N + D and the deltas E of correction targets may have.
 enum class Lengths {
-  kUnit,   ///< N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1.
-           ///< Every viewer then renders them right, after any compressor
-  kShort,  ///< N + D has the length of N, and E is much shorter than N, with larger weights in return: a viewer that
-           ///< keeps only the direction of N + E loses the part of E along N, and almost nothing else
-  kFree    ///< any length, if all viewers add the deltas as stored
+  /// N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1. Every
+  /// viewer renders such deltas right, after any compressor.
+  kUnit,
+  /// N + D has the length of N. E is much shorter than N, and its weights are larger for this reason. A viewer that
+  /// keeps only the direction of N + E loses the part of E along N, and almost nothing else.
+  kShort,
+  /// Any length is allowed. All viewers must add the deltas as stored.
+  kFree
 };
 
 /// Returns the choice of lengths that all of these viewers render with little or no loss, and that restricts deltas

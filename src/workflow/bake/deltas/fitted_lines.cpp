@@ -128,7 +128,7 @@ class Fit {
   };
   struct Row {
     Vec3d right, alone, shown;         // the true direction, the sum of single deltas, and the present sum
-    std::size_t first = 0, count = 0;  // range in active_
+    std::size_t first = 0, count = 0;  // its range in active_
     double part = 0;                   // its weight in the fit, by which small errors become angles
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
@@ -187,7 +187,7 @@ class Fit {
   const Element& alone_;
   std::vector<Row> rows_;
   std::vector<Active> active_;
-  Cholesky matrix_;  // of the normal equations
+  Cholesky matrix_;  // the matrix of the normal equations
   Misfit before_;
   double worst_ = 0;
 };

@@ -97,7 +97,7 @@ class RightNormals {
   std::vector<Vec3d> base_;           // n(0) of each element; kept, since it is often needed
   std::vector<double> base_lengths_;  // lengths of base_
   std::vector<std::uint32_t> all_elements_;
-  std::vector<ShownTurn> turns_;  // one for each vertex
+  std::vector<ShownTurn> turns_;  // the author's rotation, for each vertex
 };
 
 }  // namespace chronormal::inline internal

@@ -15,8 +15,9 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kTermsBlock = 256;
-constexpr std::size_t kSamples =
-    8;  // of a target from weight 0 to 1: the half and the end are fitted, the rest checked
+// The number of weights of a target, up to 1, at which its terms are computed. The terms are fitted at the weights 1/2
+// and 1, and the fit is checked at the others.
+constexpr std::size_t kSamples = 8;
 
 void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   for (std::size_t n = 0; n < moved.vertices.size(); ++n) {

@@ -75,7 +75,7 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Returns true if a viewer may interpolate linearly from a to b.
+  // Returns true if a viewer may interpolate linearly from a key at time a to a key at time b.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
   // Returns a bound of the largest error on the line from a to b, in radians. Stops as soon as the bound exceeds the
   // tolerance.

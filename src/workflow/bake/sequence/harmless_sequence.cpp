@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kHarmlessBlock = 256;
-constexpr double kWorthIt = 2e-3;    // radians: a smaller gain would only fill the file
+constexpr double kWorthIt = 2e-3;    // radians: a smaller gain is not worth the bytes of a target
 constexpr std::size_t kJudged = 40;  // instants in a segment at which it is judged; its first key is not among them
 
 // Returns the weight 4 t (1 - t) of a bend as the LINEAR track plays it, in straight pieces.

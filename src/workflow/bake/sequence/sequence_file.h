@@ -67,7 +67,8 @@ struct SequenceVertices {
 struct SequenceTrack {
   std::vector<float> times;
   std::size_t rows = 0, width = 0;
-  std::function<void(std::size_t row, std::span<float> values)> fill;  ///< writes one row over zeros
+  /// Writes one row, whose values are 0 before the call.
+  std::function<void(std::size_t row, std::span<float> values)> fill;
 };
 
 /// The file while targets are added to it. Its arrays are written to the spool as soon as they are made.

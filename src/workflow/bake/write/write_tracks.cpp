@@ -233,7 +233,8 @@ class TrackWriter {
   GltfEdit& edit_;
   WrittenTracks written_;
   std::map<std::size_t, std::size_t> place_of_mesh_;  // from the index of a mesh to its index in meshes_
-  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;  // by animation, keys, place of mesh
+  // By animation, keys, and index in meshes_.
+  std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;
 };
 
 }  // namespace
