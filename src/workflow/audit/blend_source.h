@@ -77,7 +77,7 @@ class BlendSource {
   // straight lines. For such tracks, the deltas of many targets need to be added up only at the ends.
   struct SegmentEnds {
     std::size_t segment = 0;
-    std::vector<double> start, end;  // weights
+    std::vector<double> start, end;  // weights of the targets
     std::vector<Vec3d> from, to;
   };
 
@@ -97,7 +97,7 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   MeshSkin* skin_;
-  std::vector<AffineTransform> carriers_;  // one transform for each output, if there is a skin
+  std::vector<AffineTransform> carriers_;  // how the skin transforms each output; empty if there is no skin
   std::size_t placed_ = 0;
   // Deltas of each involved target; nullopt until they are needed.
   std::vector<std::optional<std::vector<Delta>>> moved_;

@@ -120,8 +120,9 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, const Aut
   result.offsets.push_back(offset);
 }
 
-// Returns the mesh as it was before the bake. Takes it from an earlier audit if that audit read the same normals.
-// Returns nothing if the original file is not known.
+// Returns the mesh of the original file, from which the audited file was baked. Reuses the mesh of an earlier audit if
+// its base normals equal those of the audited mesh. Returns nothing if there is no original file, or if its mesh differs
+// too much to be the original.
 Result<std::shared_ptr<AuthorOfMesh>> original_of(const AuditOptions& options, const GltfShading& baked,
                                                   const KnownAuthors* known) {
   std::shared_ptr<AuthorOfMesh> author;
@@ -145,7 +146,8 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
   if (mesh.rule != AuditRule::kFlat)
-    part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());  // the rule flat has no folds between facets
+    // Folds between facets are intended by the rule flat, so edges are not examined for them.
+    part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());
   return part;
 }
 
@@ -588,7 +590,7 @@ Result<Audit> internal::watched_audit(const GltfDocument& document, const AuditO
     ++done;
     if (options.progress) options.progress(std::min(done, total), total);
   };
-  std::uint64_t error_bytes = 0;  // bytes of the tables of all meshes
+  std::uint64_t error_bytes = 0;  // the bytes that the tables of all meshes take
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {
     const Tracks tracks = tracks_of(document, m, only);
     if (!has_targets(document.meshes()[m]) || (only && tracks.empty())) continue;

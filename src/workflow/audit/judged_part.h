@@ -40,7 +40,7 @@ template <class VertexAt>
 /// A vertex whose normal is judged, or a corner if its vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
-  std::uint32_t face = 0, corner = 0;  ///< for rules that need a face and a corner
+  std::uint32_t face = 0, corner = 0;  ///< used by rules that need a face and a corner
 };
 
 struct PartNormals {
@@ -107,8 +107,9 @@ class JudgedPart {
                            const Vec3d& normal) const;
 
   std::vector<std::uint32_t> vertices_, elements_;
-  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;        // vertices as numbered in the part
-  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;  // elements and faces as numbered in the part
+  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;  // vertices have their numbers in the part
+  // Elements and faces have their numbers in the part.
+  std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;
   // For each face of an element, the corner of the face that belongs to the element, by its number in the face. The
   // list is empty if faces are weighted by area.
   std::vector<std::uint32_t> corners_of_element_;
@@ -118,7 +119,7 @@ class JudgedPart {
   bool keeps_faces_;                   // if false, each element computes the normals of its faces again
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
-  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // edges of a small part
+  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // set if the part is small
   std::vector<std::uint32_t> output_of_;
 };
 

@@ -168,7 +168,7 @@ template <class Source, class Segments>
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
-  double sum = 0, sum_of_squares = 0, worst = 0;  // kept in registers
+  double sum = 0, sum_of_squares = 0, worst = 0;  // local variables, so that they stay in registers
   std::size_t judged = 0;
   std::array<std::uint32_t, kAuditFineBins> counts{};  // counts of at most kRange outputs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -215,7 +215,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 struct RightOutput {
   Vec3d direction;          ///< the direction that source.right() returns
   bool is_hidden = false;   ///< the result of source.hides()
-  bool has_normal = false;  ///< tells whether the normal is long enough to judge by
+  bool has_normal = false;  ///< tells whether the normal is so long that it can be judged
   bool has_area = false;    ///< tells whether a face around the output has an area; faces without area are not drawn
 };
 
@@ -349,7 +349,8 @@ struct MeasuredSample {
   std::span<const double> next;     ///< positions of the next samples in the segment, from 0 to 1
   const RightOutputs& right;        ///< true normals of all outputs
   const MotionError& error;
-  std::span<const float> each;  ///< errors of outputs, NaN if not judged; empty if not kept
+  /// Degrees: the error of each output, or NaN if it is not judged; empty if errors are not kept.
+  std::span<const float> each;
 };
 
 /// Appends the errors at a sample to the table, in degrees. A vertex with several outputs gets the largest of their

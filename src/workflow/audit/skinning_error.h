@@ -24,7 +24,7 @@ class SkinningErrors {
 
  private:
   std::size_t placed_ = 0;  // source.placed() at the last sample
-  SkinningError last_;      // the error of that sample
+  SkinningError last_;      // the error at the last sample
   std::optional<SkinningError> all_;
 };
 

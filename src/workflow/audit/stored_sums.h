@@ -45,8 +45,8 @@ class StoredSums {
  private:
   // A group of neighbouring outputs, with a row of deltas for each target that changes any of their normals.
   struct Group {
-    std::vector<std::uint32_t> targets;  // ascending, as numbered in involved_
-    std::vector<float> deltas;           // (targets, 3 kGroup)
+    std::vector<std::uint32_t> targets;  // indices in involved_, ascending
+    std::vector<float> deltas;           // (targets, 3 kGroup), the deltas of the outputs in the group
   };
   static constexpr std::size_t kGroup = 64;
 
@@ -63,7 +63,7 @@ class StoredSums {
   std::vector<Group> groups_;        // empty until the first sum
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // number of floats for one set of weights, rounded up to whole groups
-  std::vector<float> sums_;  // (sets, stride)
+  std::vector<float> sums_;  // (sets, stride), the sums for each set of weights
 };
 
 }  // namespace chronormal::inline internal

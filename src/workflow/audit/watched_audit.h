@@ -49,15 +49,15 @@ using AuditShard = ShardOf<Audit, SegmentErrors>;
 /// A judged sample of a subject. Spans and references are valid during the call.
 struct AuditSample {
   std::size_t subject_index = 0;  ///< the index that it will have in Audit::subjects
-  const AuditSubject& subject;    ///< its errors are not known yet
-  std::size_t segment = 0;        ///< index in the subject, or in the motion
+  const AuditSubject& subject;    ///< the subject, before its errors are known
+  std::size_t segment = 0;        ///< for a glTF file, the index in the subject; otherwise in the motion
   double t = 0;                   ///< position in the segment, from 0 to 1
   double at = 0;                  ///< the weight, or the time in seconds
   const JudgedPart& part;
   std::span<const double> largest;  ///< for each element of the part, the length of its largest control normal
   const MotionError& error;
   std::span<const float> degrees;               ///< for each output of the part, its error; NaN if it is not judged
-  std::span<const double> weights;              ///< weights of all targets of a glTF file
+  std::span<const double> weights;              ///< for a glTF file, the weights of all targets
   std::span<const std::vector<double>> played;  ///< for a glTF file, the weights that each viewer plays
 };
 

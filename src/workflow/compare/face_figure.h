@@ -51,7 +51,7 @@ struct SchemeFigure {
 struct FaceFigure {
   std::size_t face = 0, segment = 0;
   std::vector<std::array<Vec3d, 2>> corners;  ///< the positions of each corner at t = 0 and at t = 1
-  std::vector<double> times;                  ///< (S) t
+  std::vector<double> times;                  ///< (S) the times t, from 0 to 1
   /// (S) exact unit normals; where the area is zero, their limit, or zero if there is no limit.
   std::vector<Vec3d> normals;
   std::vector<double> lengths;  ///< (S) the length of n(t), which is twice the area

@@ -187,7 +187,8 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
 // Judges a face at one keyframe by its normal. `most` is the largest coordinate of the keyframe.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
-  const double largest_rounding = kRounding * most * 2 * most;  // for a triangle
+  // The largest possible rounding error of a triangle's normal.
+  const double largest_rounding = kRounding * most * 2 * most;
   const double size = max_abs(normal);
   if (size > static_cast<double>(face.size() - 2) * largest_rounding) return;
   if (size == 0)
@@ -208,7 +209,7 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
   const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
-  double most_of_square = 0;  // a vector whose square is at most this is not longer than the longest so far
+  double most_of_square = 0;  // a vector with a smaller square is not longer than the longest one before
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;

@@ -44,7 +44,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<SegmentErrors> read_measured_segment(std::string_view text, const std::string& name);
 
 struct Part {
-  std::string name;  ///< name of the file, for messages
+  std::string name;  ///< the name of the file, for messages
   std::string text;
 };
 

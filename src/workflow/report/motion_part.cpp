@@ -28,7 +28,7 @@ bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_
   return true;
 }
 
-// Returns the vectors that differ from those of keyframe 0, or all vectors if that takes fewer bytes.
+// Returns the vectors that differ from those of keyframe 0, or all vectors if these take fewer bytes.
 ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
   ModelVectors result;
   const std::size_t vertices = now.size() / 3;

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1)
 struct ModelVectors {
   bool is_dense = false;
   std::vector<std::uint32_t> vertices;  ///< the vertices that have a vector; empty if is_dense is true
-  std::vector<float> values;            ///< (n, 3)
+  std::vector<float> values;            ///< (n, 3), the vectors
 
   [[nodiscard]] std::size_t size() const noexcept { return values.size() / 3; }
   [[nodiscard]] std::uint32_t vertex(std::size_t i) const noexcept {
@@ -43,7 +43,7 @@ struct ModelShown {
   bool keeps_halves = false;
   double least_weight = 0;
   std::vector<float> normals;         ///< (V, 3)
-  std::vector<ModelVectors> targets;  ///< deltas
+  std::vector<ModelVectors> targets;  ///< deltas of each target
 };
 
 /// The author's offset of an element: how the author's normal differs from the sum of face normals. It is measured in a
@@ -63,7 +63,7 @@ struct ModelTruth {
   /// the plane of the offset.
   struct Changes {
     std::vector<std::uint32_t> offsets;
-    std::vector<float> values;  ///< (n, 2)
+    std::vector<float> values;  ///< (n, 2), the changes of these offsets
   };
 
   /// The corners of polygons, and the first corner of each polygon; empty if triangles are added up.
@@ -124,10 +124,10 @@ struct ModelPart {
   std::size_t elements = 0;
   std::vector<std::uint32_t> element;  ///< (V) the element of each vertex
   Weighting weighting = Weighting::kArea;
-  std::vector<float> positions, normals;  ///< (V, 3); normals may be empty
+  std::vector<float> positions, normals;  ///< (V, 3); normals are empty if the file has none
   // The next members are for glTF files.
   std::vector<std::string> target_names;
-  std::vector<ModelVectors> targets;  ///< deltas of positions
+  std::vector<ModelVectors> targets;  ///< deltas of positions, for each target
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
@@ -139,7 +139,7 @@ struct ModelPart {
   std::vector<std::uint32_t> segments;  ///< (n, 2) the keyframes at both ends
 
   std::vector<ModelMotion> motions;
-  std::vector<ModelPeak> peaks;  ///< (V)
+  std::vector<ModelPeak> peaks;  ///< (V), for each vertex
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return element.size(); }
 };

@@ -173,7 +173,7 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // on the heap, since npz_ keeps the address
+  std::unique_ptr<OutputFile> file_;  // on the heap, because npz_ keeps the address of the file
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // the indices of arrays in npz_
   Origin origin_ = {};                       // the origin of the positions
@@ -329,7 +329,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   EmptyPartial partial;
   std::optional<ArrayFile> arrays;
   SampleSummary summary;
-  std::size_t written = 0;        // number of rows that an earlier run wrote
+  std::size_t written = 0;        // the number of rows that an earlier run wrote
   std::uint32_t written_sum = 0;  // the checksum of the header and of these rows
   const auto end = [&](std::uint32_t array) {
     return is_part ? end_of_part(motion, options, moments, run, sampler, array, seen) : std::string();

@@ -11,12 +11,12 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;                // elements in one block
+constexpr std::size_t kBlock = 1024;                // the number of elements in a block
 constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; so small that the sine equals the angle
 constexpr double kClear = 2.0 / 3;
 constexpr double kFollows = 1;  // degrees: the largest distance of a weighting that the author may have used
 
-using Stored = std::span<const StoredNormal>;  // sorted by element
+using Stored = std::span<const StoredNormal>;  // stored normals in the order of their elements
 
 // A small mesh to which some elements are copied, so that memory does not grow with the whole mesh. Each element gets
 // its own copy of its faces. The element is one vertex of these faces, and no other element uses their other vertices.
@@ -79,7 +79,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
 // The distances that are added up over blocks.
 struct Distances {
   std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
-  std::array<std::vector<float>, kWeightings.size()> told;  // in degrees, only of normals that tell
+  std::array<std::vector<float>, kWeightings.size()> told;  // distances in degrees, only of normals that tell
   std::size_t telling = 0;
 
   void add(std::size_t w, const StoredNormal& stored, double degrees) {

@@ -44,7 +44,7 @@ struct WeightingDistance {
   std::size_t count = 0;  ///< the number of stored normals whose element has a normal
   double sum = 0, worst = 0;
   std::uint32_t worst_at = 0;  ///< the vertex with the largest distance
-  double of_telling = 0;       ///< the median over the normals that tell
+  double of_telling = 0;       ///< the median over the normals at which weightings differ
 
   [[nodiscard]] double mean() const noexcept { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };
@@ -54,9 +54,10 @@ struct AuthoredWeighting {
     return distances[static_cast<std::size_t>(weighting)];
   }
 
-  std::array<WeightingDistance, kAllWeightings.size()> distances;  ///< in the order of kAllWeightings
+  /// The distance of each weighting, in the order of kAllWeightings.
+  std::array<WeightingDistance, kAllWeightings.size()> distances;
   std::size_t telling = 0;
-  Weighting detected = Weighting::kArea;  ///< one of kWeightings
+  Weighting detected = Weighting::kArea;  ///< the weighting that fits best, one of kWeightings
 };
 
 /// Compares stored normals with all weightings. `groups` must belong to the topology, and have corners. Takes

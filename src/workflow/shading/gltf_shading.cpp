@@ -347,7 +347,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
   std::vector<bool> result;
   if (!found) return result;
   const Backs& backs = *found;
-  // Collects the corners of each class of vertices that has corners on both sides of a sheet.
+  // Collects the corners of each point whose vertices have corners on both sides of a sheet.
   std::vector<bool> may_be(points.count);
   for (std::uint32_t c = 0; c < corners.size(); ++c)
     if (backs.back[c / 3] != kNoFace) may_be[points.point_of_vertex[corners[c]]] = true;
@@ -373,7 +373,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
     if (apart.empty()) continue;
     const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
     const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
-    // Finds which side the stored normals of the class face.
+    // Finds the side to which the stored normals of the point's vertices face.
     std::vector<double> along(sides);
     for (std::size_t n = 0; n < here.size(); ++n) {
       const std::uint32_t c = here[n].second;

@@ -35,7 +35,7 @@ namespace chronormal::inline internal {
 
 struct GltfShadingOptions {
   bool smooth = false;        ///< if true, primitives without NORMAL get vertex normals; otherwise they are flat
-  double crease_angle = 180;  ///< degrees, for smooth: edges sharper than this in the base are hard
+  double crease_angle = 180;  ///< degrees; if `smooth` is true, edges sharper than this in the base are hard
   /// Tells whether to keep normal_deltas, tangents and tangent_deltas. If false, they are only checked.
   bool keep_deltas = true;
   bool weld = true;  ///< if true, vertices at the same point in every pose are joined
@@ -65,13 +65,13 @@ struct GltfShading {
   std::vector<std::vector<float>> normal_deltas;
   /// For each target, true if any of its normal deltas is not zero, even if they are not kept.
   std::vector<bool> turns;
-  std::vector<float> tangents;                     ///< (V, 4), or empty if no primitive has tangents
+  std::vector<float> tangents;                     ///< (V, 4); empty if no primitive has tangents
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas, for tangents
   std::optional<GltfBakeMark> mark;
   /// The number of correction targets of an earlier bake that have lost their deltas, because another program has made
   /// new normals. If this number is not 0, `mark` is empty.
   std::size_t emptied = 0;
-  std::size_t split_by_crease = 0;  ///< vertices that a crease would have split
+  std::size_t split_by_crease = 0;  ///< the number of vertices that a crease would have split
 
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept {
     return place_of_vertex.empty() ? point_of_vertex[vertex] : place_of_vertex[vertex];
@@ -124,7 +124,7 @@ class ShownTurn {
 
  private:
   Vec3d axis_;         // the axis of the rotation; its length is the sine of the angle
-  double cosine_ = 1;  // negative if N faces away from n(0)
+  double cosine_ = 1;  // the cosine of the angle; negative if N faces away from n(0)
 };
 
 /// Computes the weights of correction targets from the weights of the mesh's own targets. weights must have one value

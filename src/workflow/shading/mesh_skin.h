@@ -63,7 +63,7 @@ class MeshSkin {
  private:
   // The joints that each vertex follows, as indices into the list of a skin's joints.
   struct Shares {
-    std::vector<std::size_t> first;  // (V + 1)
+    std::vector<std::size_t> first;  // (V + 1), the first share of each vertex in `all`
     std::vector<JointShare> all;
     std::size_t joints = 0;  // the least number of joints that a skin must have
   };
@@ -75,7 +75,7 @@ class MeshSkin {
 
   std::shared_ptr<const GltfSkin> skin_;
   std::shared_ptr<const Shares> shares_;
-  std::vector<AffineTransform> matrices_;  // one per joint
+  std::vector<AffineTransform> matrices_;  // the matrix of each joint in the present pose
 };
 
 }  // namespace chronormal::inline internal

@@ -44,7 +44,7 @@ class RigPoses {
   std::vector<std::size_t> targets_;
   std::size_t target_count_;
   PoseList given_;
-  std::vector<double> together_;  // (targets, targets)
+  std::vector<double> together_;  // (targets, targets), the results of togetherness()
 };
 
 /// Returns the poses of a file that give weights to this mesh.

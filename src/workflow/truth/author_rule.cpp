@@ -13,7 +13,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;  // degrees, degrees, a share
+// In degrees; in degrees; as a share of the distance of area.
+constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;
 constexpr double kOff = 0.001;        // degrees: a normal that is farther from its sum does not follow the rule
 constexpr double kNothingLeft = 180;  // degrees: the distance if both sides of a sheet add up to zero
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
@@ -214,7 +215,7 @@ class Mending {
     Vec3d z0 = unit_sum(parts, base_);
     if (z0 == Vec3d{} && whole) return kNothingLeft;
     if (z0 == Vec3d{} || s0 == Vec3d{}) return 0;
-    const double side = dot(z0, s0) < 0 ? -1 : 1;  // the side that the author shows
+    const double side = dot(z0, s0) < 0 ? -1 : 1;  // 1 or -1, the side of the surface that the author shows
     z0 = side * z0;
     double worst = 0;
     bool any = false;

@@ -45,7 +45,7 @@ struct AuthorRule {
 
 struct FoundRule {
   AuthorRule rule;
-  AuthorSums sums;  ///< empty if the rule is plain, and no target stores normals
+  AuthorSums sums;  ///< the sums of the rule; empty if the rule is plain and no target stores normals
 };
 
 /// Finds the rule of a mesh. The groups of the shading must have their corners, and its deltas of normals must be kept.

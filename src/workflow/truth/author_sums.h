@@ -194,7 +194,7 @@ class AuthorSums {
   };
 
   Weighting weighting_ = Weighting::kArea;
-  std::vector<std::uint32_t> loop_offsets_ = {0}, loops_;  // vertices of polygons
+  std::vector<std::uint32_t> loop_offsets_ = {0}, loops_;  // the vertices of all polygons
   std::vector<std::uint32_t> offsets_ = {0};               // for each element, its range in sums_
   std::vector<Corner> sums_;
 };

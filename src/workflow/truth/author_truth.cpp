@@ -10,7 +10,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kFramesOfBlock = 256;
-constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a smaller angle to the sum is no offset
+constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a normal that is nearer to its sum has no offset
 
 // Returns the angle by which rounding may turn a stored normal, in radians. It is not zero if the normals look like
 // bytes, which some exporters store.
@@ -212,8 +212,8 @@ class AuthorTruth::Finder {
   std::vector<double> side_;
   std::vector<char> off_;
   StaleKeys stale_;
-  std::vector<std::uint32_t> element_of_;  // element of each frame
-  std::vector<PlaneOffset> base_offsets_;  // offsets in the base, one for each edge
+  std::vector<std::uint32_t> element_of_;  // for each frame, its element
+  std::vector<PlaneOffset> base_offsets_;  // for each edge, the offset in the base
   // For each edge, how far offsets differ from the base's; -1 if the edge cannot be used.
   std::vector<double> differences_;
 };

@@ -47,10 +47,10 @@ class AuthorTruth {
 
   /// The frame in which the offsets of one element are measured.
   struct Frame {
-    std::uint32_t first_edge = 0, edge_count = 0;  ///< all edges around the element, in edges()
-    std::uint32_t edge = kNone;                    ///< the edge from which azimuths are measured, in edges()
-    double side = 1;                               ///< -1 if the author shows the side opposite to r
-    Vec3d base_z, base_x;                          ///< directions that replace the edge, if no edge can be used
+    std::uint32_t first_edge = 0, edge_count = 0;  ///< the range in edges() of all edges around the element
+    std::uint32_t edge = kNone;  ///< the index in edges() of the edge from which azimuths are measured
+    double side = 1;             ///< -1 if the author shows the side opposite to r
+    Vec3d base_z, base_x;        ///< directions that replace the edge, if no edge can be used
     PlaneOffset base;
   };
   /// The difference between the offset of a target at weight 1 and the offset of the base.
@@ -150,7 +150,7 @@ class AuthorTruth {
   std::vector<OffsetEdge> edges_;
   std::vector<Frame> frames_;
   std::vector<std::uint32_t> frame_of_element_;  // empty if no element has an offset
-  std::vector<std::vector<Change>> changes_;     // for each target, in the order of frames
+  std::vector<std::vector<Change>> changes_;     // for each target, its changes in the order of frames
   std::vector<StaleKey> stale_;
   bool any_split_ = false;
 };

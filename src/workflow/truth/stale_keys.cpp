@@ -72,7 +72,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
 
 // The vertices that a key turns, in one connected part of the mesh.
 struct PartOfKey {
-  std::vector<float> turned, off;  // angles in radians, of the vertices that turn
+  std::vector<float> turned, off;  // radians: turn and error of each vertex that turns
   double together = 0, of_surface = 0, of_stored = 0;
 
   [[nodiscard]] bool is_stale() {
@@ -153,7 +153,7 @@ bool split_by_keys(GltfShading& shading) {
   }
   if (sharing.empty()) return false;
   const double chord = kSplitNormalTolerance / kDegreesPerRadian;
-  std::optional<StaleKeys> stale;  // found only if needed
+  std::optional<StaleKeys> stale;  // computed when it is first needed
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();

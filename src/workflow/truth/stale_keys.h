@@ -27,7 +27,7 @@ namespace chronormal::inline internal {
 /// A target that is stale on some connected parts of the mesh.
 struct StaleKey {
   std::size_t target = 0;
-  std::size_t vertices = 0;  ///< vertices of these parts that the target turns by more than a degree
+  std::size_t vertices = 0;  ///< the number of vertices of these parts that the target turns by more than a degree
 };
 
 class StaleKeys {
@@ -51,7 +51,7 @@ class StaleKeys {
   std::vector<std::uint32_t> part_of_vertex_;
   // For each target and part of the mesh, whether the target is stale there; empty if it is stale nowhere.
   std::vector<std::vector<bool>> stale_;
-  std::vector<bool> is_all_stale_;  // for each target
+  std::vector<bool> is_all_stale_;  // for each target, true if it is stale wherever it turns the mesh
   std::vector<StaleKey> list_;
 };
 

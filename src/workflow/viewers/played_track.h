@@ -48,7 +48,7 @@ class PlayedTrack {
   bool as_specified_;
   bool resampled_;
   bool steps_;
-  double first_, last_;  // the first and the last time of the samples
+  double first_, last_;  // seconds: the first and the last time of the samples
   double last_index_;    // the index of the last sample
   GltfKeys keys_;        // keys of a spline that the viewer plays by its own rule; empty for all other tracks
   gltf::WeightCurve curve_;

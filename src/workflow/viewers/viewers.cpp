@@ -38,7 +38,8 @@ float clamped(float value, int bits) noexcept {
   const float size = std::fabs(value) < 1 ? std::fabs(value) : std::isnan(value) ? 0 : 1.0F;
   const float scaled = size * static_cast<float>((1 << (bits - 1)) - 1);
   const int whole = static_cast<int>(scaled);
-  const int small = scaled - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole;  // the difference is exact
+  // Float32 holds this difference exactly.
+  const int small = scaled - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole;
   const int kept = lack == 0 ? small : (small << lack) | (small >> (bits - 1 - lack));
   return std::copysign(static_cast<float>(kept) / static_cast<float>((1 << (wide - 1)) - 1), value);
 }
@@ -48,7 +49,7 @@ Vec3f clamped(const Vec3f& v, int bits) noexcept {
 }
 
 struct Octahedral {
-  double x = 0, y = 0;  // in [-1, 1]
+  double x = 0, y = 0;  // coordinates on the unfolded octahedron, in [-1, 1]
 };
 
 Octahedral to_octahedral(const Vec3d& v) noexcept {
@@ -96,7 +97,7 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const Vec3d x = first_axis(v), y = cross(v, x);
   const double m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {v.x, v.y, v.z}};
-  std::array<double, 4> q{};  // x, y, z, w
+  std::array<double, 4> q{};  // in the order x, y, z, w
   const double trace = m[0][0] + m[1][1] + m[2][2];
   if (trace > 0) {
     const double root = std::sqrt(trace + 1), s = 0.5 / root;

@@ -114,7 +114,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // A piece takes three rows if its neighbours are left out, and otherwise two.
+    // A piece of a curve takes three rows if the pieces beside it are left out, and otherwise two rows.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -123,7 +123,7 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
       for (const std::size_t key : keys) take(first + key);
       continue;
     }
-    std::vector<std::size_t> of_pieces;  // the first node of each piece
+    std::vector<std::size_t> of_pieces;  // the index of the first node of each piece
     for (const std::size_t key : keys)
       for (std::size_t piece = 0; piece < pieces; ++piece) of_pieces.push_back(2 * (pieces * key + piece));
     for (const std::size_t node : of_pieces) {
@@ -216,7 +216,7 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   while (at < counts.size() && errors[at] > near && !(errors[at] <= least && kManyMore * counts[at] <= counts.back()))
     ++at;
   std::size_t extras = counts[std::min(at, counts.size() - 1)];
-  // Between two numbers of targets, the logarithm of the error is interpolated linearly.
+  // Between two numbers of correction targets, the logarithm of the error is interpolated linearly.
   if (at > 0 && at < counts.size() && errors[at] > 0 && errors[at] < near) {
     const double part = portable::log(errors[at - 1] / near) / portable::log(errors[at - 1] / errors[at]);
     extras =

@@ -63,7 +63,7 @@ constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmles
 struct ProductLimits {
   Lengths lengths = Lengths::kUnit;
   std::size_t most_extras = 0;
-  double tolerance = 0;  // degrees
+  double tolerance = 0;  // in degrees
 };
 
 // A candidate before its correction targets have drivers.

@@ -210,7 +210,7 @@ class Together {
     }
   }
 
-  // Returns these elements, with the best delta of each target alone.
+  // Returns the elements whose targets are active together, with the best delta of each target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {

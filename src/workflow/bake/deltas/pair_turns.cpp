@@ -242,7 +242,7 @@ std::vector<MeasuredPair> PairMeter::measure(std::span<const Pair> pairs) {
 double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
   const std::size_t elements = shading_.groups.size(), poses = normals_.poses().size();
   std::vector<BlendTerm> terms;
-  std::vector<double> weights;  // (extras, poses)
+  std::vector<double> weights;  // (extras, poses), the weight of each correction target
   for (const ExtraWeight& extra : extras) {
     terms.push_back(shown_term(terms_, extra.i, extra.j, is_shown_));
     for (const std::vector<double>& pose : normals_.poses()) weights.push_back(weight_of_term(extra, pose));

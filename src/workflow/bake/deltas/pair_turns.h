@@ -55,7 +55,7 @@ class PosedNormals {
   const NormalTerms& terms_;
   const PoseList& poses_;
   std::size_t chunk_, first_ = 0;
-  std::vector<Normal> normals_;  // (elements, poses)
+  std::vector<Normal> normals_;  // (elements, poses), of the elements from first_ on
 };
 
 class PairMeter {

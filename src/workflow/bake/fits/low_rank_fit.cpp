@@ -16,7 +16,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kPointBlock = 16;  // points at a time
+constexpr std::size_t kPointBlock = 16;  // the number of points that one task handles
 constexpr std::size_t kSampledPoints = 1500;
 // A point counts in the fit by 1 / length. length is the 2 % quantile of the lengths of its normals, but at least
 // kShortest, and at least kPartOfLack times the length of its missing vectors. The limits prevent that a few points

@@ -17,8 +17,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMissingBlock = 64;
-constexpr std::size_t kPosesAtOnce = 16;    // poses whose normals are in memory at once
-constexpr std::size_t kStridePadding = 16;  // floats: the widest vector
+constexpr std::size_t kPosesAtOnce = 16;    // the number of poses whose normals are in memory at a time
+constexpr std::size_t kStridePadding = 16;  // the number of floats in the widest SIMD vector
 
 // Returns a vector with the true direction that differs from the sum only by a vector across the normal N. If such a
 // vector would be too long, returns the true normal itself.

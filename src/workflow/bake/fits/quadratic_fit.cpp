@@ -264,7 +264,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       std::copy(lack, lack + 3 * stride, wanted.begin());
-      float most = 0;  // largest weight in any row
+      float most = 0;  // the largest weight in any row
       for (std::size_t r = 0; r < rows; ++r) {
         const Vec3f now = {shown[r], shown[stride + r], shown[2 * stride + r]};
         const Vec3f right = now + Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]};

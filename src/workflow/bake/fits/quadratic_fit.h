@@ -75,8 +75,8 @@ class QuadraticFit {
   MissingNormals missing_;
   std::vector<float> importance_;  // one for each point
   std::vector<Feature> features_;
-  std::vector<double> terms_;   // (features, extras)
-  std::vector<float> weights_;  // (rows, padded)
+  std::vector<double> terms_;   // (features, extras), the factors of all features
+  std::vector<float> weights_;  // (rows, padded), the weights in the poses of the fit
 };
 
 }  // namespace chronormal::inline internal

@@ -96,7 +96,7 @@ class Judge {
 
   // The differences between rendered and right unit normals, for the vertices of a set.
   struct Differences {
-    std::vector<float> planes;   // (vertices, 3, poses)
+    std::vector<float> planes;   // (vertices, 3, poses), x, y and z in planes
     std::vector<float> largest;  // (vertices), the largest length of a difference
     std::size_t poses = 0;
   };

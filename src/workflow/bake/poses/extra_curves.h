@@ -87,10 +87,11 @@ using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 /// targets, and sums have many such terms. Curves give the weights over tracks.
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each correction target; all zero if there are sums or curves
-  std::vector<GltfExtraTarget> sums;  ///< one for each correction target, or none; then tracks also have curves
-  TrackCurves curves;                 ///< the curves of each track; empty if there are formulas
-  PoseList rest;                      ///< for curves, the weights in the poses that the file stores (MeshWeights)
-  TrackPieces pieces;                 ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
+  /// One for each correction target; empty unless weights are sums, beside which tracks have curves.
+  std::vector<GltfExtraTarget> sums;
+  TrackCurves curves;  ///< the curves of each track; empty if there are formulas
+  PoseList rest;       ///< for curves, the weights in the poses that the file stores (MeshWeights)
+  TrackPieces pieces;  ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
   /// An angle in radians. Cubic splines get more keys until the errors of formulas turn no normal by more than this
   /// angle. If it is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();

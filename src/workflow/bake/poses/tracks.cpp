@@ -108,7 +108,7 @@ class Spline {
  private:
   std::size_t columns_;
   std::vector<float> times_;
-  std::vector<Knot> knots_;  // (keys, columns)
+  std::vector<Knot> knots_;  // (keys, columns), row by row
 };
 
 class TrackExtender {

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kAreaBlock = 4096;            // elements
+constexpr std::size_t kAreaBlock = 4096;            // the number of elements in a block
 constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces in a block, if all areas are computed first
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
@@ -80,7 +80,7 @@ void AreaSums::each_block(const PointRows& a, const PointRows* b, const Exact& o
                           const Body& body) const {
   const std::array<const PointRows*, 2> points = {&a, b};
   const std::array<const Exact*, 2> exact = {&of_a, &of_b};
-  std::array<AlignedArray<double>, 2> all;  // areas of all faces
+  std::array<AlignedArray<double>, 2> all;  // areas of all faces, for the points a and b
   for (std::size_t k = 0; k < points.size() && are_scattered_; ++k) {
     if (points[k] == nullptr) continue;
     all[k] = AlignedArray<double>(kAreaRow * topology_->face_count());

@@ -72,7 +72,7 @@ Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
 }
 
 Vec3d bend_delta(const SequenceElement& element, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
-  // A bend that turns no normal by more than 1e-8 rad is dropped. degree() has the same limit.
+  // A bend that turns no normal by more than 1e-8 rad is dropped. degree() (normals/control) has the same limit.
   constexpr double kNothing = 0x1p-28;
   const double size = std::max(max_abs(from), max_abs(to));
   return !(max_abs(bend) <= kNothing * size) ? (-1 / element.scale) * bend : Vec3d{};
@@ -157,7 +157,8 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
 // at keys are products of ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
-  constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;  // beyond these lengths, sums in float32 lose digits
+  // Lengths of a normal: beyond these, sums in float32 lose digits.
+  constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;
   EndDeltas result{before, 0};
   const auto fit = [&](std::size_t e, double& error) {
     const ControlNormals n = form.control_normals(e);

@@ -133,7 +133,7 @@ class SequenceFile {
   std::size_t triangles_ = 0, base_positions_ = 0, base_normals_ = 0;  // indices of accessors
   std::optional<std::size_t> zero_positions_;
   std::vector<Target> targets_, bends_;
-  std::vector<float> rounded_, room_;  // scratch memory for arrays of the file
+  std::vector<float> rounded_, room_;  // memory that is used for one array of the file after another
 };
 
 }  // namespace chronormal::inline internal

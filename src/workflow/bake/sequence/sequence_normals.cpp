@@ -18,7 +18,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kVertexBlock = 8192;  // vertices in one task
+constexpr std::size_t kVertexBlock = 8192;  // the number of vertices that one task handles
 
 // Writes three coordinates for each vertex. coordinate_at(i) returns coordinate i, counted over all vertices.
 template <class CoordinateAt>

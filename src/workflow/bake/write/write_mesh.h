@@ -81,7 +81,7 @@ class MeshWriter {
   SharedParts parts_;
   std::string pointer_;                           // the JSON pointer of the mesh
   std::vector<std::optional<std::size_t>> part_;  // for each primitive that is shaded, the index of its part
-  std::vector<Attributes> attributes_;            // one for each primitive
+  std::vector<Attributes> attributes_;            // the attributes of each primitive
 };
 
 }  // namespace chronormal::inline internal
