@@ -97,7 +97,7 @@ class BlendSource {
   Weights weights_at_;
   Moment moment_;
   MeshSkin* skin_;
-  std::vector<AffineTransform> carriers_;  // how the skin transforms each output; empty if there is no skin
+  std::vector<AffineTransform> carriers_;  // the transform of each output by the skin; empty if there is no skin
   std::size_t placed_ = 0;
   // Deltas of each involved target; nullopt until they are needed.
   std::vector<std::optional<std::vector<Delta>>> moved_;

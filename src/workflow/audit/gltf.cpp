@@ -121,8 +121,8 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, const Aut
 }
 
 // Returns the mesh of the original file, from which the audited file was baked. Reuses the mesh of an earlier audit if
-// its base normals equal those of the audited mesh. Returns nothing if there is no original file, or if its mesh differs
-// too much to be the original.
+// its base normals equal those of the audited mesh. Returns nothing if there is no original file, or if its mesh
+// differs too much to be the original.
 Result<std::shared_ptr<AuthorOfMesh>> original_of(const AuditOptions& options, const GltfShading& baked,
                                                   const KnownAuthors* known) {
   std::shared_ptr<AuthorOfMesh> author;

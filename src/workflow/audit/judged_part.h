@@ -119,7 +119,7 @@ class JudgedPart {
   bool keeps_faces_;                   // if false, each element computes the normals of its faces again
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
-  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // set if the part is small
+  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // the edges of the part alone, set if the part is small
   std::vector<std::uint32_t> output_of_;
 };
 

@@ -103,7 +103,7 @@ void finish(Audit& result);
 //     begin(start, end)              gets the normals of elements at both ends before the samples (if kNeedsEnds)
 //     show()                         is called after each placement, before shown()
 //     shown(first, normals)          writes the rendered normals of outputs from number `first` on; zero if no sum
-//     exists
+//                                    exists
 //     seen(i, n)                     returns a normal of the i-th output as the screen shows it
 //     right(first, normals)          replaces normals of the geometry by the true directions for outputs from number
 //                                    `first` on

@@ -7,8 +7,7 @@
 /// (Figure 3), by the points of de Casteljau's algorithm and the frames of quaternions.
 ///
 /// Numbers    Normals are those of Scheme::evaluate(). Angles are those of compare() at the same samples, so that their
-/// sum
-///            is q of the paper. Lengths, points and frames are computed in double from the values that the scheme
+///            sum is q of the paper. Lengths, points and frames are computed in double from the values that the scheme
 ///            keeps.
 /// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_COMPARE_FACE_FIGURE_H_

@@ -87,7 +87,7 @@ void add_motion_trouble(const Inspection& found, Troubles& troubles) {
                        " over between two keyframes, at an instant without area", true,
                        "the normal flips to the opposite direction at that instant");
   Places others = found.collapses;
-  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // all reported above
+  if (found.turned_over.pairs == others.pairs) others.pairs = 0;  // the line above has reported all of these faces
   troubles.in_segments("collapses", others, " lose", " all area between two keyframes", true,
                        found.turned_over.pairs > 0 ? "the normal flips, or is lost for an instant and comes back"
                                                    : "the normal is lost for an instant and comes back");

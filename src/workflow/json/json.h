@@ -2,8 +2,7 @@
 /// --json. This header is for callers that have the results but do not run the program. docs/cli.md lists the fields.
 ///
 /// Text       Lines are indented by two spaces, and the text ends with a line end. Bytes in names that are not UTF-8
-/// become
-///            U+FFFD. Numbers that are infinite or NaN become null.
+///            become U+FFFD. Numbers that are infinite or NaN become null.
 /// Threads    All functions are pure.
 #ifndef CHRONORMAL_WORKFLOW_JSON_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_JSON_H_

@@ -11,8 +11,7 @@
 /// audit.
 ///
 /// Worst      At most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace. No two of a
-/// mesh
-///            are within kPlaceDistance of each other.
+///            mesh are within kPlaceDistance of each other.
 /// Thinned    A page above the size limit is thinned out, and states what is left out. First, keyframes and samples
 ///            between the worst places are removed. Then triangles far from these places become fewer, and are not
 ///            judged. All data on which the normals around a worst place depend stay unchanged.

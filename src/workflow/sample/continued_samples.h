@@ -26,17 +26,14 @@ namespace chronormal::inline internal {
 /// Runs write_samples() on the share of the run, in which each moment is a segment:
 ///
 ///     shard      The run writes its share of the moments. .ply and .obj files have the numbers that they would have
-///     among
-///                all files. A .npy file has as many rows as the share has moments (workflow/json/parts.h joins such
-///                files). The bits are the same as in one run.
+///                among all files. A .npy file has as many rows as the share has moments (workflow/json/parts.h joins
+///                such files). The bits are the same as in one run.
 ///     peers      The shards share one output, which becomes visible when all shards are done. Every process writes its
 ///                rows into the same .npy or .npz file, or writes its .ply and .obj files. The first process returns
-///                the
-///                summary of all processes, and each other process its own summary.
+///                the summary of all processes, and each other process its own summary.
 ///     journal    Each row of a .npy file gets a record in the journal. The file has the name OUT.partial until it is
 ///                complete. A row is not computed again if the journal of an earlier run has it and the file has it
-///                with
-///                the same checksum. The caller removes the journal.
+///                with the same checksum. The caller removes the journal.
 ///
 /// Errors: also the errors of the journal; kUsage for a journal if the output has another format or is a stream;
 /// kFailed if OUT.partial is not such an array.

@@ -5,12 +5,9 @@
 /// their neighbours.
 ///
 ///     better in a viewer    The mean error over all poses is smaller by at least a twentieth. In addition, the mean
-///     error, the
-///                           99.9 % quantile, the worst error and the torn edges (beyond 10, 20 and 40 degrees) must
-///                           not grow
-///                           beyond the tolerance. This must be true in the poses that the file plays, in each target
-///                           alone,
-///                           and in poses that a program sets.
+///                           error, the 99.9 % quantile, the worst error and the torn edges (beyond 10, 20 and 40
+///                           degrees) must not grow beyond the tolerance. This must be true in the poses that the file
+///                           plays, in each target alone, and in poses that a program sets.
 ///
 /// The criteria for a candidate are, in this order: it is within the limits; it is better in most of the named viewers;
 /// it is no worse in most of the other viewers; it is within the tolerance; its size is in proportion to the file.

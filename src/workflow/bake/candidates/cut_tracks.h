@@ -18,12 +18,9 @@ namespace chronormal::inline internal {
 /// than the tolerance, in radians:
 ///
 ///     LINEAR        Each gap between keys is cut into straight pieces, within a limit of their number. track_error is
-///     raised to
-///                   the angle by which these pieces turn normals. If all viewers play cubic splines, the track may
-///                   become a
-///                   spline, which is exact. It does so if a spline takes fewer numbers, or if the pieces leave too
-///                   large an
-///                   error.
+///                   raised to the angle by which these pieces turn normals. If all viewers play cubic splines, the
+///                   track may become a spline, which is exact. It does so if a spline takes fewer numbers, or if the
+///                   pieces leave too large an error.
 ///     CUBICSPLINE   More keys are added for the weights of formulas, if all viewers play splines as specified.
 ///
 /// The candidate must have its deltas, and its formulas or curves.

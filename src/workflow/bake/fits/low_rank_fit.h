@@ -2,8 +2,7 @@
 /// the missing normals. Points with large errors get another fit, by least squares of the angles. Private to workflow.
 ///
 /// Shapes     Points, rows and stride are as in MissingNormals. Weights are stored in rows of `padded()` floats. The
-/// first
-///            extras() floats of a row are weights, and the others are zero.
+///            first extras() floats of a row are weights, and the others are zero.
 /// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
 #define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_

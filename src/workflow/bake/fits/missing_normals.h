@@ -3,9 +3,9 @@
 /// to workflow.
 ///
 /// Points     A point is a set of vertices that show the same normal. They have the same element and the same stored
-/// base normal.
+///            base normal.
 /// Shapes     (points, 3, stride) floats. The first rows() floats of each run of `stride` floats are values, and the
-/// rest is 0.
+///            rest is 0.
 /// Units      The length of the stored base normal is 1.
 /// Threads    Uses all cores. The result has the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_

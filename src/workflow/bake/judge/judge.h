@@ -2,8 +2,7 @@
 /// measurements. Private to workflow.
 ///
 ///     error    the angle between the rendered and the right normal, after the skin of the pose has transformed both as
-///     the
-///              viewer does
+///              the viewer does
 ///     tear     the angle by which errors of neighbouring vertices differ (surface_edges.h)
 ///
 /// The right normals of all poses are computed once. The normals that viewers render of the file before the bake are
@@ -12,7 +11,7 @@
 /// Shapes     n is the number of a vertex in the list of judged vertices.
 /// Units      degrees
 /// Threads    Uses all cores for one measurement after the other. The results have the same bits on any number of
-/// cores.
+///            cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_JUDGE_JUDGE_H_
 

@@ -36,7 +36,7 @@ struct SeenPose {
 /// once.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
-/// The skins of some poses. Each skin has its joints as in the pose.
+/// The skins of some poses. The joints of each skin stand as in its pose.
 class SkinsInPoses {
  public:
   explicit SkinsInPoses(std::span<const SeenPose> poses);

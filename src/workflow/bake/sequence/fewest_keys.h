@@ -10,7 +10,7 @@
 /// program has sampled, get no key. If every part of a valid line is also valid, no other choice has fewer keys.
 ///
 /// Times      Times are those of a sequence: keyframe k has time k. Instants between keyframes are in steps of 1 /
-/// kKeySteps.
+///            kKeySteps.
 /// Threads    Uses all cores. The keys are the same on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_SEQUENCE_FEWEST_KEYS_H_

@@ -36,7 +36,7 @@ struct ExactSegment {
   std::vector<float> positions;  ///< deltas of the positions of vertices, from key 0 to the second key
   std::vector<float> start;      ///< for each element, what key 0 adds to N; only in segment 0
   std::vector<float> key;        ///< for each element, what the second key adds to N
-  std::vector<float> bend;       ///< for each element, what the segment adds to the sum of both keys
+  std::vector<float> bend;       ///< for each element, the bend: what the segment adds to the targets of its keys
   bool bends = false;            ///< true if any normal bends; otherwise `bend` is not valid
 };
 
