@@ -27,7 +27,7 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// Creates the judge. `weights` has a function for each viewer. It writes the weights that the viewer plays for the
+  /// Creates the judge. `weights` has a function for each viewer, which writes the weights that this viewer plays for the
   /// involved targets, as in BlendSource. shading and part must outlive the object. is_skinned is true if a skin moves
   /// the part, since viewers apply skins in different ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,

@@ -123,7 +123,7 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
   return {mesh.target_names, std::move(moving), mesh.target_count, std::move(given)};
 }
 
-// Functions that compute the arrays of a mesh for one target at a time, so that never all arrays are in memory.
+// Functions that compute the arrays of a mesh for one target at a time, so that few arrays are in memory together.
 struct MeshDeltas {
   std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target stays as it is
   std::function<TargetDeltas(std::size_t extra)> extra;

@@ -373,8 +373,9 @@ class Candidates {
         best = area();
       }
       if (!(distance[best] <= follows)) continue;
-      // If several candidates are equally near, chooses the one that most normals follow exactly. If that is not
-      // decisive, prefers quads if the file was cut from quads and has keys, and otherwise triangles and own corners.
+      // If several candidates are equally near, the candidate that most normals follow exactly is chosen. If several
+      // candidates are equal in this too, quads are preferred if the file was cut from quads and has keys, and otherwise
+      // triangles and sums over own corners.
       constexpr double kAlike = 0.003, kAsMany = 0.005, kMostOfAll = 0.75;
       std::size_t found = best;
       double most = -1;

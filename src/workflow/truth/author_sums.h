@@ -83,7 +83,7 @@ class Polygons {
   const Topology* triangles_;
   // All four lists are empty until triangles are joined.
   std::vector<std::uint32_t> first_,
-      count_;  // first triangle of each triangle's polygon; number of triangles of a polygon
+      count_;  // for each triangle, the first triangle of its polygon; for that one, the number of triangles
   // For a larger polygon, by its first triangle, the place of its corners in loops_.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles

@@ -24,9 +24,9 @@ class FittedLines {
  public:
   /// Creates an object without deltas.
   FittedLines() = default;
-  /// Fits deltas of the elements that are shown. `largest` has the length of the largest term of each element. The time
-  /// is that of the normals of all elements, in 17 to 2,000 poses for the fit and in more poses for the error. In
-  /// addition, each element takes in each pose some ten times the square of the number of its active targets.
+  /// Fits deltas of the elements that are shown. `largest` has the length of the largest term of each element. Computes
+  /// the normals of all elements in 17 to 2,000 poses for the fit, and in more poses for the error. In addition, each
+  /// element takes some ten times the square of the number of its active targets in operations for each pose.
   FittedLines(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use,
               const std::vector<bool>& is_shown, const std::vector<double>& largest);
 

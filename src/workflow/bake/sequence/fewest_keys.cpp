@@ -210,8 +210,8 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   return last;
 }
 
-// Returns the number of pieces per segment if all segments have the same number: the number that the worst segment
-// needs.
+// Returns the number of pieces in a segment, if all segments are cut into the same number of pieces. This is the number
+// that the worst segment needs.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
   std::size_t pieces = 1;
   const auto suffices = [&](double start) {

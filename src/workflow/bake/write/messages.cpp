@@ -23,8 +23,8 @@ constexpr std::size_t kMorphedAttributes = 8;
 constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
 constexpr std::size_t kFewExtras = 8;
 
-// Rounds an angle up to hundredths of a degree, so that a warning never prints an error beyond the tolerance as within
-// it.
+// Rounds an angle up to hundredths of a degree, so that no warning prints an error beyond the tolerance as an error
+// within the tolerance.
 double rounded_up(double degrees) { return std::ceil(100 * degrees) / 100; }
 
 std::string label_of(const GltfMesh& mesh, const BakedMesh& baked) {
