@@ -27,9 +27,9 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// Creates the judge. `weights` has a function for each viewer, which writes the weights that this viewer plays for the
-  /// involved targets, as in BlendSource. shading and part must outlive the object. is_skinned is true if a skin moves
-  /// the part, since viewers apply skins in different ways.
+  /// Creates the judge. `weights` has a function for each viewer, which writes the weights that this viewer plays for
+  /// the involved targets, as in BlendSource. shading and part must outlive the object. is_skinned is true if a skin
+  /// moves the part, since viewers apply skins in different ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 

@@ -172,7 +172,7 @@ std::size_t count_marked(const FaceMarks& marks, Mark mark) {
       std::count_if(marks.begin(), marks.end(), [mark](const auto& bits) { return (bits & mark) != 0; }));
 }
 
-// Returns a bound of the length that the rounding errors of its positions give a normal.
+// Returns a bound of the length that a face's normal can get from the rounding errors of its positions alone.
 double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> positions) {
   double coordinate = 0, edge = 0;
   const Vec3d origin = to_double(positions[face[0]]);
@@ -258,8 +258,8 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (over != end) tally.turned_over.add(f, kTurnsOver, marks, over->t);
 }
 
-// The largest coordinates of the keyframes at both ends of a segment. Only those keyframes have a value that the
-// segment judges.
+// The largest coordinates of the keyframes at both ends of a segment. A keyframe has no value if another segment judges
+// this keyframe.
 struct JudgedEnds {
   std::optional<double> from, to;
 };

@@ -374,8 +374,8 @@ class Candidates {
       }
       if (!(distance[best] <= follows)) continue;
       // If several candidates are equally near, the candidate that most normals follow exactly is chosen. If several
-      // candidates are equal in this too, quads are preferred if the file was cut from quads and has keys, and otherwise
-      // triangles and sums over own corners.
+      // candidates are equal in this too, quads are preferred if the file was cut from quads and has keys. Otherwise
+      // triangles and sums over own corners are preferred.
       constexpr double kAlike = 0.003, kAsMany = 0.005, kMostOfAll = 0.75;
       std::size_t found = best;
       double most = -1;

@@ -1,5 +1,5 @@
-/// A candidate: the data that a bake may write for a mesh. It has deltas of the mesh's own targets, correction targets,
-/// and their drivers. Private to workflow.
+/// A candidate: the data that a bake may write for a mesh. A candidate has deltas of the mesh's own targets, correction
+/// targets, and the drivers of the correction targets' weights. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
 

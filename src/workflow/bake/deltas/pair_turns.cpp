@@ -26,8 +26,8 @@ constexpr double kLeastLength = 1e-4;
 constexpr double kSlack = 1 + 1e-9;
 constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
-// Returns the correction target of a pair. If both targets are the same, its weight is zero at weight 1, and it removes
-// the part by which the square term is too large between 0 and 1.
+// Returns the correction target of a pair. If both targets are the same, the correction target has weight 0 where this
+// target has weight 1, and removes the part by which the square term is too large between the weights 0 and 1.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
 // Returns the factor of a correction target's term in a pose.

@@ -81,7 +81,7 @@ class Judge {
   /// Measures what each viewer renders in each kind of poses. Viewers and poses that the depth does not include have no
   /// errors in the result.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth) const;
-  /// Returns the largest error of each vertex in these poses, for a viewer that adds up deltas as stored.
+  /// Returns the largest error of each vertex in these poses, in degrees, for a viewer that adds up deltas as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
  private:

@@ -1,5 +1,5 @@
-/// Finds the skins of a mesh that matter to the choice of a bake. A skin is used by a node of the file. Private to
-/// workflow.
+/// Finds the skins that matter to the choice of a bake. Each skin belongs to a node of the file that has the mesh.
+/// Private to workflow.
 ///
 /// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. If a skin
 /// does only this to all vertices, it is left out.
