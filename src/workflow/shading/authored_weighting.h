@@ -1,8 +1,8 @@
 /// Finds which weighting an author's normals follow. Private to workflow.
 ///
-/// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h), and the stored
-/// normals show this way. The true normals follow the same weighting, so a difference from another weighting is not an
-/// error of the file.
+/// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h). The stored
+/// normals show which weighting it used. The true normals follow the same weighting, so a difference from another
+/// weighting is not an error of the file.
 ///
 ///     tells      a stored normal tells if two weightings differ there by more than 0.1 degrees; at all other normals
 ///                the weightings agree
@@ -14,7 +14,6 @@
 /// normals are as the program computed them. Rounding to 8 bits, and quads that were cut into triangles later, change
 /// the distance little compared with the limit of two thirds, if weightings differ by more than a degree. If no
 /// weighting fits, all have about the same distance.
-/// about the same distance.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 #define CHRONORMAL_WORKFLOW_SHADING_AUTHORED_WEIGHTING_H_
 

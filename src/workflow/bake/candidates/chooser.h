@@ -14,7 +14,6 @@
 /// Among candidates that are equal by all criteria and within the tolerance, the smallest is chosen, unless another one
 /// has a much smaller error in the viewers that are not named. If such candidates are beyond the tolerance, the
 /// candidate with the smallest error is chosen.
-/// is chosen.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
 #define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CHOOSER_H_
 

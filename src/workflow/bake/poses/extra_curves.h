@@ -87,7 +87,7 @@ using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 /// targets, and sums have many such terms. Curves give the weights over tracks.
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each correction target; all zero if there are sums or curves
-  /// One for each correction target; empty unless weights are sums, beside which tracks have curves.
+  /// One sum for each correction target, or none. If there are sums, tracks have curves as well.
   std::vector<GltfExtraTarget> sums;
   TrackCurves curves;  ///< the curves of each track; empty if there are formulas
   PoseList rest;       ///< for curves, the weights in the poses that the file stores (MeshWeights)

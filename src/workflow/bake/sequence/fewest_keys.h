@@ -37,8 +37,9 @@ struct SequenceKeys {
   /// Radians: the largest error of any normal at any instant, except of normals counted in `beyond`.
   double largest_error = 0;
   std::size_t beyond = 0;  ///< (normal, segment) pairs for which even lines of one step exceed the tolerance
-  std::size_t even = 0;    ///< the number of keys if all keyframes stay, and all segments are split alike; at most
-                           ///< kKeySteps pieces are tried
+  /// The number of keys if all keyframes stay, and all segments are split into the same number of pieces, at most
+  /// kKeySteps.
+  std::size_t even = 0;
 };
 
 /// Chooses keys. tolerance is in radians, and must be above 0. progress() receives the segment that was reached. Reads
