@@ -44,7 +44,7 @@ struct MeshBake {
   GrownMesh grown;  // set if the mesh has correction targets
 };
 
-// Lists the meshes that may move. Their arrays, which are read later, tell which of them really move.
+// Lists the meshes that may move. The arrays of these meshes, which are read later, tell which meshes really move.
 std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   std::vector<std::size_t> result;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {

@@ -104,8 +104,8 @@ class Elements {
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Computes the control normals of all faces for the segments from first to last. They are kept, because a face can
-  // belong to many groups.
+  // Computes the control normals of all faces for the segments from first to last, and keeps these control normals,
+  // because a face can belong to many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));

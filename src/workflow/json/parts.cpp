@@ -328,7 +328,8 @@ AuditShard read_audit(const JsonView& part) {
   return shard;
 }
 
-// The parts that were read, and the fields that are equal in all of them. One of the two lists is empty.
+// The parts that were read, and the fields that are equal in all parts. Either the list of comparisons or the list of
+// audits is empty.
 struct ReadParts {
   std::string name;
   std::optional<double> tolerance;

@@ -9,8 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns only the vectors that are not zero, with their vertices. If no vector is zero, returns all of them without
-// vertices.
+// Returns only the vectors that are not zero, with their vertices. If no vector is zero, returns all vectors, without a
+// list of vertices.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {

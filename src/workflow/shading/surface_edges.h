@@ -1,8 +1,9 @@
 /// Lists the pairs of vertices between which a jump of the error is visible. Private to workflow.
 ///
 /// Normals are interpolated over faces. If two neighbouring vertices have the same error, the surface between them
-/// looks right. If they have different errors, the surface shows a fold that does not exist. The *tear* of a pair of vertices
-/// measures the difference of their errors as an angle, from the length of the difference of the two error vectors:
+/// looks right. If they have different errors, the surface shows a fold that does not exist. The *tear* of a pair of
+/// vertices measures the difference of their errors as an angle, from the length of the difference of the two error
+/// vectors:
 ///
 ///     tear(a, b) = 2 asin(min(1, |(s_a - u_a) - (s_b - u_b)| / 2)),   s rendered and u true, both unit vectors
 #ifndef CHRONORMAL_WORKFLOW_SHADING_SURFACE_EDGES_H_

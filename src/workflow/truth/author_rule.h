@@ -2,7 +2,8 @@
 ///
 /// The tool that made a mesh weighted polygons or triangles in its own way, and the stored normals show which rule it
 /// used. The normals of targets at weight 1 are compared first, with the offset of the base applied: a flat base or a
-/// cube has the same normals by all rules, but its targets do not. The base is used only if no target tells rules apart.
+/// cube has the same normals by all rules, but its targets do not. The base is used only if no target tells rules
+/// apart.
 ///
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
 ///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees; at all other

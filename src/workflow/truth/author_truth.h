@@ -66,7 +66,7 @@ class AuthorTruth {
   AuthorTruth(const GltfShading& shading, Weighting weighting);
 
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
-  /// Returns the sums of face normals. They are empty if is_plain() is true.
+  /// Returns the sums of face normals. The sums are empty if is_plain() is true.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
   /// Returns true if the truth is n(w), weighted by area, with the offset of the base unchanged. Such a truth can be
   /// computed exactly.

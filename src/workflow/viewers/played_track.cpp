@@ -20,8 +20,8 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Returns the factors of Hermite interpolation at t. They belong to the value before, its tangent, the value after, and
-// its tangent, in this order.
+// Returns the four factors of Hermite interpolation at t: those of the value before, of its tangent, of the value
+// after, and of its tangent.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};

@@ -359,7 +359,8 @@ bool has_few_products(const Making& making, const MeshWeights& weights) {
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Makes own deltas of any length. They are similar to those of own_candidate(), but the best lengths are not searched.
+// Makes own deltas of any length. The deltas are similar to those of own_candidate(), but the best lengths are not
+// searched.
 Candidate similar_to_own(const DeltaSource& source, const RightNormals& rights) {
   MeshPlan plan = source.plan;
   plan.is_line.assign(plan.is_line.size(), false);

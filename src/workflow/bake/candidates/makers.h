@@ -66,9 +66,9 @@ inline constexpr double kPartOfTracks = 0.2;
 /// Makes a candidate that has the deltas of the file.
 [[nodiscard]] Candidate stored_candidate(const DeltaSource& source);
 
-/// Makes deltas of the mesh's own targets. They are right at weight 1 of each target alone. If lengths are free, they
-/// instead have the smallest error on the way from weight 0 to 1, as the plan of the source requires. Then lines are
-/// fitted by least squares over the weights of the file.
+/// Makes deltas of the mesh's own targets that are right at weight 1 of each target alone. If lengths are free, makes
+/// the deltas that the plan of the source requires instead, whose errors are also small between the weights 0 and 1.
+/// These deltas include the lines that were fitted by least squares to the weights of the file.
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
 // Correction targets that products of weights drive (products.cpp).

@@ -152,8 +152,9 @@ class Corrector {
     append(weight, gather(asked, [&](const Asked& of) { return correction(of, weight, pose, t); }));
   }
 
-  // Adds two correction targets that complete a large turn of a target at weight 1. Both have the weight of the target.
-  // They give the sum the length 1, so between weight 0 and 1 normals turn as evenly as with deltas of any length.
+  // Adds two correction targets that complete a large turn of a target at weight 1. Both correction targets have the
+  // weight of this target. The sum of all deltas then has length 1, so between weight 0 and 1 normals turn as evenly as
+  // with deltas of any length.
   void add_turn(std::size_t i, const std::vector<double>& pose) {
     const ExtraWeight weight{i, i, 1, 0};
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -174,9 +175,9 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds correction targets for a pair of targets. They make normals right in a pose, and as good as possible half-way
-  // to this pose. The correction has two targets with the same weight. It has only one if one is nearly as good as two,
-  // or leaves an error that is a small part of the tolerance (radians).
+  // Adds a correction for a pair of targets. The correction makes normals right in a pose, and as good as possible
+  // half-way to this pose. It has two correction targets with the same weight. If one correction target is nearly as
+  // good as two, or leaves an error that is a small part of the tolerance (radians), it has only one.
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -395,8 +396,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // For each entry, the sum of squares and the largest angle. They are added up afterwards in a fixed order, so that
-  // the result does not depend on threads.
+  // The sum of squares and the largest angle of each entry. These numbers are added up afterwards in a fixed order, so
+  // that the result does not depend on threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));

@@ -26,7 +26,7 @@ GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
   return weight;
 }
 
-// Returns the terms of one sign, multiplied by this sign, so that all of them are positive.
+// Returns the terms of one sign. Their factors are multiplied by this sign, so that all factors are positive.
 GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   GltfExtraTarget result;
   for (const auto& term : weight.linear)

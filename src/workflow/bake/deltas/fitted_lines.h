@@ -13,9 +13,10 @@
 
 namespace chronormal::inline internal {
 
-/// Fits the deltas of several targets together. The deltas are those of elements, scaled so that |n(0)| is 1. If two
-/// targets move an element and are active at the same time somewhere in the file, the deltas of all active targets that
-/// move the element are fitted together, by least squares over the weights of the file (docs/theory.md, eq. 44).
+/// Deltas that are fitted for several targets together. Each delta belongs to an element, and is scaled so that |n(0)|
+/// is 1. If two targets move an element and are active at the same time somewhere in the file, the deltas of all active
+/// targets that move the element are fitted together, by least squares over the weights of the file (docs/theory.md,
+/// eq. 44).
 ///
 /// In the fitted poses, neither the largest error nor the mean square error of an element gets larger than with the
 /// best delta of each target alone (analysis/fits/end_delta.h). If this is impossible, or if more than 64 targets move

@@ -69,8 +69,8 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
   return ranges;
 }
 
-// Tells for each target if it gets the best single delta. These are the targets that nothing drives or, for encodings
-// other than exact, all targets that move.
+// Tells for each target if it gets the best single delta. For the encoding exact, a target gets this delta if it moves
+// but no animation drives it. For other encodings, every target that moves gets it.
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)

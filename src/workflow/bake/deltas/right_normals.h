@@ -32,8 +32,8 @@ class RightNormals {
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
   /// Returns the stored normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Return the normals of all elements, or of some elements, in a pose. They do not have the rotation that the
-  /// author's own base normals add. Take O(vertices + elements).
+  /// Return the normals of all elements, or of some elements, in a pose. These normals do not have the rotation that
+  /// the author's own base normals add. Take O(vertices + elements).
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;

@@ -28,8 +28,8 @@ namespace chronormal::inline internal {
 /// shading must have its deltas. Takes O(corners) for each target that moves a vertex.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
-/// Returns the deltas of tangents for a target. They are (vertices, 3) for each part, and empty for parts without
-/// tangents.
+/// Returns the deltas of tangents for a target, as arrays (vertices, 3) for each part. The array of a part without
+/// tangents is empty.
 [[nodiscard]] TargetDeltas tangent_deltas(const DeltaSource& source, std::size_t target);
 
 }  // namespace chronormal::inline internal

@@ -25,8 +25,8 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// Returns a function that returns the positions of vertices at t. At t = 0 they are those of the base, and at t = 1
-// `to`.
+// Returns a function that returns the position of a vertex at t. At t = 0 the vertex is where the base has it, and at t
+// = 1 where `to` has it.
 auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
   return [&set, &to, t](std::uint32_t v) {
     const float* const from = set.base.data() + 3 * std::size_t{v};

@@ -103,7 +103,7 @@ class NormalTerms::Term {
   BlendTerm fitted_;
 };
 
-/// Returns the control normals of a single target from weight 0 to 1. They follow from the terms of the target.
+/// Returns the control normals of a single target from weight 0 to 1, computed from the terms of the target.
 [[nodiscard]] ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& square) noexcept;
 
 /// Returns the control normals from weight `from` to weight `to`. `normals` are the control normals from 0 to 1.

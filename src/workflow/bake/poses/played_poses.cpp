@@ -72,8 +72,8 @@ class Peaks {
     }
   }
 
-  // Returns at most `most` of these numbers, in ascending order. Three quarters of them are the numbers with the
-  // largest peaks, and the rest is evenly spaced among the others.
+  // Returns at most `most` of these numbers, in ascending order. Three quarters of the result are the numbers with the
+  // largest peaks, and the rest is evenly spaced among the other numbers.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
@@ -121,7 +121,8 @@ namespace {
 // Positions in a gap between two keys at which a track is judged, from 0 to 1. The most telling positions come first.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
-// Returns at most `room` times of one track, in seconds. They are at its telling keys and after them.
+// Returns at most `room` times of one track, in seconds. The times are at the telling keys of the track and after these
+// keys.
 std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   std::vector<double> times;
   const std::vector<std::size_t> keys = telling_keys(track, room);
