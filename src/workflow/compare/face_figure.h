@@ -1,5 +1,5 @@
-/// Computes the figures of the paper for one face. A user can draw Figures 1 to 3 of the paper for a face of his own
-/// from these numbers.
+/// Computes the figures of the paper for one face. From these numbers, users can draw Figures 1 to 3 of the paper
+/// for faces of their own.
 ///
 /// One face moves in one segment. At equally spaced times, the figure has the exact normal of the face, and its length,
 /// which is twice the area. For each scheme, it has the normal that the scheme computes, the length of that normal

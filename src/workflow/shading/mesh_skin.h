@@ -65,7 +65,7 @@ class MeshSkin {
   struct Shares {
     std::vector<std::size_t> first;  // (V + 1), the first share of each vertex in `all`
     std::vector<JointShare> all;
-    std::size_t joints = 0;  // the least number of joints that a skin must have
+    std::size_t joints = 0;  // a skin of this mesh must have at least this number of joints
   };
 
   MeshSkin(GltfSkin skin, std::shared_ptr<const Shares> shares)

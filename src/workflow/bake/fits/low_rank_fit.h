@@ -78,7 +78,7 @@ class LowRankFit {
   const MissingNormals& missing_;
   std::span<const PlaceOfRows> places_, unseen_;
   std::size_t extras_ = 0, padded_ = 0, own_targets_ = 0;
-  std::vector<float> importance_, errors_;  // one for each point
+  std::vector<float> importance_, errors_;  // for each point: its factor in the fit, its largest error
   std::vector<float> weights_, deltas_, own_deltas_;
 };
 

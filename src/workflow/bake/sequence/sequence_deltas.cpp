@@ -82,7 +82,7 @@ VectorView<float> view_of(std::vector<float>& values) {
   return VectorView<float>::packed(values.data(), values.size() / 3);
 }
 
-// Returns the data of elements that follow from the first `segments` segments.
+// Returns the data of elements, computed from the first `segments` segments alone.
 Result<std::vector<SequenceElement>> elements_of(const SequenceNormals& normals, std::size_t segments) {
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());
