@@ -13,7 +13,8 @@
 
 namespace chronormal::inline internal {
 
-/// Continues a checksum: `so_far` is the checksum of all bytes before these.
+/// Returns the checksum of a longer text whose last bytes are `bytes`. `so_far` is the checksum of all bytes before
+/// them.
 [[nodiscard]] std::uint32_t checksum_of(std::string_view bytes, std::uint32_t so_far = 0);
 
 /// Returns the checksum of two blocks of bytes in a row from the checksum of each block. `second_size` is the size of
@@ -25,7 +26,7 @@ class NumberChecksum {
  public:
   void add(std::uint64_t number);
   void add(double number);
-  /// Adds the count of the numbers too, so that [1], [2, 3] and [1, 2], [3] differ.
+  /// Adds the numbers and their count. The count makes the lists [1], [2, 3] differ from [1, 2], [3].
   void add(std::span<const std::uint32_t> numbers);
   void add(std::span<const float> numbers);
   void add(std::string_view text);
@@ -36,16 +37,17 @@ class NumberChecksum {
   std::uint32_t value_ = 0;
 };
 
-/// Returns a text as a line with its checksum, "1a2b3c4d TEXT" and a line feed; the text has no line feed of its own.
+/// Returns a line with the checksum of a text, a blank, the text and a line feed: "1a2b3c4d TEXT". The text must not
+/// contain a line feed.
 [[nodiscard]] std::string checked_line(std::string_view text);
 /// Returns the text in a line that checked_line() made, or nothing if the line is damaged. Pass the line without its
 /// line feed.
 [[nodiscard]] std::optional<std::string_view> text_of_checked(std::string_view line);
 
-/// Appends a last member with the checksum of all bytes before it to the text of a JSON object: {"a": 1} becomes
-/// {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
+/// Appends a last member, "checksum", to the text of a JSON object. It has the checksum of all bytes before this
+/// member: {"a": 1} becomes {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
 [[nodiscard]] std::string with_checksum(std::string object);
-/// Returns true if a text ends with its checksum and was not changed since.
+/// Returns true if a text ends with a checksum that matches the text.
 [[nodiscard]] bool has_its_checksum(std::string_view text);
 
 }  // namespace chronormal::inline internal

@@ -6,7 +6,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Writes 1234567 as "1,234,567".
+// Returns a number with commas between groups of three digits: "1,234,567".
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t i = digits.size(); i > 3;) {

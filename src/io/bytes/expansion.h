@@ -1,5 +1,5 @@
-/// Limits the memory and the output that a file may ask for: a few bytes can declare, unpack to, or be cut into very
-/// many.
+/// Limits the memory and the output that a file may ask for. Without a limit, a small damaged or hostile file could
+/// declare billions of elements, or unpack to many gigabytes.
 ///
 ///     Expansion expansion(100);                     // --max-expansion
 ///     expansion.add_read(file.size());              // whatever is read counts
@@ -39,8 +39,9 @@ class Expansion {
 
   /// Returns the largest number of bytes that a file may ask for.
   [[nodiscard]] std::uint64_t most() const noexcept;
-  /// Checks that the file may ask for this number of bytes; pass 2^64 - 1 for a number that overflowed. Errors:
-  /// kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow it.
+  /// Checks that the file may ask for `bytes` bytes. Pass 2^64 - 1 if the computation of the number overflowed. Errors:
+  /// kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow this
+  /// number.
   [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
 
  private:

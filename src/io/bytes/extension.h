@@ -1,4 +1,4 @@
-/// The extension of a file name. Private to io.
+/// Finds the extension of a file name. Private to io.
 #ifndef CHRONORMAL_IO_BYTES_EXTENSION_H_
 #define CHRONORMAL_IO_BYTES_EXTENSION_H_
 
@@ -10,7 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the extension in lower case and with the dot (".obj"); empty where there is none.
+/// Returns the extension of a file name in lower case and with its dot (".obj"), or an empty text if the name has no
+/// extension.
 [[nodiscard]] inline std::string lower_extension(std::string_view path) {
   path.remove_prefix(begin_of_name(path));
   const std::size_t dot = path.rfind('.');

@@ -1,4 +1,5 @@
-// Maps a regular file into memory, and reads any other to its end; or reads parts of a regular file.
+// Maps regular files into memory, and reads pipes and terminals to their end. PositionedFile reads parts of a regular
+// file without a mapping.
 #include "io/bytes/file.h"
 
 #include <algorithm>
@@ -10,8 +11,8 @@
 namespace chronormal {
 namespace {
 
-// Reads to the end, or until there are more than `most` bytes. Returns false, with errno, on failure. `expected` is the
-// present size of the file.
+// Reads to the end of the file, or until there are more than `most` bytes. Returns false and sets errno on failure.
+// `expected` is the present size of the file in bytes.
 bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most, std::string& bytes) {
   const std::size_t first_block = std::max(std::size_t{1} << 16, expected + 1);
   std::size_t size = 0;
@@ -112,7 +113,8 @@ FileBytes::~FileBytes() {
 }
 
 std::optional<PositionedFile> PositionedFile::open(const std::string& path) {
-  // A pipe that is opened and closed again loses its writer, so the kind of the file is checked first.
+  // Opening a pipe and closing it again would cut off the program that writes to it, so the kind of the file is checked
+  // before the file is opened.
   if (path == "-") return std::nullopt;
   if (const auto status = status_of(path); !status || !status->is_file()) return std::nullopt;
   Descriptor descriptor = open_file(path, {.reads = true});

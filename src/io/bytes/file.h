@@ -58,8 +58,8 @@ class FileBytes {
   std::string owned_;       // the bytes, if they were read and not mapped
 };
 
-/// A file whose parts are read in any order, by a descriptor and without a mapping. So it may be larger than memory,
-/// and may be shortened while it is read.
+/// A file whose parts are read in any order. Nothing is mapped, so the file may be larger than memory, and another
+/// program may shorten it while it is read.
 ///
 /// Threads    several may call read() at the same time.
 class PositionedFile {

@@ -1,4 +1,4 @@
-// Reads a journal once, when it is opened, and then only writes behind its end.
+// Reads a journal once, when the journal is opened. After that it only writes at the end of the file.
 #include "io/bytes/journal.h"
 
 #include <algorithm>
@@ -37,12 +37,13 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
       ErrorCode::kFailed, path,
       "this file is in the way of the journal, but is not one; remove the file, or choose another output"};
   if (!status->is_file()) return foreign;
-  // If the file system has no locks, nothing detects two runs that write the same output.
+  // On a file system without locks, two runs that write the same output do not notice each other.
   if (!lock_file(file) || !(status = status_of(file)) || status->is_removed)
     return Error{ErrorCode::kFailed, path,
                  "another run is writing to the same output; wait until that run has ended, or choose another output"};
   {
-    const Result<FileBytes> bytes = FileBytes::open(path);  // Windows changes no file that is mapped
+    // Windows cannot change a file while it is mapped, so this block ends the mapping before the journal is written.
+    const Result<FileBytes> bytes = FileBytes::open(path);
     if (!bytes) return bytes.error();
     if (!journal.read(bytes.value().bytes())) return foreign;
   }

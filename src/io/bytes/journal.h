@@ -30,32 +30,35 @@ class Journal {
   /// the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
-  /// The text of the run that began the journal, and the texts of its records.
+  /// Return the text of the run that began the journal, the texts of the records that it had when it was opened, and
+  /// its path.
   [[nodiscard]] const std::string& run() const noexcept { return run_; }
   [[nodiscard]] const std::vector<std::string>& records() const noexcept { return records_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Returns true if there is no record, neither of an earlier run nor of this one.
+  /// Returns true if the journal has no records, neither of an earlier run nor of this one.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
 
-  /// Writes a record behind the last one at once; records() does not list it. Errors: kFailed with the path
+  /// Writes a record behind the last one, without delay; records() does not list the new record. Errors: kFailed with
+  /// the path as the place.
   [[nodiscard]] Status append(std::string_view record);
   /// Keeps the first `count` of the records that the journal had when it was opened, and drops all others. Errors:
-  /// kFailed with the path
+  /// kFailed with the path as the place.
   [[nodiscard]] Status keep_first(std::size_t count);
-  /// Removes the file. Errors: kFailed with the path
+  /// Removes the file of the journal. Errors: kFailed with the path as the place.
   [[nodiscard]] Status remove();
 
  private:
   Journal(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
-  // Reads the lines up to the first damaged one. Returns false if that is the line of the run.
+  // Reads the lines of the journal up to the first damaged one. Returns false if the first line, which names the run,
+  // is damaged.
   [[nodiscard]] bool read(std::string_view bytes);
 
   std::string path_;
   Descriptor file_;
   std::string run_;
   std::vector<std::string> records_;
-  std::size_t count_ = 0;            // all records, including new ones
+  std::size_t count_ = 0;            // number of all records, including new ones
   std::vector<std::uint64_t> ends_;  // offset at which the line of the run ends, and then the end of each record
 };
 

@@ -11,7 +11,9 @@ namespace {
 using namespace std::string_view_literals;
 
 struct KnownKind {
-  std::string_view begin;  ///< '?' stands for any byte; text in lower case stands for upper case as well
+  /// The first bytes of such a file; '?' stands for any byte, and a letter in lower case also for the letter in upper
+  /// case, if the text begins with '<'.
+  std::string_view begin;
   std::string_view name;
   std::string_view formats = {};  ///< the names of formats whose files are of this kind, each between blanks
 };
@@ -103,7 +105,8 @@ bool is_plain_utf16(std::string_view bytes) noexcept {
 const KnownKind* find_kind(std::string_view bytes) noexcept {
   static constexpr KnownKind kPlainUtf16 = {"", "text in UTF-16"};
   if (is_plain_utf16(bytes)) return &kPlainUtf16;
-  std::string_view text = bytes;  // markup may stand after a byte order mark, and after blank lines
+  // Markup may begin with a byte order mark or with blank lines.
+  std::string_view text = bytes;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
   const auto found = std::find_if(kKnownKinds.begin(), kKnownKinds.end(), [&](const KnownKind& kind) {

@@ -1,5 +1,5 @@
-// Writes a new file as a temporary file in the same folder, which gets its name when it is whole. Writes to a stream at
-// once.
+// Writes a new file under a temporary name in the folder of the target, and renames it when all bytes are written.
+// Sends the bytes for a stream to the stream at once.
 #include "io/bytes/output_file.h"
 
 #include <algorithm>
@@ -15,7 +15,8 @@
 namespace chronormal {
 namespace {
 
-// Writes the pieces in order, and joins small ones into one call. Returns false, with errno, on failure.
+// Writes the pieces in order, and joins small pieces into one call of the system. Returns false and sets errno on
+// failure.
 bool write_pieces(int descriptor, std::span<const std::string_view> pieces) {
   constexpr std::size_t kBlock = std::size_t{1} << 16;
   std::string block;
@@ -38,19 +39,19 @@ Error exists_already(const std::string& path) {
 
 }  // namespace
 
-// The output is one of three kinds: a stream of this process, a device or pipe that has a path, or a new file.
+// The state of an output. The output is a stream of this process, a device or a pipe that has a path, or a new file.
 struct internal::OutputFile::State {
   std::string path;
   bool force = false;
   std::optional<int> stream = {};
   Descriptor device{-1};
-  std::string target = {};  // path with its symbolic links resolved
-  bool replaces = false;    // whether target already exists; `old` describes it
+  std::string target = {};  // the path with its symbolic links resolved
+  bool replaces = false;    // true if the target already exists; `old` then describes it
   FileStatus old = {};
   std::unique_ptr<TemporaryFile> file = {};
-  bool is_joined = false;  // whether another process will give the file its name
+  bool is_joined = false;  // true if another process will rename the file to its target
   bool is_sealed = false;
-  std::string gathered = {};  // bytes from put() to a stream or a device, which are written at the end
+  std::string gathered = {};  // bytes that put() was given for a stream or a device; finish() writes them
 
   [[nodiscard]] int descriptor() const noexcept {
     return stream ? *stream : file != nullptr ? file->descriptor() : device.number();
@@ -65,7 +66,7 @@ struct internal::OutputFile::State {
 
   [[nodiscard]] Error error() const { return failure(stream && path == "-" ? "<stdout>" : path, errno); }
 
-  // Flushes the new file to disk, and closes it. Returns false, with errno, on failure.
+  // Flushes the new file to disk, and closes it. Returns false and sets errno on failure.
   [[nodiscard]] bool seal() {
     if (std::exchange(is_sealed, true)) return true;
     if (replaces && !take_permissions(file->descriptor(), old)) return false;
@@ -86,7 +87,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   state->force = force;
   state->stream = stream_of(path);
   if (state->stream) {
-    // Bytes that the program printed before may still be in a buffer; they must come first.
+    // The program may have printed bytes that are still in a buffer. They must come before the bytes of this output.
     (void)std::fflush(*state->stream == kStandardError ? stderr : stdout);
     return OutputFile(std::move(state));
   }
@@ -98,7 +99,7 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
     return OutputFile(std::move(state));
   }
   state->target = follow_links(path);
-  // Nobody else may read the new file until it has the permissions of the file that it replaces.
+  // The new file is readable only by its owner until it gets the permissions of the file that it replaces.
   state->file = std::make_unique<TemporaryFile>(state->target, state->replaces);
   if (!state->file->is_open()) return TemporaryFile::not_opened(path);
   return OutputFile(std::move(state));
@@ -116,7 +117,7 @@ Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::u
   state->file = std::make_unique<TemporaryFile>(partial, state->replaces);
   if (!state->file->is_open() || !set_end(state->descriptor(), kept)) {
     Error error = failure(partial.name, errno);
-    if (kept == 0) remove_file(partial.name.c_str());  // it holds nothing that a later run could go on with
+    if (kept == 0) remove_file(partial.name.c_str());  // the file is empty, so a later run could not continue with it
     return error;
   }
   return OutputFile(std::move(state));

@@ -25,7 +25,8 @@ namespace chronormal::inline internal {
 
 class OutputFile {
  public:
-  /// Begins a file. Errors: those of write_output() in chronormal/io/output.h that are known before a byte is written.
+  /// Begins a file. Errors: the errors of write_output() (chronormal/io/output.h) that can be found before the first
+  /// byte is written.
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
   /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; with 0, begins the file. Until
@@ -33,36 +34,37 @@ class OutputFile {
   /// early. Errors: those of create(); kUsage for a path that is not a file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
   [[nodiscard]] static std::string partial_name(const std::string& path);
-  /// Opens a file that another process (the owner) has begun, to write other parts of it by put(). `name` is the
-  /// owner's temporary_name(). The order is: all others call seal(), then the owner calls finish(), then the others
-  /// call finish(). A process that destroys its object instead removes the file. All processes need the same file
-  /// system. Errors: kFailed with path as the place.
+  /// Opens a file that another process (the owner) has begun, so that this process can write other parts of the file by
+  /// put(). `name` is what temporary_name() returned to the owner. The calls must come in this order: first seal() in
+  /// all other processes, then finish() in the owner, then finish() in the others. A process that destroys its object
+  /// without finish() removes the file. All processes must see the same file system. Errors: kFailed with path as the
+  /// place.
   [[nodiscard]] static Result<OutputFile> join(const std::string& path, const std::string& name);
-  /// Returns the name that the file has until it is whole; empty for a stream or a device.
+  /// Returns the name that the file has before finish(), or an empty text for a stream or a device.
   [[nodiscard]] std::string temporary_name() const;
 
   OutputFile(OutputFile&& other) noexcept;
   OutputFile& operator=(OutputFile&& other) noexcept;
   ~OutputFile();
 
-  /// Begins a spool for bytes whose place in this file is not yet known. It lies in the folder of the file, or in
-  /// memory if the output is a stream or a device. Errors: those of Spool::beside().
+  /// Begins a spool for bytes whose place in this file is not yet known. The spool is a file in the same folder, or
+  /// lies in memory if the output is a stream or a device. Errors: those of Spool::beside().
   [[nodiscard]] Result<Spool> spool() const;
 
   /// Writes bytes behind everything that was appended.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }
-  /// Appends several pieces, one after the other.
+  /// Appends several pieces, one behind the other.
   [[nodiscard]] Status append(std::span<const std::string_view> pieces);
 
-  /// Writes bytes from byte `at` on. A stream gets them when it is finished, and they are all held in memory until
-  /// then. A file must be written either by append() or by this function alone.
+  /// Writes bytes from byte `at` of the file on. If the output is a stream, all such bytes are held in memory until
+  /// finish() writes them. A file must be written either by append() alone or by put() alone.
   [[nodiscard]] Status put(std::uint64_t at, std::string_view bytes);
 
-  /// Ends the file and closes its descriptor; finish() gives it its name later. So several files can be completed
-  /// before any of them gets its name. Nothing may be appended after this call.
+  /// Ends the file and closes its descriptor, but leaves the temporary name; finish() renames the file later. A caller
+  /// can so complete several files before the first of them appears. Nothing may be appended after this call.
   [[nodiscard]] Status seal();
 
-  /// Ends the file and gives it its name.
+  /// Ends the file and renames it to its path.
   [[nodiscard]] Status finish();
 
  private:

@@ -1,4 +1,4 @@
-// Parses numbers. Plain digits take a fast path; strict functions parse all others.
+// Parses numbers. Plain decimal numbers take a fast path, and slower functions parse all others.
 #include "io/bytes/scan.h"
 
 #include <algorithm>
@@ -19,8 +19,9 @@ std::string_view without_plus(std::string_view word) noexcept {
   return word;
 }
 
-// Tells why from_chars found a number out of range: returns true if it is too large, and false if it is too small. Such
-// numbers are so far from 1 that the sign of the decimal exponent of the first nonzero digit decides.
+// Tells why std::from_chars found a number out of range. Returns true if the number is too large, and false if it is
+// too small. Such a number is so far from 1 that the decimal exponent of its first nonzero digit decides: a positive
+// exponent means too large.
 bool is_large(std::string_view number) noexcept {
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   const std::size_t exponent_at = number.find_first_of("eE");
@@ -31,7 +32,7 @@ bool is_large(std::string_view number) noexcept {
     if (exponent > kFar) exponent = kFar;
     if (exponent < -kFar) exponent = -kFar;
   }
-  std::int64_t whole_digits = 0, zeros = 0;  // digits before the point; zeros before the first nonzero digit
+  std::int64_t whole_digits = 0, zeros = 0;  // digits before the point, and zeros before the first nonzero digit
   bool after_point = false, significant = false;
   for (const char c : number.substr(0, exponent_at)) {
     if (c == '.') after_point = true;
@@ -71,7 +72,8 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
     return NumberFault::kNone;
   }
   if (std::isfinite(value)) return NumberFault::kNone;
-  const bool spelt = word.find_first_of("nN") != std::string_view::npos;  // nan, inf, infinity
+  // The number is spelt in letters: nan, inf or infinity.
+  const bool spelt = word.find_first_of("nN") != std::string_view::npos;
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
 }
 
@@ -80,7 +82,8 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   const NumberFault fault = parse_float(word, rounded);
   if (fault != NumberFault::kNone) return fault;
   word = without_plus(word);
-  value = double{rounded};  // the result if the number is too small for a double
+  // If the number is too small for a double, this value is the result.
+  value = double{rounded};
   double wide = 0;
   if (from_chars(word.data(), word.data() + word.size(), wide).ec == std::errc{}) value = wide;
   const std::size_t power = std::min(word.find_first_of("eE"), word.size()), point = word.substr(0, power).find('.');
@@ -93,9 +96,9 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   return NumberFault::kNone;
 }
 
-// The fast path for plain numbers. If w is an integer of at most 53 bits and p is at most 22, w / 10^p and w 10^p are
-// correctly rounded doubles (Clinger 1990). Rounding such a double to float gives the right result, unless the double
-// lies exactly in the middle between two floats, because the first rounding may have moved it there.
+// Takes a plain number by the fast path. If w is an integer of at most 53 bits and p is at most 22, w / 10^p and w 10^p
+// are correctly rounded doubles (Clinger 1990). Rounding such a double to float gives the right result, unless the
+// double lies exactly in the middle between two floats, because the first rounding may have moved it there.
 bool take_plain_float(std::string_view& line, float& value) noexcept {
   static constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
                                        1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};

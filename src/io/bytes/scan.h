@@ -1,4 +1,4 @@
-/// Lines, words and numbers of text, for all text formats. Private to io.
+/// Splits text into lines, words and numbers, for the readers of all text formats. Private to io.
 #ifndef CHRONORMAL_IO_BYTES_SCAN_H_
 #define CHRONORMAL_IO_BYTES_SCAN_H_
 
@@ -19,15 +19,15 @@ namespace chronormal::inline internal::scan {
 
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Checks that bytes may be text, before they are searched for line ends. Text has no page of zero bytes, but a sparse
-/// file has such pages where nothing was ever written, and may seem to be a terabyte long. Errors: kInvalidInput with
-/// the place "NAME, byte N"
+/// Checks that bytes may be text, before line ends are searched in them. Text has no page of zero bytes. A sparse file,
+/// however, has zero bytes wherever nothing was ever written, and may seem to be a terabyte long. Errors: kInvalidInput
+/// with the place "NAME, byte N".
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
-/// An iterator over the lines of a text, without their ends. Lines are counted from 1.
+/// An iterator over the lines of a text, without their line ends. Lines are counted from 1.
 class Lines {
  public:
-  /// separator ends a line: '\n' (which includes CRLF) or '\r'.
+  /// Begins at the first line. `separator` ends a line: '\n' (which also handles CRLF) or '\r'.
   Lines(std::string_view text, char separator) noexcept : text_(text), separator_(separator) {}
 
   /// Moves to the next line; returns false at the end of the text.
@@ -42,7 +42,8 @@ class Lines {
 
   [[nodiscard]] std::string_view line() const noexcept { return line_; }
   [[nodiscard]] std::size_t number() const noexcept { return number_; }
-  [[nodiscard]] std::size_t position() const noexcept { return position_; }  ///< of the byte after the line and its end
+  /// offset of the byte behind the line and its line end
+  [[nodiscard]] std::size_t position() const noexcept { return position_; }
 
  private:
   std::string_view text_;
@@ -79,13 +80,13 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// Reads the whole word as an integer.
 [[nodiscard]] NumberFault parse_integer(std::string_view word, std::int64_t& value) noexcept;
 
-/// Returns the word in quotes, cut short and without control characters, for a message.
+/// Returns a word in quotes for a message. Long words are cut short, and control characters are removed.
 [[nodiscard]] std::string quoted(std::string_view word);
 
 /// Returns the reason why a word did not parse: "'abc' is not a number".
 [[nodiscard]] std::string describe(NumberFault fault, std::string_view word);
 
-/// Appends the shortest digits from which the same number is read back.
+/// Appends a number with the fewest digits from which the same number is read back.
 template <class Number>
 void append_number(std::string& text, Number number) {
   char digits[32];

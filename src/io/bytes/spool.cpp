@@ -1,4 +1,4 @@
-// Appends to a file, or to a list of blocks, and reads back from either.
+// Appends bytes to a file, or to a list of blocks in memory, and reads them back.
 #include "io/bytes/spool.h"
 
 #include <algorithm>
@@ -41,7 +41,8 @@ void Spool::clear() {
 }
 
 Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const {
-  constexpr std::uint64_t kPart = std::uint64_t{1} << 18;  // bytes; a part of this size stays in a fast cache
+  // The most bytes that are handed over at once. A part of this size stays in a fast cache.
+  constexpr std::uint64_t kPart = std::uint64_t{1} << 18;
   if (!status_) return status_;
   assert(at <= size_ && size <= size_ - at);
   std::string part;
@@ -53,7 +54,8 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
     if (file_) {
       const auto wanted = std::span(part).first(static_cast<std::size_t>(std::min(end - at, kPart)));
       const std::optional<std::span<char>> missing = read_at(file_->number(), at, wanted);
-      // The file has all bytes that were added, unless another program shortened it.
+      // The file has all bytes that were added. A read that returns too few bytes therefore means that another program
+      // shortened the file.
       if (!missing || !missing->empty()) return failure(place_, missing ? EIO : errno);
       bytes = {wanted.data(), wanted.size()};
     } else {
@@ -68,7 +70,8 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
 }
 
 Status Spool::give_away(std::uint64_t at, std::uint64_t size, const Take& take) {
-  constexpr std::uint64_t kForgotten = std::uint64_t{8} << 20;  // bytes freed by one call, to make few calls
+  // The number of bytes that one call to the system frees. A large number makes few calls.
+  constexpr std::uint64_t kForgotten = std::uint64_t{8} << 20;
   for (std::uint64_t given = 0; given < size;) {
     const std::uint64_t part = std::min(size - given, kForgotten);
     if (Status status = hand_over(at + given, part, take); !status) return status;

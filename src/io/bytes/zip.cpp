@@ -1,4 +1,4 @@
-// Reads the directory and the members of zip files, and makes the headers of the files that are written.
+// Reads the directory and the members of zip files, and makes the headers of zip files that are written.
 #include "io/bytes/zip.h"
 
 #include <zlib.h>
@@ -24,8 +24,9 @@ constexpr std::uint32_t kMemberWord = 0x04034B50, kEntryWord = 0x02014B50, kEndW
 constexpr std::uint32_t kEnd64Word = 0x06064B50, kLocator64Word = 0x07064B50;
 constexpr std::size_t kMemberSize = 30, kEntrySize = 46, kEndSize = 22, kEnd64Size = 56, kLocator64Size = 20;
 constexpr std::uint16_t kStored = 0, kDeflated = 8, kZip64Field = 1;
-constexpr std::uint32_t kSaturated = 0xFFFFFFFF;  // "see the zip64 field"
-// Limits the size of unpacked data: deflate stores at most 1032 bytes in one byte, and a few bytes more in total.
+constexpr std::uint32_t kSaturated = 0xFFFFFFFF;  // a number that says "see the zip64 field"
+// Limits the size of unpacked data. One deflated byte stores at most 1032 bytes (kMostPerByte), and the whole data a
+// few bytes more (kSlack).
 constexpr std::uint64_t kMostPerByte = 1032, kSlack = 64;
 
 std::uint16_t load16(std::string_view text, std::size_t at) {
@@ -38,8 +39,9 @@ std::uint64_t load64(std::string_view text, std::size_t at) {
   return binary::load<std::uint64_t>(text.data() + at, kOrder);
 }
 
-// Finds the end record, which is the last part of the file. It ends with a comment whose length it declares, so the
-// record is where this length fits.
+// Finds the end record, which is the last part of the file. The record ends with a comment, and declares the length of
+// this comment. The search therefore looks for a place at which the declared length reaches exactly to the end of the
+// file.
 std::optional<std::size_t> find_end(std::string_view file) {
   constexpr std::size_t kLongestComment = 0xFFFF;
   for (std::size_t comment = 0; comment <= kLongestComment && comment + kEndSize <= file.size(); ++comment) {
@@ -65,7 +67,8 @@ bool read_end64(std::string_view file, std::size_t end, Directory& directory) {
   return true;
 }
 
-// Replaces the saturated numbers of the entry by 64-bit numbers, in their fixed order. Returns false if one is missing.
+// Replaces the numbers of the entry that say "see the zip64 field" by 64-bit numbers from that field, in their fixed
+// order. Returns false if a number is missing.
 bool read_zip64_field(std::string_view extra, Member& member) {
   const bool needs_any = member.size == kSaturated || member.packed_size == kSaturated || member.header == kSaturated;
   if (!needs_any) return true;
@@ -87,8 +90,8 @@ bool read_zip64_field(std::string_view extra, Member& member) {
   return false;
 }
 
-// Unpacks at most `most` bytes. The result is shorter if the data end earlier or are damaged; at_end tells whether the
-// deflated data ended properly. Throws std::bad_alloc if zlib gets no memory.
+// Unpacks at most `most` bytes. The result is shorter if the data end earlier or are damaged. Sets at_end to true if
+// the deflated data ended properly. Throws std::bad_alloc if zlib gets no memory.
 std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max();
   std::string result(most, '\0');
@@ -97,11 +100,12 @@ std::string inflate_some(std::string_view packed, std::size_t most, bool& at_end
   if (::inflateInit2(&stream, -MAX_WBITS) != Z_OK) throw std::bad_alloc();
   std::size_t done = 0;
   int code = Z_OK;
-  unsigned char none = 0;  // a place to write to, so that even an empty result can end properly
+  // zlib needs a place to write to, even if the result is empty.
+  unsigned char none = 0;
   while (code == Z_OK) {
     if (stream.avail_in == 0) {
       stream.avail_in = static_cast<uInt>(std::min(packed.size(), kMostAtOnce));
-      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib only reads it
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));  // zlib only reads these bytes
       packed.remove_prefix(stream.avail_in);
     }
     const auto room = static_cast<uInt>(std::min(most - done, kMostAtOnce));
@@ -211,7 +215,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
 
 Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) {
   Frame frame;
-  std::uint64_t end = 0;  // offset at which the file ends so far
+  std::uint64_t end = 0;  // offset in the file at which the headers and members so far end
   std::string& directory = frame.directory.bytes;
   const auto put16 = [](std::string& text, std::uint64_t value) {
     binary::append(text, static_cast<std::uint16_t>(value), kOrder);
@@ -222,7 +226,7 @@ Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) 
   const auto put64 = [](std::string& text, std::uint64_t value) { binary::append(text, value, kOrder); };
   const auto short_form = [&](std::uint64_t value) { return value >= zip64_from ? std::uint64_t{kSaturated} : value; };
 
-  // Writes the fields that both headers of a member have, from "version needed" on.
+  // Writes the fields that are the same in both headers of a member, beginning with "version needed".
   const auto put_common = [&](std::string& text, const StoredMember& member, bool is_large) {
     put16(text, is_large ? 45 : 20);  // version needed
     put16(text, 0);                   // flags

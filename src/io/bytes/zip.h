@@ -1,7 +1,7 @@
-/// Zip files: members stored or deflated, with zip64. Private to io.
+/// Reads and writes zip files, with members that are stored or deflated, and with zip64. Private to io.
 ///
-/// The directory at the end of the file gives the place and the size of each member. The reader believes it only if the
-/// header of the member agrees. (PKWARE's APPNOTE defines the layout.)
+/// The directory at the end of the file gives the place and the size of each member. The reader refuses a member whose
+/// own header disagrees with the directory. (PKWARE's APPNOTE defines the layout.)
 #ifndef CHRONORMAL_IO_BYTES_ZIP_H_
 #define CHRONORMAL_IO_BYTES_ZIP_H_
 
@@ -15,30 +15,31 @@
 
 namespace chronormal::inline internal::zip {
 
-/// An entry of the directory.
+/// An entry of the directory, which describes one member.
 struct Member {
   std::string_view name;
   std::uint16_t flags = 0;
   std::uint16_t method = 0;  ///< 0 stored, 8 deflated
   std::uint32_t checksum = 0;
-  std::uint64_t packed_size = 0;  ///< bytes in the file
-  std::uint64_t size = 0;         ///< bytes when unpacked
-  std::uint64_t header = 0;       ///< byte of the member's own header
+  std::uint64_t packed_size = 0;  ///< size in the file, in bytes
+  std::uint64_t size = 0;         ///< size after unpacking, in bytes
+  std::uint64_t header = 0;       ///< offset of the member's own header in the file
 };
 
-/// Lists the members; views point into file. Errors: kInvalidInput with the place "NAME, byte N": no zip file, a
-/// directory that does not lie inside it, the same name twice.
+/// Lists the members of a zip file; the names point into `file`. The place of an error is "NAME, byte N". Errors:
+/// kInvalidInput for bytes that are not a zip file, for a directory that does not lie inside the file, and for two
+/// members with the same name.
 [[nodiscard]] Result<std::vector<Member>> read_directory(std::string_view file, const std::string& name);
 
-/// Reads the first `most` bytes of a member, or all bytes of a shorter member. Returns a view into file, or into
-/// storage if the bytes had to be unpacked. The checksum is verified if all bytes are read. Never takes more than
-/// `most` bytes of memory, and refuses a declared size that deflate cannot produce before it takes memory. Errors:
-/// kInvalidInput with the place "NAME, MEMBER": encrypted, another method, data that are damaged or of another size
-/// than the directory says.
+/// Reads the first `most` bytes of a member, or all bytes of a shorter member. Returns a view into `file`, or into
+/// `storage` if the bytes had to be unpacked. Verifies the checksum if all bytes are read. Never takes more than `most`
+/// bytes of memory, and refuses a declared size that deflate cannot produce before it takes memory. The place of an
+/// error is "NAME, MEMBER". Errors: kInvalidInput for a member that is encrypted, packed by a method other than
+/// deflate, damaged, or of another size than the directory declares.
 [[nodiscard]] Result<std::string_view> read_member(std::string_view file, const Member& member, std::uint64_t most,
                                                    std::string& storage, const std::string& name);
 
-/// A stored member that is to be written: its name, and the size and the checksum of its bytes.
+/// A member to be written without compression: its name, the size of its bytes, and their checksum.
 struct StoredMember {
   std::string_view name;
   std::uint64_t size = 0;
@@ -46,8 +47,8 @@ struct StoredMember {
 };
 
 /// A zip file without the bytes of its members: the header of each member with its offset, and the records behind the
-/// last member. The bytes of a member follow its header. A checksum affects no offset, so it may be 0 until it is
-/// known.
+/// last member. The bytes of a member follow its header. No offset depends on a checksum, so the caller may pass the
+/// checksum 0 until the real one is known.
 struct Frame {
   struct Header {
     std::uint64_t at = 0;

@@ -1,4 +1,4 @@
-// Reads samples from the places that a layout names, and checks their coordinates.
+// Reads samples at the offsets that a layout gives, and checks their coordinates.
 #include "io/cache/cache_layout.h"
 
 #include <algorithm>
@@ -29,7 +29,8 @@ Status decode_coordinates(const CacheLayout& layout, const std::string& name, st
 
 Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name, std::size_t k,
                    std::span<float> positions) {
-  constexpr std::size_t kBlock = std::size_t{1} << 15;  // coordinates, which stay in cache until they are checked
+  // number of coordinates in a block, which is small enough to stay in cache until it is checked
+  constexpr std::size_t kBlock = std::size_t{1} << 15;
   std::vector<char> bytes(std::min(kBlock, positions.size()) * layout.item_size);
   for (std::size_t first = 0; first < positions.size(); first += kBlock) {
     const std::span<float> block = positions.subspan(first, std::min(kBlock, positions.size() - first));

@@ -140,12 +140,13 @@ Result<std::vector<std::string>> list_frame_files(const std::filesystem::path& f
     entries.increment(code);
   }
   if (code) return Error{ErrorCode::kFailed, utf8_of(folder), code.message()};
-  std::sort(files.begin(), files.end());  // so messages do not depend on the file system
+  // Messages then do not depend on the order in which the file system lists files.
+  std::sort(files.begin(), files.end());
   return files;
 }
 
-// Returns the first time at which a regularly sampled channel should have a sample and has none. The samples must be
-// sorted.
+// Returns the first time, in ticks, at which a regularly sampled channel should have a sample but has none. The samples
+// must be sorted by time.
 std::optional<std::int64_t> find_missing(const MayaCacheDescription::Channel& channel, const PositionCache& cache) {
   std::size_t k = 0;
   for (std::int64_t ticks = channel.start; ticks <= channel.end; ticks += channel.step, ++k) {

@@ -34,7 +34,7 @@ namespace chronormal::inline internal {
 
 constexpr std::int32_t kMayaTicksPerSecond = 6000;
 
-/// The content of a description.
+/// The content of a description, the XML file of a cache.
 struct MayaCacheDescription {
   struct Channel {
     std::string name;
@@ -50,8 +50,9 @@ struct MayaCacheDescription {
   std::vector<Channel> channels;
 };
 
-/// Reads a description; name is its name for messages. Errors: kInvalidInput with the place "NAME, byte N": no XML,
-/// another root, unknown types and formats, malformed numbers, more than 16 MiB.
+/// Reads a description; `name` is the file name for messages. The place of an error is "NAME, byte N". Errors:
+/// kInvalidInput for bytes that are not XML, another root element, unknown types and formats, malformed numbers, and
+/// more than 16 MiB.
 [[nodiscard]] Result<MayaCacheDescription> read_maya_description(std::string_view bytes, const std::string& name);
 
 /// Reads a single .mc or .mcx file. The place of an error is "NAME, byte N", followed by channel and point for a
@@ -61,13 +62,13 @@ struct MayaCacheDescription {
 [[nodiscard]] Result<PositionCache> read_maya_points(std::string_view bytes, const std::string& name,
                                                      const CacheOptions& options = {});
 
-/// Reads a description and the files of points beside it. These are the files in its folder that begin with its name
-/// without ".xml"; nothing else is opened. Samples are sorted by time.
+/// Reads a description and the files of points beside it. These are the files in the same folder that begin with the
+/// name of the description without ".xml"; no other file is opened. The samples of the result are sorted by time.
 ///
-/// Errors: those of both readers, with the file name in the place; kFailed for files that cannot be opened;
-/// kInvalidInput with the missing time and the file, if a regularly sampled channel lacks samples that the description
-/// declares. If `resolve` is given, it finds files by their paths; then kUsage for a cache with a file for each frame,
-/// because only a folder can list such files.
+/// Errors: those of read_maya_description() and read_maya_points(), with the file name in the place; kFailed for files
+/// that cannot be opened; kInvalidInput with the missing time and the file, if a regularly sampled channel lacks
+/// samples that the description declares. If `resolve` is given, it finds files by their paths. In this case, a cache
+/// with a file for each frame gives kUsage, because only a folder can list such files.
 [[nodiscard]] Result<PositionCache> read_maya_cache(
     const std::string& xml_path, const CacheOptions& options = {},
     const std::function<Result<std::string_view>(const std::string& name)>& resolve = {});

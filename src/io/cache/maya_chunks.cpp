@@ -16,7 +16,7 @@ constexpr std::endian kMayaOrder = std::endian::big;
 
 struct Chunk {
   std::string_view tag;
-  std::size_t begin = 0, end = 0;  // range of the content
+  std::size_t begin = 0, end = 0;  // offsets at which the content begins and ends
   std::size_t next = 0;            // offset of the next chunk
 };
 
@@ -37,7 +37,8 @@ class ChunkReader {
       if (group.end - group.begin < kTagSize)
         return error(at, "the cache is damaged, since this group has no name; copy or export it again");
       if (Status status = read_group(bytes_.substr(group.begin, kTagSize), group); !status) return status.error();
-      at = group.end;  // groups are not padded
+      // Unlike other chunks, groups have no padding.
+      at = group.end;
     }
     return std::move(list_);
   }
@@ -126,7 +127,7 @@ class ChunkReader {
   std::string_view bytes_;
   const std::string& name_;
   bool is_wide_ = false;
-  std::optional<std::int32_t> start_;  // ticks
+  std::optional<std::int32_t> start_;  // start of the file in ticks
   std::vector<Points> list_;
 };
 
@@ -194,7 +195,7 @@ FarPoints find_far_points(std::string_view bytes, const std::vector<Points>& lis
       const char* const at = bytes.data() + points.begin + i * size;
       positions[i] =
           points.is_double ? binary::load<double>(at, kMayaOrder) : double{binary::load<float>(at, kMayaOrder)};
-      if (binary::coordinate_fault(positions[i]) != nullptr) return {};  // append_samples() reports it
+      if (binary::coordinate_fault(positions[i]) != nullptr) return {};  // append_samples() reports the bad coordinate
       if (loses_digits(positions[i], 0)) found.has_more_digits = true;
     }
     if (is_first) found.origin = far_origin(std::span<const double>(positions));

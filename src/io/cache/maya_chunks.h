@@ -16,24 +16,24 @@ namespace chronormal::inline internal::maya {
 
 /// The place of the points of one channel at one time.
 struct Points {
-  std::string_view channel;  ///< points into the file
+  std::string_view channel;  ///< the name of the channel; it lies in the bytes of the file
   std::int32_t ticks = 0;
   std::uint32_t count = 0;
   bool is_double = false;
-  std::size_t begin = 0;  ///< offset of the first of 3 x count coordinates, all inside the file
+  std::size_t begin = 0;  ///< offset of the first of 3 x count coordinates, which all lie inside the file
 };
 
-/// Lists all points of a file in its order. Errors: as for read_maya_points().
+/// Lists the points of all channels in the order of the file. Errors: as for read_maya_points().
 [[nodiscard]] Result<std::vector<Points>> list_points(std::string_view bytes, const std::string& name);
 
-/// Returns the channel of a list that the options choose. Errors: kInvalidInput with name as the place; the message
-/// names the existing channels.
+/// Returns the name of the channel that the options choose from a list. Errors: kInvalidInput with `name` as the place,
+/// if no channel or several channels fit; the message names the existing channels.
 [[nodiscard]] Result<std::string> choose_channel(const std::vector<Points>& list, const CacheOptions& options,
                                                  const std::vector<MayaCacheDescription::Channel>& described,
                                                  const std::string& name);
 
-/// The origin of the points of one channel (io/mesh/far_origin.h): its value if the first points are far from zero, and
-/// whether some point has more digits than float32.
+/// The origin of the points of one channel (io/mesh/far_origin.h). `origin` differs from zero if the first points are
+/// far from zero. `has_more_digits` is true if some point has more digits than float32 holds.
 struct FarPoints {
   Origin origin = {};
   bool has_more_digits = false;

@@ -17,7 +17,7 @@ namespace {
 constexpr std::endian kMd2Order = std::endian::little;
 constexpr std::size_t kMd2HeaderSize = 68, kTriangleSize = 12, kFrameHeaderSize = 40, kNameAt = 24, kNameSize = 16;
 
-// A table of records that lies inside the file.
+// A table of records that lies completely inside the file.
 struct Table {
   std::size_t count = 0, begin = 0, record_size = 0;
 
@@ -125,9 +125,9 @@ class Md2Reader {
     return Success{};
   }
 
-  // Sets the times of frames. The frames of a clip follow each other. A model of several clips becomes an animation:
-  // each clip begins at the time at which the previous clip ends, so there are two keyframes at this time, and no
-  // segment between these two.
+  // Sets the times of frames in seconds. The frames of a clip follow each other. A model of several clips becomes an
+  // animation: each clip begins at the time at which the previous clip ends, so there are two keyframes at this time,
+  // and no segment between these two.
   static void set_times(double frames_per_second, Motion& motion) {
     std::size_t clips = 1;
     double frame = 0;
@@ -137,14 +137,15 @@ class Md2Reader {
       frame += k == 0 || begins ? 0 : 1;
       motion.keyframes[k].time = frame / frames_per_second;
     }
-    const bool are_clips = clips > 1 && frame > 0;  // some clip has two frames
+    // The model has several clips, and at least one of them has two frames.
+    const bool are_clips = clips > 1 && frame > 0;
     for (std::size_t k = 0; k < motion.keyframes.size() && !are_clips; ++k)
       motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;
     motion.connect(are_clips ? MotionKind::kAnimation : MotionKind::kSequence);
   }
 
-  // Returns true if the names of two neighbouring frames show that a new clip begins: run1 after stand02, or death201
-  // after death106. Names without numbers show nothing.
+  // Returns true if the names of two neighbouring frames show that a new clip begins, such as run1 after stand02, or
+  // death201 after death106. Returns false for names without numbers.
   static bool begins_clip(const std::string& before, const std::string& name) {
     const auto digits_at = [](const std::string& text) {
       const std::size_t last = text.find_last_not_of("0123456789");

@@ -26,9 +26,10 @@ namespace chronormal::inline internal {
 /// Reads a motion; `name` is for messages. Keyframe k is at k / frames_per_second, minus one frame for each earlier
 /// clip, and has the name of the frame ("stand01"). The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: kInvalidInput with the place "NAME, byte N", followed by triangle or frame if they are known: another first
-/// word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside the file (all of
-/// this before memory is taken), indices without a vertex, coordinates that are not finite or too large for float32.
+/// The place of an error is "NAME, byte N", followed by the triangle or the frame if it is known. Errors: kInvalidInput
+/// for another first word or version, no vertices or triangles, fewer than two frames, tables that do not lie inside
+/// the file (all of these before memory is taken), indices without a vertex, and coordinates that are not finite or too
+/// large for float32.
 [[nodiscard]] Result<Motion> read_md2(std::string_view bytes, const std::string& name, double frames_per_second = 1);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,5 @@
-/// MDD, the point cache of LightWave. It is big endian, and does not begin with a word by which it could be recognised:
+/// MDD, the point cache of LightWave. It is big endian, and has no signature at its beginning by which a reader could
+/// recognise it:
 ///
 ///     byte  0   int32    samples, S
 ///           4   int32    vertices, V
@@ -22,22 +23,23 @@ namespace chronormal::inline internal {
 
 /// Reads an MDD file; `name` is for messages. The options have no effect.
 ///
-/// Errors: kInvalidInput with the place "NAME, byte N", followed by sample and vertex if they are known: no vertices or
-/// samples, more or fewer bytes than the header declares (refused before memory is taken), times and coordinates that
-/// are not finite.
+/// The place of an error is "NAME, byte N", followed by sample and vertex if they are known. Errors: kInvalidInput for
+/// a file without vertices or samples, for more or fewer bytes than the header declares (refused before memory is
+/// taken), and for times and coordinates that are not finite.
 [[nodiscard]] Result<PositionCache> read_mdd(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds the layout of a file of `size` bytes from its first kLayoutBytes bytes, or from all of them. Errors: those of
-/// read_mdd(), except for coordinates; kInvalidInput for times beyond these bytes.
+/// Finds the layout of a file of `size` bytes. `bytes` has its first kLayoutBytes bytes, or all bytes of a smaller
+/// file. Errors: those of read_mdd(), except for coordinates; kInvalidInput if the times reach beyond these bytes.
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Makes the header of a motion, its counts and times. Errors, without a place: kUsage for blend shapes, for more than
-/// 2^31 - 1 vertices or keyframes, and for times that are equal in float32.
+/// Returns the header of the file for a motion: its counts and times. Errors, without a place: kUsage for blend shapes,
+/// for more than 2^31 - 1 vertices or keyframes, and for times that are equal in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
-/// Writes the header, and the positions as they are read. Errors: from the header, the stream and the file.
+/// Writes the header, and then each position as soon as it is read. Errors: those of the header, the stream and the
+/// file.
 [[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

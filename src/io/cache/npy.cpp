@@ -13,12 +13,12 @@
 namespace chronormal::inline internal::npy {
 namespace {
 
-// A reader of the few forms of Python that occur in a header.
+// A reader of the few forms of Python syntax that occur in the header of a NumPy file.
 class Python {
  public:
   explicit Python(std::string_view text) noexcept : text_(text) {}
 
-  // Removes a sign if it is the next character.
+  // Removes the character `c` if it is the next one after blanks. Returns false if another character comes next.
   bool sign(char c) {
     while (!text_.empty() && (scan::is_blank(text_.front()) || text_.front() == '\n')) text_.remove_prefix(1);
     if (!text_.starts_with(c)) return false;
@@ -45,7 +45,7 @@ class Python {
     }
     return std::nullopt;
   }
-  // Reads (), (2,), (2, 3), with the L that Python 2 put after long numbers.
+  // Reads a tuple such as (), (2,) or (2, 3). Accepts the L that Python 2 writes after long numbers.
   [[nodiscard]] std::optional<std::vector<std::uint64_t>> tuple() {
     std::vector<std::uint64_t> numbers;
     if (!sign('(')) return std::nullopt;
@@ -95,7 +95,7 @@ bool read_type(std::string_view type, bool allow_text, Array& array) {
   return array.item_size == 1 || array.item_size == 2 || array.item_size == 4 || array.item_size == 8;
 }
 
-// Reads the header of an array of numbers, or if allow_text, of text.
+// Reads the header of an array of numbers. If allow_text is true, the array may also consist of text.
 Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, bool allow_text, bool more_may_follow,
                               const std::string& place) {
   const auto error = [&](std::string message) { return invalid_input(place, std::move(message)); };
@@ -232,7 +232,8 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
     if (c > 127) return invalid_input(place, "the text must be ASCII");
     text += static_cast<char>(c);
   }
-  while (text.ends_with('\0')) text.pop_back();  // NumPy fills up with zeros
+  // NumPy fills the string with zero bytes.
+  while (text.ends_with('\0')) text.pop_back();
   return text;
 }
 
@@ -246,7 +247,8 @@ std::string write_header(std::string_view type, const std::vector<std::uint64_t>
   std::string text = "{'descr': '" + std::string(type) + "', 'fortran_order': False, 'shape': (";
   for (const std::uint64_t length : shape) text += std::to_string(length) + ", ";
   if (!shape.empty()) text.pop_back();
-  if (shape.size() > 1) text.pop_back();  // (5,) keeps its comma
+  // A tuple of one number keeps its comma, as in (5,).
+  if (shape.size() > 1) text.pop_back();
   text += "), }";
   while ((10 + text.size() + 1) % 64 != 0) text += ' ';
   text += '\n';

@@ -26,11 +26,12 @@ constexpr std::size_t kLongestHeader = 65536;
 
 struct Array {
   Kind kind{};
-  std::size_t item_size = 0;  ///< 1, 2, 4 or 8; 4 or 8 for floats; for text 4 for each character, or 1
+  /// bytes of an element: 1, 2, 4 or 8 for integers, 4 or 8 for floats, 1 or 4 for each character of text
+  std::size_t item_size = 0;
   std::endian order = std::endian::little;
   bool is_fortran = false;
   std::vector<std::uint64_t> shape;
-  std::size_t data_begin = 0;  ///< byte of the first element
+  std::size_t data_begin = 0;  ///< offset of the first element
   std::string_view data;       ///< the elements; set by the caller
 
   [[nodiscard]] std::uint64_t element_count() const noexcept {
@@ -40,12 +41,13 @@ struct Array {
   }
   /// Returns the byte after the last element.
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
-  /// Return the element at index `item`.
-  [[nodiscard]] double real(std::size_t item) const noexcept;           ///< kFloat
-  [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;  ///< other kinds; 2^64 - 1 if negative
+  /// Return the element at index `item`. The array must have the kind that is named behind each function.
+  [[nodiscard]] double real(std::size_t item) const noexcept;  ///< kFloat
+  /// kinds other than kFloat; 2^64 - 1 if the element is negative
+  [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger
 
-  /// Returns shape and type for messages: "(2, 3, 3) of '<f4'".
+  /// Returns the shape and the type for messages: "(2, 3, 3) of '<f4'".
   [[nodiscard]] std::string text() const;
 };
 
@@ -53,13 +55,13 @@ struct Array {
 /// kInvalidInput with place.
 [[nodiscard]] Result<std::string> read_text(std::string_view bytes, const std::string& place);
 
-/// Returns the .npy file of such a string.
+/// Returns a .npy file with a single string.
 [[nodiscard]] std::string write_text(std::string_view text);
 
-/// Reads the header of an array of total_size bytes. `start` is its beginning: all bytes, or the first kLongestHeader +
-/// 12. Afterwards the product of the sizes in `shape` does not overflow, and the elements fill the bytes from
-/// data_begin to data_end() exactly. Bytes behind data_end() are refused unless more_may_follow. Errors: kInvalidInput
-/// with place, and a message that says what is wrong.
+/// Reads the header of a .npy file of total_size bytes. `start` is the beginning of the file: all bytes, or the first
+/// kLongestHeader + 12. If there is no error, the product of the sizes in `shape` does not overflow, and the elements
+/// fill the bytes from data_begin to data_end() exactly. Bytes behind data_end() are refused unless more_may_follow is
+/// true. Errors: kInvalidInput with `place`, and a message that says what is wrong.
 [[nodiscard]] Result<Array> read_header(std::string_view start, std::uint64_t total_size, const std::string& place,
                                         bool more_may_follow = false);
 

@@ -1,4 +1,5 @@
-// Reads NumPy files as a motion, with its positions or only with their layout, and writes motions as arrays.
+// Reads NumPy files as a motion. Either the positions themselves are read, or only their layout in the file. Writes
+// motions as arrays.
 #include "io/cache/npz.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ Status check_positions(const Array& array, const std::string& place, const std::
       place, what + " must be an array (keyframes, vertices, 3) of float32 or float64, but are " + array.text());
 }
 
-// Returns the layout of positions in C order. The array begins at byte `begin` of its file.
+// Returns the layout of an array of positions in C order. `begin` is the offset of the array in its file.
 CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string& what) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(array.shape[1]);
@@ -53,11 +54,12 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin from which positions are measured. The first sample decides its value; it is (0, 0, 0) if no sample
-// has more digits than float32. If the array is too large to examine, only the first, the middle and the last sample
-// are examined.
+// Finds the origin from which positions are measured. The first sample decides the origin, but it is (0, 0, 0) if no
+// sample has more digits than float32 holds. If the array is too large to examine, only the first, the middle and the
+// last sample are examined.
 Origin origin_of(const Array& array) {
-  constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;  // coordinates
+  // number of coordinates above which an array is too large to examine
+  constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;
   const auto samples = static_cast<std::size_t>(array.shape[0]), vertices = static_cast<std::size_t>(array.shape[1]);
   if (array.item_size != sizeof(double) || array.data.size() / array.item_size < array.element_count()) return {};
   const auto coordinate = [&](std::size_t k, std::size_t i) {
@@ -81,7 +83,7 @@ Origin origin_of(const Array& array) {
   return has_more_digits(samples - 1) ? origin : Origin{};
 }
 
-// Reads the samples of an array (T, V, 3), in the file of this name.
+// Reads the samples of an array (T, V, 3) from the file called `name`; `what` is the name of the array for messages.
 Result<PositionCache> read_positions(const Array& array, const std::string& name, const std::string& what,
                                      bool may_be_far = true) {
   const std::string place = name + ", " + what;
@@ -116,9 +118,9 @@ constexpr const char* kPadded =
     "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
     "faces.reshape(-1, 4)[:, 1:]";
 
-// Returns true if each row of `width` numbers begins with the number of corners that follow, width - 1. The faces
-// around vertex number width - 1 may begin like this too, but such faces contain that number once, and share no edge
-// opposite to it.
+// Returns true if each row of `width` numbers begins with width - 1, which is then the number of corners that follow.
+// The faces around the vertex with the number width - 1 may begin with this number too. Such faces are told apart: each
+// contains this number only once, and no two of them share the edge opposite to this vertex.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);
@@ -135,7 +137,7 @@ bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   return !is_fan;
 }
 
-// Tells whether one long list of faces is padded: each face begins with its number of corners.
+// Returns true if a list of faces in one dimension is padded: each face begins with its number of corners.
 bool is_padded_list(const Array& array) {
   if (array.kind == Kind::kFloat || array.shape.size() != 1) return false;
   const std::size_t size = array.element_count();
@@ -192,7 +194,7 @@ Status read_times(const Array& array, PositionCache& cache, const std::string& p
   return Success{};
 }
 
-// Reads velocities per second from an array of the same shape as the positions.
+// Reads velocities, in units of the positions per second, from an array of the same shape as the positions.
 Status take_velocities(const Array& array, const std::string& name, Motion& motion) {
   Result<PositionCache> read = read_positions(array, name, "velocities", false);
   if (!read) return read.error();
@@ -217,7 +219,7 @@ Result<MotionKind> read_kind(std::string_view bytes, const std::string& place) {
   return invalid_input(place, "kind must be sequence, targets or animation, but is " + scan::quoted(text.value()));
 }
 
-// A reader of the arrays of an archive, one at a time.
+// A reader of the arrays of a .npz file, one at a time.
 class Archive {
  public:
   Archive(std::string_view bytes, const std::string& name, std::vector<zip::Member> members, std::size_t max_expansion)
@@ -226,14 +228,15 @@ class Archive {
   [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
   [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
 
-  // Returns the bytes of the file of this small array. They are valid until the next call.
+  // Returns the bytes of the .npy file of a small array. They are valid until the next call.
   [[nodiscard]] Result<std::string_view> bytes(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);
     return zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
   }
 
-  // Reads the array of this name into storage_, or finds it in the file. It is valid until the next call.
+  // Reads the array of this name into storage_, or finds it in the bytes of the file. The result is valid until the
+  // next call.
   [[nodiscard]] Result<Array> read(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);
@@ -251,7 +254,8 @@ class Archive {
     return result;
   }
 
-  // Finds the layout of positions that can be read one by one, which must be stored in C order.
+  // Finds the layout of an array of positions that can be read sample by sample. Such an array is not compressed and in
+  // C order.
   [[nodiscard]] Result<std::optional<CacheLayout>> find_stored(std::string_view array) {
     constexpr std::uint16_t kStored = 0;
     const zip::Member* const member = find(array);
@@ -291,15 +295,16 @@ class Archive {
     return nullptr;
   }
 
-  // Checks that the limit of expansion allows the memory of an array, once for its bytes and once for its numbers, in
-  // addition to everything that was read before.
+  // Checks that the limit of expansion allows the memory for an array, in addition to everything that was read before.
+  // An array takes memory twice, for its bytes and for its numbers.
   [[nodiscard]] Status ask_for(const zip::Member& member, const Array& array) {
-    constexpr std::uint64_t kBytesPerRow = 128;  // a keyframe, or less
+    // upper bound of the bytes of memory for a row, for example for a keyframe
+    constexpr std::uint64_t kBytesPerRow = 128;
     const std::uint64_t rows = array.shape.size() == 3 ? array.shape[0] : 0;
     asked_ += 2 * std::min(member.size, kMost) + kBytesPerRow * std::min(rows, kMost);
     return expansion_.check(asked_, place(member.name.substr(0, member.name.find('.'))));
   }
-  // An upper bound for one size, larger than any real size. Adding a few of them cannot overflow.
+  // A cap for any size in bytes. It is larger than any real size, and the sum of a few such sizes cannot overflow.
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
   std::string_view bytes_;
@@ -310,8 +315,8 @@ class Archive {
   std::string storage_;
 };
 
-// Reads a motion. If `layout` is not nullptr, positions that can be read sample by sample stay in the file, and
-// `layout` gets their place.
+// Reads a motion. If `layout` is not nullptr, positions that can be read sample by sample are not read, and `layout`
+// gets their place in the file.
 Result<Motion> read_npz_around(std::string_view bytes, const std::string& name, double frames_per_second,
                                std::size_t max_expansion, std::optional<CacheLayout>* layout) {
   Result<std::vector<zip::Member>> members = zip::read_directory(bytes, name);

@@ -39,46 +39,46 @@ namespace chronormal::inline internal {
 
 /// Reads a motion; `name` is for messages. The result is valid (validate() in motion/motion.h).
 ///
-/// Errors: kInvalidInput. The place begins with the name, followed by the byte of the zip file, or by the array and its
-/// element ("walk.npz, positions[3, 17, 0]"): a damaged zip file or array (its checksum is verified), shapes and types
-/// other than the ones above, coordinates that are not finite or too large for float32, indices without a vertex,
-/// velocities of another shape than the positions, times that do not ascend, an unknown kind. Sizes that disagree
-/// between directory, member and array header are refused before memory is taken.
-/// Memory: in proportion to the arrays, which deflate may have compressed by a factor of a thousand. So the limit of
-/// expansion is checked first, for the bytes and numbers of all deflated arrays, and for the memory of a keyframe in
-/// addition to its positions.
+/// The place of an error begins with the name, followed by the byte of the zip file, or by the array and its element
+/// ("walk.npz, positions[3, 17, 0]"). Errors: kInvalidInput for a damaged zip file or array (its checksum is verified),
+/// shapes and types other than the ones above, coordinates that are not finite or too large for float32, indices
+/// without a vertex, velocities of another shape than the positions, times that do not ascend, and an unknown kind.
+/// Sizes that disagree between directory, member and array header are refused before memory is taken. Memory: in
+/// proportion to the arrays, which deflate may have compressed by a factor of a thousand. The limit of expansion is
+/// therefore checked first, for the bytes and numbers of all deflated arrays, and for the memory that a keyframe takes
+/// in addition to its positions.
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// Reads a motion, but leaves positions in the file if they are stored uncompressed and in C order. Then `layout` gets
-/// their place, the keyframes have no positions, and the checksum of the positions is not verified. Otherwise the
-/// positions are read, and `layout` has no value.
+/// Reads a motion, but leaves positions in the file if they are stored uncompressed and in C order. In this case,
+/// `layout` gets their place, the keyframes have no positions, and the checksum of the positions is not verified.
+/// Otherwise the positions are read, and `layout` has no value. Errors: as for read_npz().
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
-/// Reads a .npy file of positions (T, V, 3), as above. Sample k is at k / options.frames_per_second. Errors: as for
+/// Reads a .npy file of positions (T, V, 3). The time of sample k is k / options.frames_per_second. Errors: as for
 /// read_npz().
 [[nodiscard]] Result<PositionCache> read_npy(std::string_view bytes, const std::string& name,
                                              const CacheOptions& options = {});
 
-/// Finds the layout of a file of `size` bytes from its first kLayoutBytes bytes, or from all of them. Errors: those of
-/// read_npy(), except for coordinates; kInvalidInput for Fortran order.
+/// Finds the layout of a file of `size` bytes. `bytes` has its first kLayoutBytes bytes, or all bytes of a smaller
+/// file. Errors: those of read_npy(), except for coordinates; kInvalidInput for Fortran order.
 [[nodiscard]] Result<CacheLayout> find_npy_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Writes positions (float32) as they are read, faces (int32, or uint32 for more than 2^31 vertices), times (float64)
-/// if there are any, velocities if all keyframes have them, and the kind of a motion unless it is a sequence. Arrays
-/// are stored, so that they can be mapped. The same motion gives the same bytes.
-/// Errors, without a place: kUsage for a mesh at rest, and for faces with different numbers of corners, which an (F, k)
-/// array cannot represent; those of the stream and of the file.
+/// Writes positions (float32) as they are read, faces (int32, or uint32 for more than 2^31 vertices), and times
+/// (float64) if there are any. Writes velocities if all keyframes have them, and the kind of a motion unless it is a
+/// sequence. The arrays are not compressed, so that other programs can map them into memory. The same motion always
+/// gives the same bytes. Errors, without a place: kUsage for a mesh at rest, and for faces with different numbers of
+/// corners, which an (F, k) array cannot represent; those of the stream and of the file.
 [[nodiscard]] Status write_npz(MotionStream& stream, OutputFile& file);
 
 /// A builder of the bytes of a .npy file: an array in C order, little endian, whose elements are appended in order.
 class NpyBytes {
  public:
-  /// Begins an array of float32.
+  /// Begins an array of float32; the caller appends the elements.
   explicit NpyBytes(const std::vector<std::uint64_t>& shape);
-  /// Makes a whole array.
+  /// Makes a whole array of float64 or of int64.
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const double> values);
   NpyBytes(const std::vector<std::uint64_t>& shape, std::span<const std::int64_t> values);
   /// Makes an array of booleans, each 0 or 1.
@@ -86,7 +86,7 @@ class NpyBytes {
 
   void append(std::span<const float> values);
 
-  /// Returns the file, after all elements of the shape were written.
+  /// Returns the bytes of the .npy file. Call it when all elements of the shape have been written.
   [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
   [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
 
@@ -127,17 +127,18 @@ class NpzOutput {
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape,
                                         bool is_double = false);
 
-  /// Writes the headers and the whole arrays. Call it once all arrays are added.
+  /// Writes the headers of all arrays, and the elements of the whole arrays. Call it once all arrays are added.
   [[nodiscard]] Status begin();
-  /// Writes the next bytes of a growing array, little endian.
+  /// Writes the next bytes of a growing array, in little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
-  /// Several processes can write one file together by these functions. join() continues a file that another process
-  /// has begun (OutputFile::join()); add the same arrays before. skip() skips the bytes of a growing array that other
-  /// processes write. The process that called begin() ends the file: it calls add_checksum() for the data of each other
-  /// process and each growing array, in the order of the data, and then finish().
+  /// Lets several processes write one file together. join() continues a file that another process has begun
+  /// (OutputFile::join()); each process must add the same arrays before. skip() skips the bytes of a growing array that
+  /// other processes write. The process that called begin() ends the file. For each growing array, it calls
+  /// add_checksum() once for the bytes of each other process, in the order of these bytes in the file, and then
+  /// finish().
   void join();
   void skip(std::size_t array, std::uint64_t bytes) { members_[array].end += bytes; }
-  /// Returns the checksum of the bytes that were appended to an array.
+  /// Returns the checksum of the bytes that this process appended to an array.
   [[nodiscard]] std::uint32_t checksum(std::size_t array) const noexcept { return members_[array].checksum; }
   void add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes);
 

@@ -16,15 +16,15 @@
 
 namespace chronormal::inline internal::point_cache {
 
-/// The counts in a header.
+/// The counts in the header of a cache.
 struct Counts {
   std::int32_t vertices = 0;
   std::int32_t samples = 0;
 };
 
-/// Checks that there are vertices and samples, and that the file has exactly the bytes for them from `begin` on:
-/// times_size bytes for times, and 3 x vertices float32 for each sample. Afterwards products of the counts do not
-/// overflow.
+/// Checks the counts in a header against the size of the file. There must be vertices and samples. From byte `begin`
+/// on, the file must have exactly times_size bytes for times, and 3 x vertices float32 for each sample. If there is no
+/// error, products of the counts do not overflow.
 [[nodiscard]] inline Status check_counts(std::uint64_t file_size, const std::string& name, Counts counts,
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);
@@ -42,7 +42,8 @@ struct Counts {
   return Success{};
 }
 
-/// Returns the layout for these counts, with all times 0. check_counts() must have found no error
+/// Returns the layout of a file with these counts, with all times 0. check_counts() must have accepted the counts
+/// before.
 [[nodiscard]] inline CacheLayout layout_of(Counts counts, std::size_t begin, std::endian order) {
   CacheLayout layout;
   layout.vertex_count = static_cast<std::size_t>(counts.vertices);
@@ -52,7 +53,7 @@ struct Counts {
   return layout;
 }
 
-/// Checks that the counts of a motion fit into a header, and its segments into the format. Errors: kUsage.
+/// Checks that a motion is a sequence, and that its counts fit into 32 bits. Errors: kUsage.
 [[nodiscard]] inline Status check_writable(const Motion& motion) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (Status status = check_is_sequence(motion); !status) return status;
@@ -62,7 +63,7 @@ struct Counts {
   return Success{};
 }
 
-/// Writes a header, and after it the positions of all keyframes. Errors: from the header, the stream and the file.
+/// Writes a header, and after it the positions of all keyframes. Errors: those of the header, the stream and the file.
 [[nodiscard]] inline Status write(const Result<std::string>& header, MotionStream& stream, std::endian order,
                                   OutputFile& file) {
   if (!header) return header.error();

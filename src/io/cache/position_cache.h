@@ -37,7 +37,7 @@ struct PositionCache {
   Origin origin = {};  ///< the point from which positions are measured
 };
 
-/// The facts that a cache reader may need; most formats need few of them.
+/// The facts that a cache reader may need. Most formats need only some of them.
 struct CacheOptions {
   double frames_per_second = 1;  ///< finite and > 0; for formats whose times are in frames (PC2, npy)
   std::size_t vertex_count = 0;  ///< vertices of the mesh, to choose among the channels of a Maya cache; 0 if unknown
@@ -48,17 +48,17 @@ struct CacheOptions {
 /// keyframe gets the name of the cache. The result is valid (motion/motion.h), except that samples without positions
 /// give keyframes without positions.
 ///
-/// Errors: kInvalidInput with cache_name in the place, for a number of vertices that differs from the mesh's (the
-/// message has both), for fewer than two samples, and for times that do not ascend as the kind demands (the place has
-/// the sample).
+/// Errors: kInvalidInput with cache_name in the place, for a number of vertices that differs from that of the mesh (the
+/// message has both numbers), for fewer than two samples, and for times that do not ascend as the kind demands (the
+/// place has the sample).
 [[nodiscard]] Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                                const std::string& cache_name, MotionKind kind = MotionKind::kSequence);
 
-/// Checks that a motion has keyframes in a list, at least two. Errors: kUsage without a place.
+/// Checks that a motion has at least two keyframes, and segments between them. Errors: kUsage without a place.
 [[nodiscard]] Status check_keyframes(const Motion& motion);
 
-/// Checks that segments join all neighbouring keyframes: such a motion is a plain sequence, which even the simplest
-/// format can store. Errors: kUsage without a place.
+/// Checks that each keyframe is joined to the next one by a segment. Such a motion is a plain sequence, which even the
+/// simplest format can store. Errors: kUsage without a place.
 [[nodiscard]] Status check_is_sequence(const Motion& motion);
 
 /// Passes the coordinates of each keyframe in order to each(), as bytes of float32 with the origin of the motion added.
