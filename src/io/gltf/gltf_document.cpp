@@ -25,7 +25,7 @@ namespace chronormal {
 namespace {
 
 // Returns the triangles of a list, strip or fan (section 3.7.2.1 of the specification). Every second triangle of a
-// strip is reversed, so that all face the same side. Remaining indices form no triangle.
+// strip is reversed, so that all triangles face the same side. Indices that do not complete a triangle are dropped.
 std::vector<std::uint32_t> to_triangles(int mode, std::vector<std::uint32_t> elements) {
   if (mode == 4) {
     elements.resize(elements.size() - elements.size() % 3);
@@ -96,15 +96,15 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
 Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   Result<GltfDocument> document = read(file.bytes(), name, folder, options);
-  // Views into the file stay valid after `file` is moved: its bytes are mapped, or in a string that is too long to be
-  // stored inside its own object.
+  // Views of the bytes stay valid after `file` is moved. The bytes are either mapped, or in a string that is too long
+  // to be stored inside the string object.
   if (document) document.value().state_->file = std::move(file);
   return document;
 }
 
 namespace {
 
-// Returns the times of the keys of all these channels, each of which drives a single weight. The times ascend.
+// Returns the times of the keys of several channels, each of which drives a single weight. The times ascend.
 Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
   std::vector<float> times;
   std::set<std::size_t> inputs;
@@ -160,10 +160,11 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   }
 }
 
-// Drops the tracks whose numbers cannot be read, with a note for each array at fault. An array without bytes of its own
-// (no buffer view) is not checked here, but when its keys are read.
+// Drops the tracks whose numbers cannot be read, with a note for each array at fault. An array without a buffer view is
+// not checked here, but when its keys are read.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
-  std::map<std::pair<std::size_t, bool>, bool> known;  // key: the accessor, and whether it has times
+  // The key is the accessor, and true if the accessor has times.
+  std::map<std::pair<std::size_t, bool>, bool> known;
   const auto can_read = [&](std::size_t accessor, bool has_times) {
     const auto [found, is_new] = known.try_emplace({accessor, has_times}, true);
     if (!is_new || !model.accessors[accessor].view) return found->second;
@@ -186,7 +187,7 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
       if (!can_read_all(sources[t])) continue;
       now[t] = kept;
-      // The track with the same keys has the same numbers, so it was kept too.
+      // A track with the same keys has the same numbers, so it was kept as well.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
       if (kept != t) {
         tracks[kept] = std::move(tracks[t]);
@@ -255,7 +256,7 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     }
   }
 
-  // A compressed mesh may contain all attributes or some.
+  // A compressed mesh may contain all attributes of a primitive or only some.
   if (Status status =
           state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
       !status)
@@ -313,7 +314,8 @@ Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shadin
 }
 
 void GltfDocument::State::release(std::size_t vertices) const noexcept {
-  constexpr std::size_t kMany = std::size_t{1} << 16;  // a call that releases less is not worth its time
+  // A call for fewer vertices would release too little memory to be worth its time.
+  constexpr std::size_t kMany = std::size_t{1} << 16;
   if (vertices < kMany) return;
   if (file) file->release();
   bytes.release();

@@ -20,16 +20,19 @@ struct GltfDocument::State {
   State(GlbChunks found, gltf::Model parsed, gltf::Origin asset, std::size_t most)
       : chunks(found), model(std::move(parsed)), name(asset.name), bytes(model, std::move(asset)), most_bytes(most) {}
 
-  // Returns an error if the arrays of a primitive and this many targets would take too much memory.
+  // Checks that memory for the arrays of a primitive with this many targets may be taken. Errors: the arrays would
+  // exceed the limit of expansion.
   [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading);
-  // Reads the wanted arrays that an object of attributes names, except arrays that already have values.
+  // Reads the arrays that `attributes` names: positions and, if `shading` is true, normals and tangents. Arrays that
+  // already have values are skipped.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);
-  // Releases memory that maps the files, after this many vertices were read.
+  // Releases memory that maps the files. Call it after reading an array; `vertices` is the number of vertices that were
+  // read.
   void release(std::size_t vertices) const noexcept;
 
-  std::optional<FileBytes> file;  // if the document keeps it
-  GlbChunks chunks;               // for a .gltf file: its JSON, at offset 0
+  std::optional<FileBytes> file;  // the file, if the document keeps it
+  GlbChunks chunks;               // for a .gltf file, only the JSON, at offset 0
   gltf::Model model;
   std::string name;
   gltf::Bytes bytes;

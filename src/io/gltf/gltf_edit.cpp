@@ -30,7 +30,7 @@ struct GltfEdit::State {
 
   [[nodiscard]] Status apply(const Change& change, JsonText& json) const;
   [[nodiscard]] Result<gltf::EditLayout> lay_out(gltf::LayoutTarget target);
-  /// Returns the target for a path. An empty path means the file of the source itself.
+  /// Returns the target of the layout for a path. An empty path means the file of the source itself.
   [[nodiscard]] Result<gltf::LayoutTarget> target_of(const std::string& path) const;
 
   GltfDocument::State& document;
@@ -51,7 +51,7 @@ bool is_same_folder(const std::string& a, const std::string& b) {
 // Returns the reason why a text cannot become a JSON value at this level of nesting, or an empty text if it can.
 std::string value_fault(const std::string& json, std::size_t level) {
   constexpr const char* kNone = "the new value is not valid JSON: ";
-  // The parser would take a zero byte for the end of the text, and skip a byte order mark.
+  // The parser would take a zero byte for the end of the text, and would skip a byte order mark.
   if (json.find('\0') != std::string::npos) return std::string(kNone).append("the text has a zero byte");
   if (json.starts_with(kByteOrderMark)) return std::string(kNone).append("the text begins with a byte order mark");
   const Result<nlohmann::json> parsed = parse_json(json, "", 0, {"", [](std::size_t, const nlohmann::json&) {}});

@@ -1,11 +1,11 @@
-// Evaluates the channel of one weight at the keys of all weights of its node. This splits the curve into more pieces,
-// and a piece of a line, step or cubic is a line, step or cubic again. So the curve stays exact.
+// Evaluates the channel of one weight at the keys of all weights of its node. This splits the curve into more pieces. A
+// piece of a line, step or cubic is again a line, step or cubic, so the curve stays exact.
 #include "io/gltf/gltf_lone_weights.h"
 
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// The value of a cubic spline at a key, and its tangents on both sides.
+// The value of a curve at a key, and its tangents before and after the key.
 struct Row {
   double in_tangent = 0, value = 0, out_tangent = 0;
 };
@@ -23,7 +23,8 @@ double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }
 
-// Returns the row at key k of the channel. On a side where the channel is constant, the tangent is 0.
+// Returns the row at key k of the channel. is_first and is_last tell whether the key is also the first or last of the
+// track. On a side where the channel is constant, the tangent is 0.
 Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
   Row row = key_at(keys, k);
   const bool begins = k == 0, ends = k + 1 == keys.times.size();
@@ -52,7 +53,7 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
     case GltfInterpolation::kCubicSpline:
       break;
   }
-  // This is the formula in appendix C.4 of the specification, and its derivative with respect to time.
+  // These are the formula in appendix C.4 of the specification, and its derivative with respect to time.
   const double rise = to.value - from.value;
   const double value = from.value + s * s * (3 - 2 * s) * rise +
                        duration * s * (1 - s) * ((1 - s) * from.out_tangent - s * to.in_tangent);
@@ -65,7 +66,8 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
 
 void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
                   std::size_t width, std::span<double> values) noexcept {
-  std::size_t next = 0;  // the first key that is not before the time
+  // The first key of the channel that is not before times[i].
+  std::size_t next = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     while (next < keys.times.size() && keys.times[next] < times[i]) ++next;
     Row row;

@@ -18,10 +18,10 @@ struct LoneKeys {
 };
 
 /// Writes the weight at each of `times` into values[target + width * i], so that the track has the same curve as the
-/// channel. The times must ascend, and contain the times of all keys of the channel. Before its first key and after its
-/// last, the channel is constant. In a cubic track each time has three rows: the slope before the time, the value, and
-/// the slope after the time; the channel may then be linear or cubic. Otherwise the channel must have the interpolation
-/// of the track.
+/// channel. The times must ascend, and contain the times of all keys of the channel. The channel is constant before its
+/// first key and after its last. In a cubic track, each time has three rows: the slope before the time, the value, and
+/// the slope after the time. The channel of a cubic track may be linear or cubic. In another track, the channel must
+/// have the interpolation of the track.
 void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
                   std::size_t width, std::span<double> values) noexcept;
 

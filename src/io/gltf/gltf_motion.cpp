@@ -21,7 +21,8 @@ namespace {
 
 using gltf::WeightCurve;
 
-// An animation of a face that speaks for 15 minutes needs some 200,000 pieces at the default tolerance.
+// The largest number of pieces into which an animation is cut. An animation of a face that speaks for 15 minutes needs
+// some 200,000 pieces at the default tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
 // A collector of the primitives of a motion in order, with the targets and tracks that move them.
@@ -29,7 +30,7 @@ class Assembly {
  public:
   Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
 
-  // Adds the primitives with faces of a mesh.
+  // Adds those primitives of a mesh that have faces.
   void add_mesh(std::optional<std::size_t> node, std::size_t mesh) {
     const std::vector<GltfPrimitive>& primitives = document_.meshes()[mesh].primitives;
     for (std::size_t p = 0; p < primitives.size(); ++p) {
@@ -41,7 +42,8 @@ class Assembly {
     }
   }
 
-  // Adds the meshes for which wanted() is true. In the world, adds each mesh once for every node that carries it.
+  // Adds the meshes for which wanted() is true. If the motion is wanted in the world, adds each mesh once for every
+  // node that carries it.
   template <class Wanted>
   void add_meshes(const Wanted& wanted) {
     if (world_) {
@@ -58,12 +60,13 @@ class Assembly {
   [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
   [[nodiscard]] const std::vector<GltfPart>& parts() const noexcept { return result_.parts; }
 
-  // Checks that this number of keyframes fits into most_bytes, together with the data from which they are computed:
-  // targets, corners, and other_bytes for weights.
+  // Checks that this number of keyframes fits into most_bytes, together with the data from which the keyframes are
+  // computed: targets, corners, and other_bytes for weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
-    constexpr std::size_t kBytesPerKeyframe = 128;  // includes its segment and its place on the heap
+    // Each keyframe also takes memory for its segment and its place on the heap.
+    constexpr std::size_t kBytesPerKeyframe = 128;
     std::size_t left = most_bytes;
     bool enough = true;
     const auto take = [&](std::size_t count, std::size_t size) {
@@ -74,7 +77,8 @@ class Assembly {
     take(keyframes, kBytesPerKeyframe);
     for (const GltfPart& part : parts()) {
       const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
-      take(primitive.targets.size() + 1, kBytesPerVertex * part.vertex_count);  // fewer than 2^40 each
+      // Each of the two factors is below 2^40.
+      take(primitive.targets.size() + 1, kBytesPerVertex * part.vertex_count);
       take(keyframes, kWithResiduals * part.vertex_count);
       take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));
     }
@@ -89,10 +93,11 @@ class Assembly {
     return Success{};
   }
 
-  // Reads geometry and faces of all parts.
+  // Reads the geometry and the faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
-    std::uint32_t body = 0;  // number of a mesh in a node
+    // The number of the current body; each mesh of each node is a body.
+    std::uint32_t body = 0;
     for (std::size_t p = 0; p < parts().size(); ++p) {
       GltfPart& part = result_.parts[p];
       Result<GltfGeometry> geometry = document_.geometry(part.mesh, part.primitive, {false, with_targets});
@@ -121,7 +126,7 @@ class Assembly {
   [[nodiscard]] const GltfGeometry& geometry(std::size_t part) const { return geometries_[part]; }
   [[nodiscard]] const AffineTransform& transform(std::size_t part) const { return transforms_[part]; }
 
-  // Adds a keyframe. weights(part) returns the weights of the targets of a part, as a span.
+  // Adds a keyframe. weights(part) returns the weights of the targets of a part, as a span of double.
   template <class Weights>
   [[nodiscard]] Status add_keyframe(double time, std::string name, const Weights& weights) {
     std::vector<double> high(3 * vertex_count_), low(3 * vertex_count_);
@@ -162,8 +167,7 @@ class Assembly {
  private:
   static constexpr std::size_t kBlockOfCoordinates = 3 * 2048;
 
-  // Returns the coordinates of a block of vertices of a part at the given weights, in the space of the mesh or of the
-  // world.
+  // Returns the coordinates of some vertices of a part at the given weights, in the space of the mesh or of the world.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -228,7 +232,8 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   return assembly.finish();
 }
 
-// A reader of one animation: the curves of the nodes that it drives, and the pieces of time between their keys.
+// A reader of one animation, with the weight curves of the nodes that it drives and the intervals of time between their
+// keys.
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)
@@ -296,15 +301,15 @@ class AnimationReader {
     return Success{};
   }
 
-  // Returns the largest number of keyframes for a number of pieces of time: one at each end, and two where weights
-  // jump.
+  // Returns an upper bound of the number of keyframes for a number of intervals of time: one keyframe at each end of an
+  // interval, or two where weights jump.
   [[nodiscard]] std::size_t keyframes_of(std::size_t pieces) const {
     const bool jump = std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
     return jump ? 2 * pieces : pieces + 1;
   }
 
-  // Finds reach_, the largest distance by which a weight of 1 moves a vertex, for each target of each part, and size_,
-  // the diagonal of the whole.
+  // Finds reach_ and size_. reach_ is the largest distance by which a weight of 1 moves a vertex, for each target of
+  // each part. size_ is the diagonal of the bounding box of all parts.
   void measure() {
     double low[3], high[3];
     std::fill_n(low, 3, std::numeric_limits<double>::infinity());
@@ -338,7 +343,8 @@ class AnimationReader {
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
-  // Returns a bound of the acceleration of any vertex between two neighbouring keys.
+  // Returns a bound of the acceleration of any vertex between two neighbouring keys, in units of the file per second
+  // squared.
   [[nodiscard]] double acceleration(double from, double to) const {
     double largest = 0;
     std::vector<double> bounds;
@@ -352,8 +358,8 @@ class AnimationReader {
     return largest;
   }
 
-  // Cuts curves into chords, short enough that a chord stays within the tolerance. The distance between a curve and its
-  // chord is at most h^2 / 8 times the largest acceleration, where h is the duration of the piece.
+  // Cuts curves into chords that stay within the tolerance. The distance between a curve and a chord is at most h^2 / 8
+  // times the largest acceleration, where h is the duration of the chord.
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
     double curve_error = 0;
@@ -377,7 +383,7 @@ class AnimationReader {
     return Success{};
   }
 
-  // Returns the weights of all parts at a time, part after part.
+  // Returns the weights of all parts at a time, one list for each part.
   [[nodiscard]] std::vector<std::vector<double>> weights_at(double time, bool just_before) const {
     std::vector<std::vector<double>> weights(assembly_.parts().size());
     for (std::size_t p = 0; p < weights.size(); ++p) {
@@ -387,8 +393,8 @@ class AnimationReader {
     return weights;
   }
 
-  // Adds the keyframes at both ends of a piece of time. The previous piece has added the first one already, except if
-  // the weights jump there.
+  // Adds the keyframes at both ends of an interval of time. The keyframe at the first end exists already, because the
+  // previous interval ends there, unless the weights jump at this time.
   Status add_piece(double from, double to) {
     const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {
@@ -406,12 +412,14 @@ class AnimationReader {
   const GltfMotionOptions& options_;
   Assembly assembly_;
   std::vector<WeightCurve> curves_;
-  std::map<std::size_t, std::size_t> curve_of_track_;  // key: the track's same_keys_as
+  // The key is the same_keys_as of a track.
+  std::map<std::size_t, std::size_t> curve_of_track_;
   std::vector<std::size_t> curve_of_part_;
   std::size_t weight_bytes_ = 0;
-  std::vector<double> keys_, pieces_;       // times
-  std::vector<std::vector<double>> reach_;  // one for each part and target
-  double size_ = 0;                         // diagonal of the bounding box
+  // times of the keys, and times at which the intervals begin or end, in seconds
+  std::vector<double> keys_, pieces_;
+  std::vector<std::vector<double>> reach_;  // one list for each part, with a number for each target
+  double size_ = 0;                         // diagonal of the bounding box, in units of the file
   std::vector<std::vector<double>> last_weights_;
 };
 

@@ -1,5 +1,5 @@
-// Computes a pose from the roots to the joints. Each bone gets its transform relative to its parent, in which animated
-// parts come from their curves. The transform of the parent in the world is then applied to it.
+// Computes a pose from the roots down to the joints. Each bone first gets its transform relative to its parent, in
+// which animated parts come from their curves. The transform of the parent in the world is then applied to it.
 #include "io/gltf/gltf_skin.h"
 
 #include <algorithm>
@@ -94,7 +94,8 @@ void GltfSkin::add_bones(const GltfDocument& document) {
   const gltf::Model& model = document.state_->model;
   bone_of_node_.assign(model.nodes.size(), kNoBone);
   for (const std::uint32_t joint : joints_) {
-    std::vector<std::uint32_t> path;  // from the joint upwards to a node that is a bone already
+    // The nodes from the joint upwards to the first node that is a bone already.
+    std::vector<std::uint32_t> path;
     for (std::optional<std::uint32_t> at = joint; at && bone_of_node_[*at] == kNoBone; at = model.nodes[*at].parent)
       path.push_back(*at);
     for (auto at = path.rbegin(); at != path.rend(); ++at) {
@@ -130,7 +131,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   const std::vector<gltf::InfluenceSource>& sets = source.influences;
   if (sets.empty())
     return invalid_input(state.bytes.place(pointer), "the mesh has a skin, but its vertices have no joints (JOINTS_0)");
-  // All sets of weights may use the same accessor, so a small file can ask for much memory.
+  // All sets of weights may use the same accessor, so a small file could ask for much memory.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
   if (Status status = state.bytes.expansion().check(
@@ -139,7 +140,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
       !status)
     return status;
   std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
-  // Decodes together all joints and weights that one compressed mesh contains.
+  // One compressed mesh may contain several sets of joints and weights. They are decoded together.
   std::vector<gltf::AttributeSource> compressed;
   std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
   for (std::size_t n = 0; n < sets.size(); ++n) {

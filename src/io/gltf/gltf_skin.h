@@ -1,11 +1,12 @@
-/// Skins of glTF files: the transforms of their joints at any time, and the joints of each vertex. Private to io and
-/// workflow.
+/// Reads skins of glTF files: the transforms of their joints at any time, and the joints of each vertex. Private to io
+/// and workflow.
 ///
 ///     joint matrix    the transform of the joint in the world, after the inverse bind matrix of the skin. It maps a
-///                     vertex of the mesh to its position if it follows only this joint (section 3.7.3.3 of the
+///                     vertex of the mesh that follows only this joint to its position (section 3.7.3.3 of the
 ///                     specification). The transform of the node with the skin does not matter.
 ///
-/// Opening a document does not check skins, so that callers that do not need them can read a file with an invalid skin.
+/// Opening a document does not check its skins, so that callers that do not need skins can read a file with an invalid
+/// skin.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 #define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 
@@ -22,7 +23,7 @@
 
 namespace chronormal::inline internal {
 
-/// A joint of a vertex, and its weight.
+/// A joint that moves a vertex, and the part of the movement that the vertex takes over from it, from 0 to 1.
 struct JointShare {
   std::uint32_t joint = 0;
   double share = 0;
@@ -30,32 +31,33 @@ struct JointShare {
 
 class GltfSkin {
  public:
-  /// Reads the skin of a node, and the animation of its joints; without an animation, joints are as in the file.
-  /// Errors: kInvalidInput with the JSON pointer, if the skin or the animation violates the specification
+  /// Reads the skin of a node, and the animation of its joints. If `animation` has no value, the joints stay as they
+  /// are in the file. Errors: kInvalidInput with the JSON pointer, if the skin or the animation violates the
+  /// specification.
   [[nodiscard]] static Result<GltfSkin> read(const GltfDocument& document, std::size_t node,
                                              std::optional<std::size_t> animation);
 
   /// Appends the joints and shares of all vertices of a primitive to `shares`, and for each vertex the index of its
   /// first share to `first`. The shares of a vertex add up to 1: other weights are divided by their sum, and a vertex
   /// without any weight follows its first joint, as in three.js. Joints without a weight are left out. Errors:
-  /// kInvalidInput with the JSON pointer, also for joints that this skin does not have
+  /// kInvalidInput with the JSON pointer, also for joints that this skin does not have.
   [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
                                    std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
 
   [[nodiscard]] std::size_t joint_count() const noexcept { return joints_.size(); }
 
-  /// Returns whether the joints move in the animation.
+  /// Returns true if the animation moves joints.
   [[nodiscard]] bool moves() const noexcept { return !curves_.empty(); }
 
-  /// Returns the times of the keys of all its curves, ascending, each once.
+  /// Returns the times of the keys of all curves in seconds, ascending, each once.
   [[nodiscard]] std::vector<double> key_times() const;
 
-  /// Returns the joint matrices at a time. If joints jump, they are those just after the time, or just before it if
-  /// just_before is set. O(joints and nodes above them).
+  /// Returns the joint matrices at a time in seconds. If joints jump at this time, the matrices are those just after
+  /// the jump, or just before it if just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
  private:
-  // A joint, or a node above one. Parents come before their children.
+  // A joint, or a node above a joint. Parents come before their children.
   struct Bone {
     gltf::Placement placement;
     std::optional<std::size_t> parent;  // index among the bones
@@ -67,11 +69,11 @@ class GltfSkin {
     gltf::WeightCurve curve;
   };
 
-  // Numbers the joints and all their ancestors.
+  // Collects the joints and all their ancestors as bones.
   void add_bones(const GltfDocument& document);
   [[nodiscard]] Status add_curve(const GltfDocument& document, const gltf::NodeChannel& channel);
 
-  std::vector<std::uint32_t> joints_;        // nodes
+  std::vector<std::uint32_t> joints_;        // index of the node of each joint
   std::vector<std::uint32_t> bone_of_node_;  // kNoBone if the node is not a bone
   std::vector<std::uint32_t> bone_of_joint_;
   std::vector<AffineTransform> inverse_binds_;

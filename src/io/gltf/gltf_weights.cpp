@@ -18,7 +18,8 @@ double WeightCurve::tangent(std::size_t key, bool out, std::size_t target) const
 void WeightCurve::at(double time, bool just_before, std::span<double> weights) const noexcept {
   assert(weights.size() == target_count_);
   const std::vector<double>& times = keys_.times;
-  // Find the key at or before the time, or strictly before it if the weights just before a key are asked for.
+  // Find the last key that is not after the time. If the weights just before a key are wanted, find the last key before
+  // the time.
   const auto after = just_before ? std::lower_bound(times.begin(), times.end(), time)
                                  : std::upper_bound(times.begin(), times.end(), time);
   const std::size_t next = static_cast<std::size_t>(after - times.begin());
@@ -55,7 +56,7 @@ void WeightCurve::curvature(double from_time, double to_time, std::span<double> 
   for (std::size_t i = 0; i < target_count_; ++i) {
     const double from = value(key, i), to = value(next, i);
     const double leaving = duration * tangent(key, true, i), arriving = duration * tangent(next, false, i);
-    // w'' is linear in time, so it is largest at an end of the interval.
+    // The second derivative of a weight is linear in time, so it is largest at an end of the interval.
     const double at_start = 6 * (to - from) - 4 * leaving - 2 * arriving;
     const double at_end = 6 * (from - to) + 2 * leaving + 4 * arriving;
     for (const double time : {from_time, to_time}) {

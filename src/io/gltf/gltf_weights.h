@@ -1,4 +1,4 @@
-/// Weights of morph targets over time, from the keys of a track. Private to io.
+/// Evaluates the weights of morph targets over time, from the keys of a track. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_WEIGHTS_H_
 #define CHRONORMAL_IO_GLTF_GLTF_WEIGHTS_H_
 
@@ -10,15 +10,15 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The weights of a node (N targets) as functions of time: constant before the first key and after the last, and
-/// between keys by appendix C of the glTF specification.
+/// The weights of a node with N targets as functions of time. They are constant before the first key and after the
+/// last, and follow appendix C of the glTF specification between keys.
 class WeightCurve {
  public:
-  /// Takes keys from GltfDocument::keys().
+  /// Takes the keys that GltfDocument::keys() returned.
   WeightCurve(GltfKeys keys, GltfInterpolation interpolation, std::size_t target_count)
       : target_count_(target_count), interpolation_(interpolation), keys_(std::move(keys)) {}
 
-  /// Returns true if weights just before a key may differ from the weights at the key.
+  /// Returns true if the weights just before a key may differ from the weights at the key.
   [[nodiscard]] bool jumps() const noexcept { return interpolation_ == GltfInterpolation::kStep; }
 
   [[nodiscard]] std::span<const double> times() const noexcept { return keys_.times; }
@@ -27,8 +27,8 @@ class WeightCurve {
   /// before it if just_before is set.
   void at(double time, bool just_before, std::span<double> weights) const noexcept;
 
-  /// Writes a bound of |w''| for every weight between two times within the same key interval; 0 if the weights are
-  /// linear or constant.
+  /// Writes a bound of the second derivative of every weight (in 1/s^2) between two times within the same key interval.
+  /// The bound is 0 if the weights are linear or constant.
   void curvature(double from, double to, std::span<double> bounds) const noexcept;
 
  private:

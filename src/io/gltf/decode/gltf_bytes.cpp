@@ -24,8 +24,8 @@ std::uint32_t load_index(const char* at, Component component) noexcept {
   return binary::load<std::uint32_t>(at, kOrder);
 }
 
-// Returns the largest index of a type. glTF forbids it, because some hardware takes it as the command to begin a new
-// strip.
+// Returns the largest index that a type can hold. glTF forbids this index, because some graphics hardware takes it as
+// the command to begin a new strip.
 std::uint32_t restart_index(Component component) noexcept {
   if (component == Component::kUint8) return 0xFF;
   return component == Component::kUint16 ? 0xFFFF : 0xFFFFFFFF;
@@ -127,7 +127,7 @@ const Expansion& Bytes::expansion() {
   for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
     const std::optional<std::string>& uri = model_.buffers[i].uri;
     if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
-    // A buffer that cannot be read does not count here. The error is reported when its data are read.
+    // A buffer that cannot be read does not count here. Its error is reported when its data are needed.
     if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
   }
   expansion_ = found;
@@ -237,7 +237,8 @@ Status Bytes::for_each_sparse(std::size_t index, const Put& put) {
   return Success{};
 }
 
-// Opens the buffer before memory is taken, since an accessor may declare more than its buffer has.
+// Opens the buffer of an accessor, if it has one. Callers do this before they take memory, since an accessor may
+// declare more numbers than its buffer has.
 Status Bytes::open_buffer_of(const Accessor& accessor) {
   if (!accessor.view) return Success{};
   const Result<View> found = view(*accessor.view);

@@ -1,5 +1,5 @@
-/// The bytes of a glTF file as numbers. Buffers are opened, views decompressed and accessors decoded when they are
-/// first asked for. Private to io.
+/// Reads the bytes of a glTF file as numbers. Buffers are opened, views decompressed and accessors decoded when they
+/// are first needed. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_DECODE_GLTF_BYTES_H_
 #define CHRONORMAL_IO_GLTF_DECODE_GLTF_BYTES_H_
 
@@ -20,30 +20,31 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Returns one number as glTF defines it (section 3.6.2.2 of the specification): normalised integers are fractions.
+/// Returns the number at `at` as glTF defines it (section 3.6.2.2 of the specification). If `normalized` is true,
+/// integers stand for fractions: 255 of a uint8 is 1.
 [[nodiscard]] double load_number(const char* at, Component component, bool normalized) noexcept;
 
 /// The bytes of a buffer view, either in the file, or decompressed and shared by all users.
 struct View {
   std::string_view bytes;
-  std::shared_ptr<const std::string> owner;  ///< nullptr if they are in the file
+  std::shared_ptr<const std::string> owner;  ///< nullptr if the bytes are in the file
 };
 
 /// The largest total size of decompressed views that are kept for later use.
 inline constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 
-/// The place of an asset and its files.
+/// The place of a glTF asset, by which its files are found.
 struct Origin {
-  std::string name;                     ///< name for messages
-  std::optional<std::string> folder;    ///< folder of its files; none for standard input
-  std::optional<std::string_view> bin;  ///< the BIN chunk
+  std::string name;                     ///< name of the asset for messages
+  std::optional<std::string> folder;    ///< folder of the asset's files; no value for standard input
+  std::optional<std::string_view> bin;  ///< the BIN chunk of a GLB
   bool allow_external = false;
-  Expansion expansion;        ///< limit of memory for the asset itself
-  FileResolver resolve = {};  ///< finds its files; empty for the file system
+  Expansion expansion;        ///< limit of memory that the asset itself may ask for
+  FileResolver resolve = {};  ///< finds the asset's files; if empty, they are in the file system
 
   /// Returns the path of a relative URI (io/gltf/gltf_uri.h); `place` is for messages.
   [[nodiscard]] Result<std::string> path_of(std::string_view uri, const std::string& place) const;
-  /// Opens a path from path_of(); `place` is for messages.
+  /// Opens the file at a path that path_of() returned; `place` is for messages.
   [[nodiscard]] Result<FileBytes> open(const std::string& path, const std::string& place) const;
 };
 
@@ -52,16 +53,16 @@ class Bytes {
   /// Creates a reader of an asset's bytes. The model and the BIN chunk must outlive it.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
-  /// Returns the bytes of a buffer, at least as many as it declares. Errors: the buffer has no bytes or too few; the
-  /// file cannot be read.
+  /// Returns the bytes of a buffer, at least as many as the buffer declares. Errors: the buffer has no bytes or too
+  /// few; its file cannot be read.
   [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
 
   /// Returns the bytes of a view, decompressed if necessary.
   [[nodiscard]] Result<View> view(std::size_t index);
 
-  /// Returns the numbers of an accessor that parse_model() has checked, count x components of them. Normalised integers
-  /// become fractions (f = c / 127, at least -1, and so on), and other integers keep their value. Errors: those of the
-  /// buffer; numbers that are not finite; sparse indices that do not ascend.
+  /// Returns the numbers of an accessor that parse_model() has checked: count elements of `components` numbers each.
+  /// Normalised integers become fractions (f = c / 127, at least -1, and so on), and other integers keep their value.
+  /// Errors: those of buffer(); numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
   /// Returns the numbers of an accessor as times of keys, which must ascend from 0 or more.
@@ -74,7 +75,8 @@ class Bytes {
   /// opened.
   [[nodiscard]] const Expansion& expansion();
 
-  /// Releases memory that holds parts of buffers in separate files.
+  /// Releases memory that holds parts of buffers in separate files. The system reads these parts again when they are
+  /// needed.
   void release() const noexcept;
 
   [[nodiscard]] std::string place(std::string_view pointer) const;
@@ -86,7 +88,8 @@ class Bytes {
  private:
   [[nodiscard]] Status open_buffer_of(const Accessor& accessor);
   [[nodiscard]] Result<std::string> decompress(std::size_t view_index, const Compression& compression);
-  /// Calls put(element, bytes of its value) for each element that the sparse part of the accessor replaces.
+  /// Calls put(element, bytes) for each element that the sparse part of the accessor replaces, with the bytes of its
+  /// new value.
   template <class Put>
   [[nodiscard]] Status for_each_sparse(std::size_t accessor, const Put& put);
   template <class Read>
@@ -94,11 +97,13 @@ class Bytes {
 
   const Model& model_;
   Origin origin_;
-  std::map<std::size_t, FileBytes> files_;                           // by buffer
-  std::map<std::size_t, std::string> embedded_;                      // by buffer: decoded data URIs
-  std::map<std::size_t, std::shared_ptr<const std::string>> views_;  // by view: decompressed
-  std::size_t kept_bytes_ = 0;                                       // size of all views_
-  std::optional<Expansion> expansion_;                               // set at the first call of expansion()
+  std::map<std::size_t, FileBytes> files_;  // the key is the index of the buffer
+  // decoded data URIs; the key is the index of the buffer
+  std::map<std::size_t, std::string> embedded_;
+  // decompressed views; the key is the index of the view
+  std::map<std::size_t, std::shared_ptr<const std::string>> views_;
+  std::size_t kept_bytes_ = 0;          // total size of views_ in bytes
+  std::optional<Expansion> expansion_;  // set at the first call of expansion()
 };
 
 }  // namespace chronormal::inline internal::gltf

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-// The library's headers do not pass our warnings.
+// Turns off warnings, because the headers of the Draco library do not pass ours.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-conversion"
@@ -42,8 +42,8 @@ draco::DataType data_type(Component component) {
   return draco::DT_INVALID;
 }
 
-// Copies the values of an attribute to floats. Does not use the library's conversion, because that trusts flags of the
-// file.
+// Copies the values of an attribute to floats. The conversion of the library is not used, because it trusts flags in
+// the file.
 Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
                       std::vector<float>& result) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
@@ -58,7 +58,7 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   const std::size_t available = attribute->buffer()->data_size();
   result.resize(std::size_t{mesh.num_points()} * components);
   for (std::uint32_t v = 0; v < mesh.num_points(); ++v) {
-    const std::uint64_t value = attribute->mapped_index(draco::PointIndex(v)).value();  // 32 bits
+    const std::uint64_t value = attribute->mapped_index(draco::PointIndex(v)).value();  // the index has 32 bits
     bool ok = stride <= available && offset <= available && value * stride + components * size <= available - offset;
     const char* const at =
         reinterpret_cast<const char*>(attribute->buffer()->data()) + (ok ? offset + value * stride : 0);
@@ -74,8 +74,8 @@ Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& a
   return Success{};
 }
 
-// Returns the number of faces that the compressed mesh declares, or nothing if it cannot be determined. It is checked
-// first, because the library allocates memory for the faces before it reads any.
+// Returns the number of faces that a compressed mesh declares, or nothing if this number cannot be determined. The
+// caller checks the number first, because the library allocates memory for the faces before it reads any of them.
 std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
   draco::DracoHeader header;
   if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return std::nullopt;
@@ -90,7 +90,8 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
     return ok ? std::optional(number) : std::nullopt;
   };
   if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) return count(version >= DRACO_BITSTREAM_VERSION(2, 2));
-  // Before the faces come the method of traversal, new vertices (up to 2.1), and vertices.
+  // The number of faces follows the method of traversal, the number of new vertices (in versions up to 2.1), and the
+  // number of vertices.
   const bool is_varint = version >= DRACO_BITSTREAM_VERSION(2, 0);
   std::uint8_t traversal = 0;
   if (!buffer.Decode(&traversal)) return std::nullopt;
@@ -101,7 +102,7 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
 // Decodes a mesh, which must have the number of vertices that its accessors declare.
 Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::size_t vertex_count,
                                                  const Expansion& expansion, const std::string& place) {
-  constexpr std::uint64_t kBytesPerFace = 64;  // the tables of the library and our own
+  constexpr std::uint64_t kBytesPerFace = 64;  // memory for the tables of the library and for our own
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   std::unique_ptr<draco::Mesh> mesh;
@@ -119,7 +120,8 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
       else
         reason = decoded.status().error_msg_string();
     }
-  } catch (const std::exception& exception) {  // thrown when the decoder trusts a wrong length in the file
+    // The library throws if it trusts a wrong length in the file.
+  } catch (const std::exception& exception) {
     reason = exception.what();
   }
   if (!mesh)

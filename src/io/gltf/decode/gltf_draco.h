@@ -16,16 +16,18 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Decodes triangles, positions and, if they are wanted and present, normals and tangents. The accessors of the
-/// primitive, which must have `draco`, define the types of the numbers. Errors: kInvalidInput at `place` for invalid
-/// bytes, no triangles, a number of vertices other than the accessors declare, an attribute that is missing or of
-/// another type, and more faces than the limit of expansion allows, which is checked first.
+/// Decodes the triangles and positions of a primitive and, if with_shading is true, its normals and tangents. The
+/// accessors of the primitive, which must have `draco`, define the types of the numbers. Errors: kInvalidInput at
+/// `place` for invalid bytes, for no triangles, for a number of vertices other than the accessors declare, for an
+/// attribute that is missing or of another type, and for more faces than the limit of expansion allows. The limit is
+/// checked first.
 [[nodiscard]] Result<GltfGeometry> decode_draco(std::string_view bytes, const Model& model,
                                                 const PrimitiveSource& source, bool with_shading,
                                                 const Expansion& expansion, const std::string& place);
 
-/// Decodes some attributes of a mesh with a given number of vertices, each by its id in the mesh, in the vertex order
-/// of decode_draco(). Errors: those of decode_draco(); errors of an attribute are at place_of(n)
+/// Decodes some attributes of a compressed mesh with vertex_count vertices. Each attribute is named by its id in the
+/// mesh. The vertices have the order of decode_draco(). Errors: those of decode_draco(); errors of attribute n have the
+/// place place_of(n).
 [[nodiscard]] Result<std::vector<std::vector<float>>> decode_draco_attributes(
     std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
     const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of);

@@ -15,18 +15,20 @@ template <class T>
 void decode_element(char* element) noexcept {
   constexpr std::endian kOrder = std::endian::little;
   const auto load = [&](std::size_t i) { return static_cast<float>(binary::load<T>(element + i * sizeof(T), kOrder)); };
-  // Every line rounds once in float, in the order of the decoder in browsers.
+  // Each line rounds only once in float, and the lines have the order of the decoder in browsers, so that all bits
+  // agree.
   float x = load(0), y = load(1);
   const float z = load(2) - (std::fabs(x) + std::fabs(y));
 
-  // Fold the corners of the square, which are the half with negative z, back.
+  // The corners of the square stand for normals with negative z. These lines fold the corners back.
   const float fold = std::min(z, 0.0F);
   x += x < 0 ? -fold : fold;
   y += y < 0 ? -fold : fold;
 
   const float length = std::sqrt(x * x + (y * y + z * z));
   const float scale = length > 0 ? static_cast<float>(std::numeric_limits<T>::max()) / length : 0.0F;
-  const auto store = [&](std::size_t i, float component) {  // rounds halves to even
+  // std::nearbyint() rounds halves to even.
+  const auto store = [&](std::size_t i, float component) {
     binary::store(element + i * sizeof(T), static_cast<T>(std::nearbyint(component * scale)), kOrder);
   };
   store(0, x);

@@ -21,8 +21,8 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Decodes all elements of a view in place. stride is the bytes of an element, 4 or 8; the size of bytes must be a
-/// multiple of it
+/// Decodes all elements of a view in place. `stride` is the number of bytes of an element, 4 or 8. The size of `bytes`
+/// must be a multiple of `stride`.
 void decode_octahedral(std::string& bytes, std::size_t stride) noexcept;
 
 }  // namespace chronormal::inline internal::gltf

@@ -18,7 +18,7 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
-// The JSON of a sparse accessor is about this much longer than the JSON of a dense one.
+// The number of characters by which the JSON of a sparse accessor is longer than the JSON of a dense one, roughly.
 constexpr std::size_t kSparseJson = 130;
 
 void pad(std::string& bytes) { bytes.resize((bytes.size() + 3) / 4 * 4, '\0'); }
@@ -32,8 +32,8 @@ std::string bytes_of(std::span<const float> values) {
 
 // Facts about an array, found in one pass over its values.
 struct ArraySurvey {
-  std::array<float, 3> least{}, most{};  // bounds of each component
-  std::size_t used = 0, last_used = 0;   // elements that are not zero
+  std::array<float, 3> least{}, most{};  // lower and upper bound of each component
+  std::size_t used = 0, last_used = 0;   // number of elements that are not zero, and index of the last one
   std::size_t hash = 0;                  // hash of the bytes
 };
 
@@ -84,16 +84,17 @@ ArraySurvey survey_array(std::span<const float> values, std::size_t components) 
   return all;
 }
 
-// Returns the bounds of all components as JSON. Readers compare these bounds in double with the values of the array, so
-// the digits must read back as exactly the same double.
+// Returns the bounds of all components as JSON. Readers of the file compare these bounds in double with the values of
+// the array, so the digits must read back as exactly the same double.
 std::string bound_json(std::span<const float> bounds) {
   std::string json = "[";
   for (std::size_t c = 0; c < bounds.size(); ++c)
-    json.append(c > 0 ? "," : "").append(json_number(bounds[c] == 0 ? 0.0 : double{bounds[c]}));  // no -0
+    // This writes 0 instead of -0.
+    json.append(c > 0 ? "," : "").append(json_number(bounds[c] == 0 ? 0.0 : double{bounds[c]}));
   return json + "]";
 }
 
-// Adds the place of an array to its JSON: "bufferView":3,"byteOffset":16.
+// Adds the place of an array to the JSON of its accessor: "bufferView":3,"byteOffset":16.
 void add_place(std::size_t view, std::uint64_t offset, JsonObject& object) {
   object.add("bufferView", view);
   if (offset > 0) object.add("byteOffset", std::to_string(offset));

@@ -1,4 +1,4 @@
-/// New arrays of a glTF file: their storage, and the accessors and buffer views that name them. Private to io.
+/// Stores new arrays of a glTF file, and describes them by accessors and buffer views. Private to io.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
 
@@ -17,9 +17,9 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// Returns the number of bytes of an array of floats: stored dense or sparse, whichever is shorter. `count` is the
-/// number of elements, `used` the number of elements that are not zero, and `last_used` the index of the last of these.
-/// An array of zeros takes no bytes.
+/// Returns the number of bytes that an array of floats takes in the file. The array is stored dense or sparse,
+/// whichever is shorter. `count` is the number of elements, `used` the number of elements that are not zero, and
+/// `last_used` the index of the last element that is not zero. An array of zeros takes no bytes.
 [[nodiscard]] std::size_t bytes_of_floats(std::size_t used, std::size_t last_used, std::size_t count,
                                           std::size_t components);
 
@@ -31,18 +31,18 @@ class NewArrays {
   /// Creates an empty store that keeps the bytes of its arrays in `spool`.
   explicit NewArrays(Spool spool = {}) : spool_(std::move(spool)) {}
 
-  /// Stores an array of `components` numbers per element, 1 or 3, unless an equal one exists already. Returns its
-  /// index.
+  /// Stores an array of `components` numbers per element, 1 or 3, unless an equal array exists already. Returns the
+  /// index of the array.
   std::size_t add(std::span<const float> values, std::size_t components, const GltfVectors& options);
 
   /// Stores a table of scalars row by row: fill(row, values) writes one row over zeros. At most a few rows are in
-  /// memory in addition to the spool. The table has bytes even for zeros, has no bounds, and is not compared with other
-  /// arrays.
+  /// memory in addition to the spool. Unlike an array of add(), a table has bytes even if all numbers are zero, has no
+  /// bounds, and is not compared with other arrays.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
   /// Puts the arrays into another order: place i gets the array that was order[i], which has the index i from now on.
-  /// No array may be added after that. order must have each index once
+  /// No array may be added after this call. `order` must contain each index once.
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.
@@ -58,11 +58,11 @@ class NewArrays {
   /// Passes all bytes to `take`, in the order of the buffer, and forgets them. Errors: those of Spool::give_away().
   [[nodiscard]] Status give_away(const Spool::Take& take);
   /// Returns all bytes, in the order of the buffer, as views that live as long as this object. The spool must be in
-  /// memory
+  /// memory.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
-  /// The JSON of buffer views and accessors, in the order of their indices. json() returns it for bytes that begin at
-  /// `offset` of a buffer, and for buffer views that are numbered from first_view.
+  /// The JSON of buffer views and accessors, in the order of their indices. json() makes it for bytes that begin at
+  /// `offset` of a buffer, with buffer views numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;
   };
@@ -73,23 +73,24 @@ class NewArrays {
     std::size_t components = 1, count = 0;
     std::size_t sparse_count = 0;
     std::size_t index_type = 0;
-    std::string least, most;  // bounds as JSON, or empty
+    std::string least, most;  // bounds of the components as JSON, or empty
 
     bool operator==(const Array&) const = default;
   };
-  // The bytes of an array, each part padded to a multiple of 4.
+  // The bytes of an array in its parts, each of which is padded to a multiple of 4.
   struct Encoded {
     Array array;
-    std::string_view dense;       // the values; a view of `swapped` if the machine has another byte order
-    std::string indices, values;  // for the sparse_count elements that are not zero
+    // the values if they are stored dense; a view of `swapped` on machines that are big endian
+    std::string_view dense;
+    std::string indices, values;  // the parts of a sparse array, for its sparse_count elements that are not zero
     std::string swapped;
     std::size_t hash = 0;
 
     Encoded() = default;
-    Encoded(Encoded&&) = delete;  // a move would leave the views behind
+    Encoded(Encoded&&) = delete;  // a move would leave views of the old object
   };
-  // The place of an array in the spool: the parts follow each other from byte `at` on, and `dense`, `indices` and
-  // `values` are their sizes in bytes.
+  // The place of an array in the spool. The parts follow each other from byte `at` on; `dense`, `indices` and `values`
+  // are the sizes of the parts in bytes.
   struct Stored {
     Array array;
     std::uint64_t at = 0, dense = 0, indices = 0, values = 0;
@@ -102,7 +103,7 @@ class NewArrays {
                      Encoded& result);
   [[nodiscard]] bool is_same(const Stored& stored, const Encoded& encoded);
   [[nodiscard]] Sizes sizes() const noexcept;
-  // Calls body(at, size) for the bytes in the spool, in the order of the buffer, until it returns an error.
+  // Calls body(at, size) for each piece of the spool, in the order of the buffer, until body() returns an error.
   template <class Body>
   [[nodiscard]] Status each_place(const Body& body) const;
 

@@ -14,7 +14,7 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::string_view kZeros{"\0\0\0\0\0\0\0", 7};
-// Bytes that are moved into the BIN chunk begin at a multiple of this number, which aligns numbers of every size.
+// The alignment of bytes that are moved into the BIN chunk. A multiple of 8 suits numbers of every size.
 constexpr std::size_t kViewAlignment = 8;
 
 std::string item_pointer(const char* array, std::size_t index) {
@@ -31,7 +31,7 @@ const char* media_type_of(std::string_view bytes) {
   return nullptr;
 }
 
-// Appends the joined pieces as base64.
+// Appends the bytes of all pieces, one behind the other, as base64.
 void append_base64(std::string& text, const std::vector<std::string_view>& pieces) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::size_t size = 0;
@@ -62,8 +62,8 @@ const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_
   return found == members.rend() ? nullptr : &*found;
 }
 
-// Returns the value of a member if it is a whole number, also if it is written as 4.0. The reader has accepted it, or
-// it is in an extension that was not read.
+// Returns the value of a member that is a whole number, also if it is written as 4.0. Returns nothing if the member is
+// missing or is no such number; the reader has checked all members except those of extensions that it does not know.
 std::optional<std::size_t> to_count(const JsonMember* member) {
   constexpr double kMost = 9007199254740992;  // 2^53
   if (member == nullptr) return std::nullopt;
@@ -127,7 +127,7 @@ Result<GlbPieces> EditLayout::file() const {
   return chronormal::lay_out_glb(json, bin_, document_.chunks.rest, target_.name);
 }
 
-// Finds the images that are in files beside the source.
+// Finds the images that are in files beside the source, so that they can be moved into the result.
 Status EditLayout::find_images() {
   const Origin& origin = document_.bytes.origin();
   const std::size_t count = document_.source.members("/images").size();
@@ -167,7 +167,7 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that the changes make unused, among the buffers for which holds(buffer) is true. These are the
+// Finds the arrays that become unused by the changes, in the buffers for which holds(buffer) is true. These are the
 // buffers whose bytes are in the result.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
@@ -197,8 +197,8 @@ Status EditLayout::lay_out_glb() {
   }
   const std::uint64_t array_bytes = document_.arrays.byte_count();
   const bool grows = array_bytes > 0 || !images_.empty();
-  // A .gltf file that becomes a GLB gets a BIN chunk. A GLB keeps its buffers where they are if possible; if its BIN
-  // chunk gets more bytes, this chunk must be buffer 0.
+  // A .gltf file that becomes a GLB gets a BIN chunk. A GLB keeps its buffers where they are if possible. If its BIN
+  // chunk gets more bytes, however, this chunk must be buffer 0.
   const bool must_move =
       !buffers.empty() && (!document_.is_glb || (target_.stands_alone && any_file) || (grows && !is_bin(0)));
   const auto is_held = [&](std::size_t i) { return is_bin(i) || (must_move && buffers[i].uri); };
@@ -231,7 +231,8 @@ Status EditLayout::lay_out_glb() {
     if (Status status = set(pointer, of_image.text()); !status) return status;
   }
 
-  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);  // buffer 0 needs bytes, even if no buffer has any
+  // Buffer 0 needs bytes, even if no buffer has any.
+  if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);
   JsonObject buffer;
   buffer.add("byteLength", bin_size_);
   if (must_move) {
@@ -243,8 +244,8 @@ Status EditLayout::lay_out_glb() {
   return append("/buffers", buffer.text());
 }
 
-// Moves all buffers that have bytes into the BIN chunk, which becomes buffer 0. Buffers without bytes come after it;
-// compressed buffer views name them as a fallback.
+// Moves all buffers that have bytes into the BIN chunk, which becomes buffer 0. Buffers without bytes come after buffer
+// 0; compressed buffer views name such buffers as a fallback.
 Status EditLayout::move_buffers() {
   const std::vector<Buffer>& buffers = document_.model.buffers;
   std::vector<Moved> moved;
@@ -267,7 +268,8 @@ Status EditLayout::move_buffers() {
     const std::string pointer = item_pointer("bufferViews", i);
     const auto offset = unused_.any() ? std::optional(unused_.view_offsets[i]) : std::nullopt;
     if (Status status = move_view(pointer, moved, offset); !status) return status;
-    // EXT_meshopt_compression and its successors name the buffer of the compressed bytes.
+    // EXT_meshopt_compression and its successors name the buffer of the compressed bytes, so their objects must be
+    // changed too.
     for (const JsonMember& extension : document_.source.members(pointer + "/extensions")) {
       if (!extension.value.starts_with('{')) continue;
       const std::string of_extension = with_json_token(pointer + "/extensions", extension.name);
@@ -277,7 +279,8 @@ Status EditLayout::move_buffers() {
   return Success{};
 }
 
-// Moves a buffer view, or its extension. `offset` is its new start in the buffer, or nothing if it does not change.
+// Changes the buffer and the start of a buffer view, or of its extension, as `moved` says. `offset` is the start if
+// unused bytes are left out before it. Without an offset, the start in the source counts.
 Status EditLayout::move_view(const std::string& pointer, const std::vector<Moved>& moved,
                              std::optional<std::size_t> offset) {
   const std::vector<JsonMember> members = document_.source.members(pointer);

@@ -22,7 +22,7 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The document to write. All of it must outlive the layout.
+/// The document to write. All objects to which it refers must outlive the layout.
 struct EditedDocument {
   const Model& model;
   Bytes& bytes;
@@ -30,14 +30,14 @@ struct EditedDocument {
   bool is_glb;
   JsonText& source;  ///< the original JSON
   const NewArrays& arrays;
-  bool without_unused = false;  ///< whether to leave out arrays that nothing refers to any more
+  bool without_unused = false;  ///< true to leave out arrays that nothing refers to any more
 };
 
 struct LayoutTarget {
-  std::string name;           ///< name for messages
-  bool glb = false;           ///< the container
+  std::string name;           ///< name of the result for messages
+  bool glb = false;           ///< true for a GLB, false for a .gltf file
   bool stands_alone = false;  ///< true if references to files beside the source would be invalid
-  bool with_bytes = true;     ///< false if only pointers are needed: data URIs are left empty
+  bool with_bytes = true;     ///< false if only the JSON is needed; data URIs are then left empty
 };
 
 class EditLayout {
@@ -51,7 +51,7 @@ class EditLayout {
   /// change that is not possible.
   [[nodiscard]] Status run();
 
-  /// Return the results of run().
+  /// Return the JSON and the warnings of the result. Call run() before.
   [[nodiscard]] const JsonText& json() const noexcept { return json_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
   /// Returns the number of bytes of the source that are left out.
@@ -65,7 +65,7 @@ class EditLayout {
     const char* media_type = "";
     std::string_view bytes;
   };
-  // The present place of a buffer of the source.
+  // The place to which a buffer of the source has moved.
   struct Moved {
     std::size_t buffer = 0, offset = 0;
   };

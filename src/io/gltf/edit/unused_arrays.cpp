@@ -15,7 +15,8 @@ using Range = UnusedArrays::Range;
 
 constexpr std::size_t kRangeAlignment = 4;
 
-// Lists extensions whose objects refer to textures, nodes and materials, but neither to accessors nor to buffer views.
+// Lists extensions that need no check: their objects refer to textures, nodes and materials, but neither to accessors
+// nor to buffer views.
 constexpr std::string_view kKnownExtensions[] = {"KHR_materials_",
                                                  "KHR_texture_",
                                                  "EXT_texture_",
@@ -36,7 +37,7 @@ bool is_known(std::string_view extension) {
                      [&](std::string_view known) { return extension.starts_with(known); });
 }
 
-// Returns true if all extensions that are used anywhere in a value are known.
+// Returns true if a value and everything inside it uses only extensions of the list above.
 bool has_known_extensions_only(const Json& value) {
   if (value.is_object()) {
     const auto extensions = value.find("extensions");
@@ -55,7 +56,7 @@ const Json& at(const Json& value, const char* key) {
   return value.is_object() && found != value.end() ? *found : kNull;
 }
 
-// The accessors that a document refers to.
+// Finds the accessors that a document refers to.
 class References {
  public:
   References(const Json& root, std::size_t accessors) : referred_(accessors, false) {
@@ -90,24 +91,24 @@ class References {
 };
 
 // A part of a view that an accessor reads. A sparse accessor reads up to three parts: its base values, its indices, and
-// the values that replace others.
+// the values that replace some of the base values.
 struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };
 
-// Returns the number of bytes from the first element to the end of the last one, for elements that are `stride` bytes
-// apart. Returns nothing on overflow.
+// Returns the number of bytes from the first element to the end of the last one. An element has `size` bytes, and the
+// next one begins `stride` bytes later. Returns nothing on overflow.
 std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std::size_t size) {
   if (count == 0) return 0;
   if (stride > 0 && count - 1 > (static_cast<std::size_t>(-1) - size) / stride) return std::nullopt;
   return (count - 1) * stride + size;
 }
 
-// Returns the parts of an accessor, or nothing if one of them is not inside its view.
+// Returns the parts of views that an accessor reads, or nothing if a part is not inside its view.
 std::optional<std::vector<Part>> parts_of(const Model& model, const Accessor& accessor) {
   std::vector<Part> parts;
   if (accessor.is_matrix && component_size(accessor.component) < kRangeAlignment)
-    return std::nullopt;  // padded columns
+    return std::nullopt;  // the columns of such matrices are padded
   const auto add = [&](std::size_t view, std::size_t offset, std::size_t count, std::size_t size, bool strides) {
     if (view >= model.views.size()) return false;
     const BufferView& of = model.views[view];
@@ -142,7 +143,8 @@ std::vector<Range> joined(std::vector<Range> ranges) {
   return result;
 }
 
-// Subtracts some ranges from others. The sizes of the resulting ranges are multiples of kRangeAlignment.
+// Returns the bytes that are in `ranges` but not in `without`, as ranges. The sizes of the resulting ranges are
+// multiples of kRangeAlignment.
 std::vector<Range> aligned_difference(const std::vector<Range>& ranges, const std::vector<Range>& without) {
   std::vector<Range> result;
   auto other = without.begin();
@@ -217,7 +219,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   };
   const Result<Json> source = parse(before), edited = parse(after);
   if (!source || !edited || !has_known_extensions_only(edited.value())) return {};
-  // Arrays that could not be read may refer to anything, so nothing is left out.
+  // Arrays that could not be read may refer to any bytes, so the file keeps all its bytes.
   const auto has_fault = [](const auto& array) { return array.fault.has_value(); };
   if (std::any_of(model.accessors.begin(), model.accessors.end(), has_fault) ||
       std::any_of(model.views.begin(), model.views.end(), has_fault))
@@ -225,7 +227,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
   const std::size_t count = model.accessors.size();
   const References was(source.value(), count), is(edited.value(), count);
 
-  // A view is used if an image or a living accessor refers to it, and unused if only dead accessors do.
+  // A view is used if an image or a used accessor refers to it. A view is unused if only unused accessors refer to it.
   std::vector<bool> is_used(model.views.size(), false), is_unused(model.views.size(), false);
   for (const Json& image : at(edited.value(), "images")) {
     const Json& view = at(image, "bufferView");
@@ -241,7 +243,8 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     if (!found) return {};
     parts[a] = std::move(*found);
     const bool is_dead = was[a] && !is[a];
-    // A view of interleaved arrays is kept completely, since three.js reads as many strides as there are elements.
+    // A view of interleaved arrays is kept completely, because three.js reads a whole stride for every element, also
+    // for the last one.
     if (const std::optional<std::size_t> view = model.accessors[a].view; view && !is_dead)
       is_whole[*view] = is_whole[*view] || model.views[*view].stride.value_or(0) > model.accessors[a].element_size();
     if (is_dead && !parts[a].empty()) unused_accessors.push_back(a);
@@ -270,7 +273,8 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     std::vector<Range>& ranges = result.ranges[b];
     if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
     if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
-      ranges.front().begin = kRangeAlignment;  // the only range is the whole buffer; its first bytes stay
+      // The only range is the whole buffer. The first bytes of the buffer must stay.
+      ranges.front().begin = kRangeAlignment;
       if (ranges.front().begin == ranges.front().end) ranges.clear();
     }
     moved.emplace_back(ranges);

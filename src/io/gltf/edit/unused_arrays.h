@@ -6,9 +6,10 @@
 ///               such accessors; later bytes move to the front of the buffer by multiples of 4, so that every number
 ///               stays aligned
 ///
-/// Indices stay: an unused accessor becomes one of a single zero, and a buffer view of unused accessors a view of one
-/// byte. So a buffer with only unused arrays keeps its first four bytes. An unknown extension may refer to accessors
-/// and views anywhere, so a file keeps all its bytes unless all of its extensions are known not to.
+/// Indices of accessors and views stay valid: an unused accessor is replaced by an accessor of a single zero, and a
+/// buffer view of unused accessors by a view of one byte. A buffer with only unused arrays therefore keeps its first
+/// four bytes. An unknown extension may refer to accessors and views anywhere. A file that has an extension which is
+/// not known to be free of such references keeps all its bytes.
 #ifndef CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 #define CHRONORMAL_IO_GLTF_EDIT_UNUSED_ARRAYS_H_
 
@@ -29,9 +30,10 @@ struct UnusedArrays {
     std::size_t begin = 0, end = 0;
   };
 
-  std::vector<std::vector<Range>> ranges;  ///< ranges of each buffer, ascending and apart; empty if nothing is left out
-  std::vector<std::size_t> view_offsets;   ///< new start of each view in its buffer; empty if no view moves
-  /// Changes to the JSON that follow from leaving out bytes: JSON pointers and new values.
+  /// the ranges that are left out of each buffer, ascending and apart; empty if nothing is left out
+  std::vector<std::vector<Range>> ranges;
+  std::vector<std::size_t> view_offsets;  ///< new start of each view in its buffer; empty if no view moves
+  /// Changes to the JSON that follow from leaving out bytes, as pairs of a JSON pointer and a new value.
   std::vector<std::pair<std::string, std::string>> changes;
 
   [[nodiscard]] bool any() const noexcept { return !ranges.empty(); }
@@ -42,8 +44,8 @@ struct UnusedArrays {
 };
 
 /// Finds the unused arrays of `model`, which was parsed from `before`, the JSON of the source. `after` is the JSON of
-/// the edited document. For each buffer, `sizes` has the number of its bytes if it may become shorter, and nothing
-/// otherwise. O(size of the JSON).
+/// the edited document. For each buffer that may become shorter, `sizes` has its number of bytes; for other buffers it
+/// has no value. O(size of the JSON).
 [[nodiscard]] UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optional<std::size_t>> sizes,
                                               std::string_view before, std::string_view after);
 

@@ -22,10 +22,10 @@
 
 namespace chronormal::inline internal {
 
-/// Views of the parts of the file.
+/// The parts of a GLB file, as views.
 struct GlbChunks {
   std::string_view json;
-  std::size_t json_offset = 0;          ///< byte at which the JSON begins
+  std::size_t json_offset = 0;          ///< offset of the JSON in the file
   std::optional<std::string_view> bin;  ///< nothing if there is no BIN chunk
   std::string_view rest;                ///< further chunks, with their headers
 };
@@ -36,29 +36,31 @@ struct GlbChunks {
   return extension == ".glb" || extension == ".vrm";
 }
 
-/// Finds the chunks. Errors: kInvalidInput with the place "NAME, byte N": another version, a declared length that
-/// differs from the size of the file, a chunk that does not lie inside the file, a first chunk that is not JSON.
+/// Finds the chunks of a GLB file. The place of an error is "NAME, byte N". Errors: kInvalidInput for another version,
+/// a declared length that differs from the size of the file, a chunk that does not lie inside the file, and a first
+/// chunk that is not JSON.
 [[nodiscard]] Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name);
 
-/// The headers and the padding around the chunks of a file. A file has a JSON chunk and at most one BIN chunk.
+/// The headers and the padding around the chunks of a GLB file. A file has a JSON chunk and at most one BIN chunk.
 struct GlbFrame {
-  std::string before_json, behind_json, behind_bin;  ///< headers, and the padding of the chunk before
-  std::uint64_t size = 0;                            ///< size of the file
+  /// each has the padding of the previous chunk and the header of the next
+  std::string before_json, behind_json, behind_bin;
+  std::uint64_t size = 0;  ///< size of the file in bytes
 };
 
-/// Makes the frame for chunks of these sizes. bin_size is empty without a BIN chunk; rest_size is the size of further
-/// chunks with their headers. Errors: kInvalidInput with the name as the place, for a file of 4 GiB or more.
+/// Makes the frame for chunks of these sizes in bytes. Pass no bin_size for a file without a BIN chunk. rest_size is
+/// the size of further chunks with their headers. Errors: kInvalidInput with `name` as the place, for a file of 4 GiB
+/// or more.
 [[nodiscard]] Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size,
                                          std::uint64_t rest_size, const std::string& name);
 
-/// A file in pieces: views of the chunks and of the frame around them. The frame's memory stays in place when this is
-/// moved.
+/// A file in pieces: views of the chunks and of the frame around them. The views stay valid when this object is moved.
 struct GlbPieces {
   std::unique_ptr<const GlbFrame> frame;
   std::vector<std::string_view> pieces;
 };
 
-/// Lays chunks out as a file. `bin` is nothing if there is no BIN chunk; `rest` is the further chunks with their
+/// Lays chunks out as a file. Pass no `bin` for a file without a BIN chunk. `rest` has the further chunks with their
 /// headers. Errors: those of frame_glb().
 [[nodiscard]] Result<GlbPieces> lay_out_glb(std::span<const std::string_view> json,
                                             const std::optional<std::vector<std::string_view>>& bin,

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Accessor 0 and buffer view 0 belong to the triangles; arrays come after them.
+// Accessor 0 and buffer view 0 belong to the triangles. The other arrays come after them.
 constexpr std::size_t kTriangles = 0, kFirstArray = 1;
 
 }  // namespace
@@ -38,7 +38,8 @@ GlbBuilder::GlbBuilder(std::optional<std::size_t> most_bytes, Spool spool)
 
 std::size_t GlbBuilder::set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count) {
   constexpr int kUnsignedShort = 5123, kUnsignedInt = 5125;
-  // The index 65535 is not allowed, since it restarts primitives (section 3.7.2.1 of the specification).
+  // An index of 16 bits must not be 65535, since this number restarts primitives (section 3.7.2.1 of the
+  // specification).
   const bool is_short = vertex_count <= 0xFFFF;
   indices_.clear();
   indices_.reserve((is_short ? 2 : 4) * corners.size() + 2);

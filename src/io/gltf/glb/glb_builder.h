@@ -36,29 +36,31 @@ class GlbBuilder {
  public:
   /// Takes the next bytes of a file, in order. `file_size` is the size of the whole file in bytes.
   using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
-  /// Returns a Take that appends the bytes to `file`, which must outlive it.
+  /// Returns a Take that appends the bytes to `file`. The text `file` must outlive the Take.
   [[nodiscard]] static Take gather_in(std::string& file);
 
   /// The largest size of a GLB, which stores its size in 32 bits.
   static constexpr std::size_t kMostBytes = 0xFFFFFFFF;
 
-  /// Begins a file of at most most_bytes bytes, and never more than kMostBytes. The arrays stay in the spool until the
-  /// end, because the JSON with their places comes first in the file.
+  /// Begins a file of at most most_bytes bytes, or of kMostBytes if most_bytes is larger or not given. The arrays stay
+  /// in the spool until finish(), because the JSON with their places comes first in the file.
   explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
-  /// Sets the corners of the triangles, in 16 bits if that is enough for the vertices. Returns their accessor.
+  /// Sets the corners of the triangles, and returns their accessor. Indices have 16 bits if that is enough for
+  /// vertex_count vertices, and 32 bits otherwise.
   std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
-  /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index. An equal array is stored only
-  /// once. The preconditions are those of GltfEdit
+  /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index. Equal arrays are stored only
+  /// once. The preconditions are those of GltfEdit.
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
-  /// Adds an accessor of SCALAR (rows x width), row by row: fill(row, values) writes one row over zeros. Returns its
-  /// index.
+  /// Adds an accessor of SCALAR (rows x width), and returns its index. Row by row, fill(row, values) writes one row
+  /// over zeros.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
   /// Renumbers the accessors of arrays: accessor order[i] becomes the i-th after the triangles, and the bytes of the
-  /// arrays get the same order. Nothing may be added afterwards. `order` must contain each accessor of an array once
+  /// arrays get the same order. Nothing may be added after this call. `order` must contain each accessor of an array
+  /// once.
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.
@@ -71,10 +73,10 @@ class GlbBuilder {
   [[nodiscard]] std::size_t most_bytes() const noexcept { return most_bytes_; }
   [[nodiscard]] nlohmann::ordered_json& document() noexcept { return document_; }
 
-  /// Assembles the file, passes its bytes to `take` and forgets them. Returns the size of the file in bytes. Errors:
-  /// kInvalidInput if the file would be too large, before `take` is called; those of the spool and of `take`.
+  /// Assembles the file, passes its bytes to `take`, and forgets them. Returns the size of the file in bytes. Errors:
+  /// kInvalidInput if the file would be too large (found before `take` is called); those of the spool and of `take`.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
-  /// Puts the file together in memory.
+  /// Assembles the file in memory and returns its bytes. Errors: as above.
   [[nodiscard]] Result<std::string> finish();
 
  private:

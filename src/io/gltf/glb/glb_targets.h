@@ -9,11 +9,11 @@
 
 namespace chronormal::inline internal {
 
-/// Makes a GLB of one mesh. Its base has the area-weighted normals of the polygons, or (0, 0, 1) if there is no area.
-/// Vertices that coincide in the base and in all targets share normals unless `weld` is false. Polygons become fans of
-/// triangles. Targets have only deltas of positions, sparse if that is smaller, and the names of their keyframes; bake
-/// gives them normals. The motion must be valid, and have the kind kTargets. Errors: kInvalidInput if the file would be
-/// too large.
+/// Makes a GLB of one mesh. The base has the area-weighted normals of the polygons; a vertex whose polygons have no
+/// area gets (0, 0, 1). Vertices that coincide in the base and in all targets share normals unless `weld` is false.
+/// Polygons become fans of triangles. Targets have the names of their keyframes, and only deltas of positions (stored
+/// sparse if that is smaller); a bake adds deltas of normals. The motion must be valid, and have the kind kTargets.
+/// Errors: kInvalidInput if the file would be too large.
 [[nodiscard]] Result<std::string> write_glb_targets(const Motion& motion, bool weld = true);
 
 }  // namespace chronormal::inline internal

@@ -13,12 +13,12 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Version 1 had two factors for each correction target: the indices of targets, or "base", which is 1 minus the sum of
-// the weights of all other targets.
+// The versions of the mark. Version 1 had two factors for each correction target. Each factor was the index of a
+// target, or "base", which is 1 minus the sum of the weights of all other targets.
 constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
 
-// Returns the items of an array. Returns no items if the array is missing or empty, and also after a complaint about
-// it.
+// Returns the items of the array that is the member `key`. Returns no items if the array is missing or empty. Complains
+// and returns no items if the member is not an array.
 std::vector<JsonView> items_of(const JsonView& view, const Json& value, const char* key) {
   const auto found = value.find(key);
   if (found == value.end() || (found->is_array() && found->empty())) return {};
@@ -56,7 +56,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
   if (!factors || factors->size() != 2) return item.complain("factors", "factors must be a list of two");
-  std::array<std::optional<std::size_t>, 2> targets;  // none for the base
+  std::array<std::optional<std::size_t>, 2> targets;  // no value stands for "base"
   for (std::size_t n = 0; n < 2; ++n) {
     const Json& factor = value["factors"][n];
     if (!factor.is_string())
@@ -75,7 +75,7 @@ void read_factors(const JsonView& item, const Json& value, std::size_t target_co
   }
 }
 
-// Checks that correction targets ascend, and that none depends on another one.
+// Checks that the correction targets ascend, and that none depends on another correction target.
 void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtraTarget>& extras) {
   const auto is_extra = [&](std::size_t i) {
     const auto found = std::lower_bound(extras.begin(), extras.end(), i,
@@ -96,7 +96,7 @@ void check_extras(const std::vector<JsonView>& list, const std::vector<GltfExtra
   }
 }
 
-// Returns the targets of the author: all targets that are not correction targets.
+// Returns the indices of the author's targets, which are all targets except correction targets.
 std::vector<std::size_t> own_targets(const std::vector<GltfExtraTarget>& extras, std::size_t target_count) {
   std::vector<bool> is_extra(target_count);
   for (const GltfExtraTarget& extra : extras) is_extra[extra.target] = true;

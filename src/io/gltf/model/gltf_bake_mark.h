@@ -11,11 +11,11 @@ namespace chronormal::inline internal::gltf {
 
 /// Sets mesh.mark if there is a mark, or mesh.mark_fault if the mark makes no sense. Anyone may write extras, so a
 /// wrong mark never makes a file unreadable. `pointer` is the JSON pointer of the mesh, and `name` the name of the
-/// file; mesh.target_count must be set
+/// file. mesh.target_count must be set before the call.
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
 
-/// Returns a mark as version 2 writes it.
+/// Returns a mark as JSON in version 2.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
 }  // namespace chronormal::inline internal::gltf

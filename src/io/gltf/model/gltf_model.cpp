@@ -1,5 +1,5 @@
-// Parses assets, buffers, buffer views, accessors and nodes; meshes and animations are in gltf_model_meshes.cpp and
-// gltf_model_animations.cpp.
+// Parses assets, buffers, buffer views, accessors and nodes. Meshes are parsed in gltf_model_meshes.cpp, and animations
+// in gltf_model_animations.cpp.
 #include "io/gltf/model/gltf_model.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // JSON
 constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",
                                                          "KHR_animation_pointer"};
-// Extensions of these families add materials, lights or meaning, and change no positions, faces or normals of a mesh.
+// Families of extensions that add materials, lights or meaning, and change no positions, faces or normals of a mesh.
 constexpr std::array<std::string_view, 10> kHarmlessFamilies = {
     "KHR_materials_",       "KHR_texture_",     "EXT_texture_",  "KHR_lights_punctual",
     "EXT_mesh_features",    "EXT_structural_",  "EXT_instance_", "CESIUM_primitive_outline",
@@ -100,7 +100,7 @@ Result<Model> Parser::parse(const nlohmann::json& document) {
 void Parser::parse_asset(const JsonView& root) {
   const std::optional<JsonView> asset = root.object("asset");
   if (!asset) return root.complain("asset", "this is not a glTF 2.0 file, since it has no asset");
-  // A file may require a later minor version than the one it was written for; only 2.0 is supported.
+  // minVersion is the version of glTF that a reader must support. Only 2.0 is supported here.
   const std::string version = asset->required_text("version"), least = asset->text("minVersion");
   if (!version.starts_with("2."))
     asset->complain("version", "the file has another version of glTF; export it as glTF 2.0");
@@ -115,8 +115,8 @@ void Parser::parse_asset(const JsonView& root) {
 void Parser::check_required(const JsonView& root) {
   const std::optional<JsonView> required = root.array("extensionsRequired");
   if (!required) return;
-  // Unknown extensions may change the meaning of the parts that are read: of a primitive, of its mesh, and of all parts
-  // that have bytes.
+  // An unknown extension is an error only where it may change the meaning of data that are read here: in a primitive,
+  // in its mesh, and in objects that have bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
     // Primitives of points and lines are not read.
@@ -240,8 +240,8 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
     item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
                                " bytes do not fill the buffer view, which has " + std::to_string(view.length) +
                                " bytes");
-  // The encoding spends at least one bit per 8 bytes of result, so a longer result is refused: a small file must not
-  // ask for much memory.
+  // Every 8 bytes of the result take at least one bit of the compressed data. A result that would be longer is refused,
+  // because a small file must not ask for much memory.
   if (view.length / 256 > result.length)
     item.complain("byteLength", "the compressed data are too short for the " + std::to_string(view.length) +
                                     " bytes that they should hold");
@@ -320,7 +320,7 @@ void Parser::parse_node(std::size_t index, const nlohmann::json& value) {
 }
 
 void Parser::parse_transform(const JsonView& item, std::size_t index) {
-  // Reads an array that must have `count` numbers. Returns false if it is missing.
+  // Reads the array under `key`, which must have `count` numbers. Returns false if the array is missing.
   const auto read = [&](const char* key, std::size_t count, double* result) {
     const std::optional<JsonView> array = item.array(key);
     if (!array) return false;
@@ -359,7 +359,7 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
 void Parser::check_nodes(const JsonView& root) {
   if (complaint_.first() || !root.has("nodes")) return;
   const std::size_t count = model_.nodes.size();
-  // The items that are objects were moved out of the array, so an item that is left is not an object.
+  // Nodes that are objects were moved out of the array before. Any item that is left is therefore not an object.
   if (const nlohmann::json& rest = (*document_)["nodes"]; count == 0 || !rest.is_array() || !rest.empty())
     return root.complain("nodes", "nodes must be an array of at least one object");
   for (std::size_t i = 0; i < count && !complaint_.first(); ++i) {
@@ -418,8 +418,8 @@ void Parser::connect_nodes() {
                                          " is listed as a child more than once, but a node has at most one parent");
     model_.nodes[child].parent = parent;
   }
-  // A walk from a node up through its parents must end at a root. A walk that meets its own path again has found a
-  // circle. No node is walked over twice.
+  // A walk from a node up through its parents must end at a root. If a walk meets its own path again, the parents form
+  // a circle. No node is visited twice.
   std::vector<std::uint32_t> seen_from(count, 0);
   for (std::size_t i = 0; i < count; ++i) {
     const auto mark = static_cast<std::uint32_t>(i + 1);

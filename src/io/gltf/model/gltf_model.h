@@ -1,8 +1,9 @@
-/// The JSON of a glTF file as structs whose references were checked, and by which its bytes are read. Private to io.
+/// The JSON of a glTF file as structs whose references have been checked, so that the bytes can be read by them.
+/// Private to io.
 ///
-/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h; this half has the places of their
-/// arrays. Parts that are read are checked: a buffer view against its buffer, and an accessor that a primitive or a
-/// sampler names against its buffer view; other accessors only have to be well-formed.
+/// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h. This half has the places of their
+/// arrays. A buffer view is checked against its buffer. An accessor that a primitive or a sampler names is checked
+/// against its buffer view; other accessors only have to be well-formed.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_MODEL_H_
 
@@ -33,14 +34,14 @@ struct Buffer {
   std::size_t byte_length = 0;
 };
 
-/// A buffer view that EXT_meshopt_compression compresses.
+/// The compressed bytes of a buffer view, as EXT_meshopt_compression describes them.
 struct Compression {
   enum class Mode { kAttributes, kTriangles, kIndices };
   enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
 
-  std::size_t buffer = 0, offset = 0, length = 0;  ///< the compressed bytes
-  std::size_t stride = 0, count = 0;               ///< the elements
-  /// True for KHR_meshopt_compression, whose bytes may have a later version than can be decoded.
+  std::size_t buffer = 0, offset = 0, length = 0;  ///< place of the compressed bytes
+  std::size_t stride = 0, count = 0;               ///< size of an element in bytes, and number of elements
+  /// True for KHR_meshopt_compression. The compressed bytes may then have a later version than our decoder understands.
   bool is_khr = false;
   Mode mode = Mode::kAttributes;
   Filter filter = Filter::kNone;
@@ -50,7 +51,8 @@ struct BufferView {
   std::size_t buffer = 0, offset = 0, length = 0;
   std::optional<std::size_t> stride;
   std::optional<Compression> compression;
-  std::optional<Error> fault = {};  ///< reason why it cannot be read; becomes an error only when it is needed
+  /// reason why the view cannot be read; becomes an error only when the view is needed
+  std::optional<Error> fault = {};
 };
 
 struct Sparse {
@@ -61,35 +63,37 @@ struct Sparse {
 };
 
 struct Accessor {
-  std::optional<std::size_t> view;  ///< none for all zeros
+  std::optional<std::size_t> view;  ///< no value if all numbers are 0
   std::size_t offset = 0, count = 0;
   Component component = Component::kFloat;
   std::size_t components = 1;  ///< numbers in an element: 1 for SCALAR, 3 for VEC3
   bool is_matrix = false, normalized = false;
   std::optional<Sparse> sparse;
-  std::optional<Error> fault = {};  ///< reason why it cannot be read; becomes an error only when it is needed
+  /// reason why the accessor cannot be read; becomes an error only when the accessor is needed
+  std::optional<Error> fault = {};
 
   [[nodiscard]] std::size_t element_size() const noexcept { return components * component_size(component); }
 };
 
-/// The accessors of a primitive's attributes, by index.
+/// The indices of the accessors of a primitive's attributes.
 struct Attributes {
   std::optional<std::size_t> position, normal, tangent;
 };
 
-/// A primitive that KHR_draco_mesh_compression compresses. `attributes` has ids in the compressed mesh.
+/// The compressed data of a primitive, as KHR_draco_mesh_compression describes them. `attributes` has ids in the
+/// compressed mesh.
 struct Draco {
   std::size_t view = 0;
   Attributes attributes;
 };
 
-/// An attribute of a primitive.
+/// The place of an attribute of a primitive.
 struct AttributeSource {
   std::size_t accessor = 0;
-  std::optional<std::size_t> draco = {};  ///< its id in the compressed mesh, if that contains it
+  std::optional<std::size_t> draco = {};  ///< id of the attribute in the compressed mesh, if the mesh contains it
 };
 
-/// A set of JOINTS_n and WEIGHTS_n.
+/// The attributes JOINTS_n and WEIGHTS_n of a primitive, for one n.
 struct InfluenceSource {
   AttributeSource joints, weights;
 };
@@ -100,16 +104,16 @@ struct PrimitiveSource {
   std::vector<Attributes> targets;
   std::optional<Draco> draco;
   std::vector<InfluenceSource> influences = {};  ///< only for primitives with targets
-  std::optional<Error> influence_fault = {};     ///< why they cannot be read
+  std::optional<Error> influence_fault = {};     ///< reason why the influences cannot be read
 };
 
 struct SkinSource {
-  std::vector<std::uint32_t> joints;         ///< nodes
-  std::optional<std::size_t> inverse_binds;  ///< an accessor
+  std::vector<std::uint32_t> joints;         ///< indices of nodes
+  std::optional<std::size_t> inverse_binds;  ///< index of an accessor
   std::optional<Error> fault;                ///< why the skin cannot be read
 };
 
-/// A channel that drives a single weight.
+/// A channel of an animation that drives a single weight.
 struct ElementSource {
   std::size_t target = 0, input = 0, output = 0;  ///< input, output: accessors
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
@@ -119,8 +123,8 @@ struct ElementSource {
 
 struct TrackSource {
   std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
-  /// The channels of single weights, in the order of targets, if the track consists of such channels. Then `input` and
-  /// `output` above belong to the first channel. Weights without a channel keep their value in `rest`.
+  /// The channels of single weights, in the order of targets, if the track consists of such channels. In this case,
+  /// `input` and `output` above belong to the first channel, and weights without a channel keep their value in `rest`.
   std::vector<ElementSource> elements = {};
   std::vector<double> rest = {};
 };
@@ -138,7 +142,7 @@ struct NodeChannel {
 /// The channels of one animation that move nodes. They are read only in files that have skins.
 struct NodeChannels {
   std::vector<NodeChannel> channels;
-  std::optional<Error> fault;  ///< why they cannot be read
+  std::optional<Error> fault;  ///< reason why the channels cannot be read
 };
 
 /// The transform of a node relative to its parent: as a matrix, or as separate parts that animations can move.
@@ -149,18 +153,18 @@ struct Model {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<GltfMesh> meshes;
-  std::vector<std::vector<PrimitiveSource>> sources;  ///< beside meshes[m].primitives
+  std::vector<std::vector<PrimitiveSource>> sources;  ///< sources[m][p] belongs to meshes[m].primitives[p]
   std::vector<GltfNode> nodes;
-  std::vector<std::pair<std::size_t, Placement>> placements;  ///< nodes with a placement, in order
+  std::vector<std::pair<std::size_t, Placement>> placements;  ///< the nodes that have a placement, in ascending order
   std::vector<SkinSource> skins;
   std::vector<GltfAnimation> animations;
-  std::vector<std::vector<TrackSource>> track_sources;  ///< beside animations[a].tracks
-  std::vector<NodeChannels> node_channels;              ///< beside animations
+  std::vector<std::vector<TrackSource>> track_sources;  ///< track_sources[a][t] belongs to animations[a].tracks[t]
+  std::vector<NodeChannels> node_channels;              ///< one for each animation
   std::vector<std::string> extensions;
-  std::vector<Error> notes;  ///< faults of parts that no other part needs
+  std::vector<Error> notes;  ///< faults of parts on which no other part depends
 };
 
-/// Returns the transform of a node relative to its parent, without animation. O(log nodes).
+/// Returns the transform of a node relative to its parent, as the file gives it, without animation. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
 /// Returns a placement as a transform.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
@@ -169,9 +173,9 @@ struct Model {
 [[nodiscard]] std::string primitive_pointer(std::size_t mesh, std::size_t primitive);
 
 /// Parses a document, whose JSON begins at byte `offset` of the file. file_bytes is the size of the file, which limits
-/// the elements of an accessor without a buffer view. A fault in a part that no other part needs becomes a note of the
-/// model, or an error if is_strict. Errors: kInvalidInput, with the name and a JSON pointer as the place, or the name
-/// and a byte offset if the text is not JSON.
+/// the number of elements of an accessor without a buffer view. A fault in a part on which no other part depends
+/// becomes a note of the model, or an error if is_strict is true. Errors: kInvalidInput, with the name and a JSON
+/// pointer as the place, or with the name and a byte offset if the text is not JSON.
 [[nodiscard]] Result<Model> parse_model(std::string_view json, const std::string& name, std::size_t offset,
                                         std::size_t file_bytes, bool is_strict);
 

@@ -1,5 +1,5 @@
-// Reads animations: tracks of weights, by node or by KHR_animation_pointer, and the channels that move, turn or scale
-// nodes. Channels of single weights of one mesh become one track.
+// Reads animations. Tracks of weights come from channels of nodes or from KHR_animation_pointer; channels of single
+// weights of one mesh become one track. Other channels move, turn or scale nodes.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -16,7 +16,8 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// Returns the pointer of KHR_animation_pointer, or an empty text if there is none.
+// Returns the JSON pointer that KHR_animation_pointer gives as the target of a channel, or an empty text without this
+// extension.
 std::string pointer_of(const JsonView& target) {
   const std::optional<JsonView> extensions = target.object("extensions");
   const std::optional<JsonView> extension = extensions ? extensions->object("KHR_animation_pointer") : std::nullopt;
@@ -64,14 +65,16 @@ Parser::Driven Parser::pointed_to(const JsonView& target) {
     all.push_back(n);
     if (model_.nodes[n].weights.empty()) driven.nodes.push_back(n);
   }
-  // If all nodes have their own weights, no node uses the weights of the mesh.
+  // If all nodes have their own weights, no node uses the weights of the mesh. The track then belongs to the first
+  // node.
   if (driven.nodes.empty() && !all.empty()) driven.nodes.push_back(all.front());
   return driven;
 }
 
 void Parser::parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources) {
   std::set<std::string> known;
-  std::map<std::size_t, std::vector<LoneWeight>> lone;  // channels of single weights of each node
+  // The channels of single weights, listed for each node.
+  std::map<std::size_t, std::vector<LoneWeight>> lone;
   const std::optional<JsonView> channels = item.array("channels"), samplers = item.array("samplers");
   if (!channels || !samplers) return item.complain("an animation must have channels and samplers");
   animation.channel_count = channels->size();
@@ -112,7 +115,8 @@ void Parser::parse_animation(const JsonView& item) {
   if (complaint_.first()) return;
   const bool has_channels = understands([&] { parse_channels(item, animation, sources); });
   if (complaint_.first()) return;
-  // Tracks with equal accessors have the same weights only if interpolation and number of targets are also equal.
+  // Tracks with equal accessors have the same weights only if their interpolation and their number of targets are also
+  // equal.
   std::map<std::tuple<std::size_t, std::size_t, GltfInterpolation, std::size_t>, std::size_t> first_track;
   for (std::size_t t = 0; t < sources.size(); ++t) {
     GltfTrack& track = animation.tracks[t];
@@ -177,10 +181,11 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       track.interpolation = of_weight.interpolation;
       source = read;
     }
-    // This count is an upper bound, because channels may have keys at the same times. That is known only when the keys
-    // are read.
+    // This count is an upper bound, because several channels may have keys at the same times. The true count is known
+    // only when the keys are read.
     if (inputs.insert(read.input).second) track.key_count = saturating_sum(track.key_count, of_weight.key_count);
-    // A line can be written as a cubic, so these two can share a track. A step cannot be written as a line or a cubic.
+    // A line can be written as a cubic, so linear and cubic channels can share a track. A step cannot be written as a
+    // line or a cubic.
     const bool is_step = of_weight.interpolation == GltfInterpolation::kStep;
     if (is_step != (track.interpolation == GltfInterpolation::kStep))
       return target.complain(
@@ -206,7 +211,7 @@ void Parser::parse_node_channels(const JsonView& animation, std::vector<NodeChan
     std::optional<std::size_t> node;
     std::string path = target->text("path");
     if (path == "pointer") {
-      // The pointer looks like "/nodes/3/rotation".
+      // Pointers to the transform of a node look like "/nodes/3/rotation".
       const std::string pointer = pointer_of(*target);
       constexpr std::string_view kNodes = "/nodes/";
       std::size_t index = 0;

@@ -1,4 +1,4 @@
-// Reads meshes, checks the form of their accessors, and reads the expressions of avatars.
+// Reads meshes, checks the form of their accessors, and reads the expressions of VRM avatars.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-// The largest weight of an expression. Larger weights are taken for errors and ignored.
+// The largest weight that an expression may give to a target. Larger weights are taken for errors and ignored.
 constexpr double kLargestBind = 100;
 
 constexpr std::size_t kAnyId = ~std::uint32_t{0};
@@ -46,8 +46,8 @@ void Parser::parse_mesh(const JsonView& item) {
   mesh.weights = parse_weights(item);
   if (!mesh.weights.empty()) check_weights(item.pointer(), mesh.weights, mesh.target_count);
   mesh.weights.resize(mesh.target_count, 0.0);
-  // Target names are a convention and not part of the format, so a list of the wrong form or length is not an error.
-  // Older versions of UniVRM write the names into each primitive.
+  // Target names are a convention and not part of glTF, so a list of the wrong form or length is not an error. Older
+  // versions of UniVRM write the names into each primitive instead of the mesh.
   for (const char* const place : {"/extras/targetNames", "/primitives/0/extras/targetNames"}) {
     const nlohmann::json::json_pointer pointer(item.pointer() + place);
     if (!mesh.target_names.empty() || !document_->contains(pointer)) continue;
@@ -154,7 +154,8 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
     const JsonView target = targets->item(k);
     if (!target.is_object()) return;
     if (target.size() == 0) note(target, "the target is empty, and is read as one that moves nothing");
-    if (target.size() == 0 || !source.base.position) {  // such a target is not read
+    // A target is not read if it is empty or the primitive has no positions.
+    if (target.size() == 0 || !source.base.position) {
       source.targets.emplace_back();
       primitive.targets.emplace_back();
       continue;
@@ -256,7 +257,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
     return complain("must be of type " + (components == 1 ? std::string("SCALAR") : "VEC" + number(components)));
   }
 
-  // The rules are in section 3.7.2.1 of the specification, and in KHR_mesh_quantization.
+  // The rules for the types of attributes are in section 3.7.2.1 of the specification, and in KHR_mesh_quantization.
   const bool small = is_one_of(accessor.component, {kInt8, kInt16});
   bool fits = accessor.component == kFloat;
   switch (use) {
@@ -292,7 +293,7 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
   }
   if (!fits) return complain("has a componentType that is not allowed for this use");
 
-  if (compressed) return;  // the decoded result is checked later
+  if (compressed) return;  // the decoded data are checked later
   if (accessor.view) check_inside_view(object, key, index, use);
   const bool moved = use == Use::kMovedPosition || use == Use::kMovedNormal || use == Use::kMovedTangent;
   constexpr std::size_t kPlausible = 65536;
@@ -363,8 +364,8 @@ void Parser::check_unstrided(const JsonView& object, const char* key, const Buff
 
 namespace {
 
-// Calls visit(name, binds) for each expression of a VRM avatar, where `binds` is the list of the targets that it moves.
-// Versions 0 and 1 of VRM store expressions in different places.
+// Calls visit(name, binds) for each expression of a VRM avatar. `binds` is the JSON list of the targets that the
+// expression moves. Versions 0 and 1 of VRM store expressions in different places.
 template <class Visit>
 void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   using Pointer = nlohmann::json::json_pointer;
@@ -386,7 +387,7 @@ void for_each_expression(const nlohmann::json& root, const Visit& visit) {
   }
 }
 
-// Returns the value of a member if it is a whole number below a limit.
+// Returns the value of the member `key` if it is a whole number below `limit`, and nothing otherwise.
 std::optional<std::size_t> whole_below(const nlohmann::json& object, const char* key, std::size_t limit) {
   const auto found = object.find(key);
   if (found == object.end() || !found->is_number()) return std::nullopt;
@@ -403,7 +404,8 @@ void Parser::parse_expressions(const nlohmann::json& root) {
     if (!binds.is_array()) return;
     for (const nlohmann::json& bind : binds) {
       if (!bind.is_object() || !bind.contains("weight") || !bind["weight"].is_number()) continue;
-      // Version 0 names the mesh, with weights in percent; version 1 names one of its nodes, with weights from 0 to 1.
+      // VRM 0 names the mesh, and gives weights in percent. VRM 1 names a node of the mesh, and gives weights from 0 to
+      // 1.
       const auto node = whole_below(bind, "node", model_.nodes.size());
       auto mesh = whole_below(bind, "mesh", model_.meshes.size());
       if (node && model_.nodes[*node].mesh) mesh = *model_.nodes[*node].mesh;

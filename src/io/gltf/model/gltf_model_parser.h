@@ -21,13 +21,13 @@ class Parser {
   Parser(const std::string& name, std::size_t file_bytes, bool is_strict)
       : complaint_(name), file_bytes_(file_bytes), is_strict_(is_strict) {}
 
-  /// Parses a node, possibly before all other parts.
+  /// Parses a node. May be called before the document is complete.
   void parse_node(std::size_t index, const nlohmann::json& value);
-  /// Parses all other parts, and checks nodes against them.
+  /// Parses everything except nodes, and checks the nodes against it.
   Result<Model> parse(const nlohmann::json& document);
 
  private:
-  /// The use of an accessor, which decides its allowed forms.
+  /// The use of an accessor, which decides the allowed types of its numbers.
   enum class Use {
     kPosition,
     kNormal,
@@ -45,8 +45,8 @@ class Parser {
     kTurnedNode  ///< rotations over time
   };
 
-  /// Parses a part that may be at fault as long as nothing uses it. Returns the first complaint about it, which then
-  /// does not count as an error of the file.
+  /// Parses a part whose faults matter only if other data need the part. Returns the first complaint of parse(), which
+  /// then does not count as an error of the file.
   template <class Parse>
   std::optional<Error> fault_of(const Parse& parse) {
     if (complaint_.first()) return std::nullopt;
@@ -54,7 +54,8 @@ class Parser {
     return complaint_.take();
   }
 
-  /// Parses a part that is skipped if it cannot be understood, with a note of why. Returns whether it was understood.
+  /// Parses a part that may be skipped. If parse() complains, adds a note with the reason and returns false. Otherwise
+  /// returns true.
   template <class Parse>
   bool understands(const Parse& parse) {
     if (complaint_.first()) return false;
@@ -63,7 +64,7 @@ class Parser {
     if (!is_strict_) model_.notes.push_back(*complaint_.take());
     return false;
   }
-  /// Notes that a part is skipped.
+  /// Adds a note that a part is skipped, with the reason `message`.
   void note(const JsonView& item, std::string message) {
     (void)understands([&] { item.complain(std::move(message)); });
   }
@@ -77,12 +78,13 @@ class Parser {
   }
 
   void parse_asset(const JsonView& root);
-  /// Finds unknown extensions that the file requires: complains about them, or adds a note if they do not change the
-  /// parts that are read.
+  /// Looks for extensions that the file requires but that are unknown. Complains about such an extension, or adds a
+  /// note if it does not change the data that are read.
   void check_required(const JsonView& root);
   /// Adds notes on the faults of buffer views and accessors that are not used.
   void note_faults();
-  /// Returns, for each node, whether it or a node below carries a mesh, or a skin depends on it.
+  /// Returns a flag for each node. The flag is true if the node or a node below it carries a mesh or is a joint of a
+  /// skin.
   [[nodiscard]] std::vector<bool> nodes_that_place_meshes() const;
   void parse_buffer(const JsonView& item);
   void parse_view(const JsonView& item, BufferView& view);
@@ -92,7 +94,8 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
-  /// Gives each mesh that has no mark of a bake the mark of a node that carries it, or of the parent of such a node.
+  /// Gives a mark to each mesh that has no mark of a bake, if a node that carries the mesh, or the parent of such a
+  /// node, has one.
   void read_marks_of_nodes();
   /// Returns the member "weights" of a mesh or node, or nothing if there is none.
   static std::vector<double> parse_weights(const JsonView& item);
@@ -102,14 +105,14 @@ class Parser {
   void parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
   std::optional<Draco> parse_draco(const JsonView& item, const JsonView& attributes);
   void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
-  /// Gives primitives that have fewer targets than others of their mesh targets that move nothing.
+  /// Adds targets that move nothing to primitives that have fewer targets than other primitives of their mesh.
   void fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
   /// Reads joints and weights of vertices: JOINTS_n and WEIGHTS_n.
   void parse_influences(const JsonView& item, PrimitiveSource& source);
   void parse_skins();
   void parse_skin(const JsonView& item, SkinSource& skin);
-  /// Returns the accessor that a member names, checked for its use. Returns nothing if there is none, or after a
-  /// complaint.
+  /// Returns the accessor that the member `key` names, after checking that the accessor fits its use. Returns nothing
+  /// if there is no such member, or after a complaint.
   std::optional<std::size_t> parse_use(const JsonView& object, const char* key, Use use, bool compressed = false);
   void check_use(const JsonView& object, const char* key, std::size_t index, Use use, bool compressed);
   void check_inside_view(const JsonView& object, const char* key, std::size_t index, Use use);
@@ -119,10 +122,10 @@ class Parser {
   void check_unstrided(const JsonView& object, const char* key, const BufferView& view, const char* what);
 
   void parse_animation(const JsonView& item);
-  /// Reads the channels that drive weights, and skips channels that cannot be understood.
+  /// Reads the channels of an animation that drive weights, and skips channels that cannot be understood.
   void parse_channels(const JsonView& item, GltfAnimation& animation, std::vector<TrackSource>& sources);
-  /// The weights that a channel drives: all weights of some nodes, or one of them. There are no nodes if it drives
-  /// something else.
+  /// The weights that a channel drives: all weights of some nodes, or only the weight `target`. The list of nodes is
+  /// empty if the channel drives no weights.
   struct Driven {
     std::vector<std::size_t> nodes = {};
     std::optional<std::size_t> target = {};
@@ -138,13 +141,13 @@ class Parser {
   /// Assembles the channels of single weights of a node into one track.
   void assemble_track(const JsonView& animation, std::size_t node, const std::vector<LoneWeight>& weights,
                       GltfAnimation& result, std::vector<TrackSource>& sources);
-  /// Reads and checks the sampler of a channel with a given number of elements per key. Returns false after a
+  /// Reads and checks the sampler of a channel. per_key is the number of elements for each key. Returns false after a
   /// complaint.
   bool parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                      GltfTrack& track, TrackSource& source);
   /// Reads the channels that move nodes.
   void parse_node_channels(const JsonView& animation, std::vector<NodeChannel>& result);
-  /// Reads the expressions of a VRM avatar. Malformed ones are skipped, since no geometry depends on them.
+  /// Reads the expressions of a VRM avatar. Malformed expressions are skipped, since no geometry depends on them.
   void parse_expressions(const nlohmann::json& root);
 
   const nlohmann::json* document_ = nullptr;
@@ -155,7 +158,7 @@ class Parser {
   Model model_;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> children_;  // pairs of parent and child
   std::vector<std::pair<std::uint32_t, Error>> misplaced_;         // nodes whose placement cannot be read
-  nlohmann::json marked_;  // extras.chronormal of nodes, each at the JSON pointer of its node
+  nlohmann::json marked_;  // the extras.chronormal of nodes, each at the JSON pointer of its node
 };
 
 }  // namespace chronormal::inline internal::gltf

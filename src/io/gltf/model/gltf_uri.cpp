@@ -26,7 +26,7 @@ constexpr std::array<std::uint8_t, 256> base64_digits() {
   return digits;
 }
 
-// Decodes base64, or returns nothing if the text is not base64. Padding may be missing, as it often is.
+// Decodes base64. Returns nothing if the text is not base64. Accepts text without padding, which is common.
 std::optional<std::string> decode_base64(std::string_view text) {
   static constexpr std::array<std::uint8_t, 256> kDigits = base64_digits();
   for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
@@ -58,7 +58,8 @@ int hexadecimal(char c) {
 std::optional<std::string> decode_percent(std::string_view uri) {
   std::string path;
   for (std::size_t i = 0; i < uri.size(); ++i) {
-    // Some exporters do not encode names, so a percent sign that begins no code stands for itself.
+    // Some exporters do not encode names. A percent sign that is not followed by two hexadecimal digits therefore
+    // stands for itself.
     const bool is_code =
         uri[i] == '%' && uri.size() - i >= 3 && hexadecimal(uri[i + 1]) >= 0 && hexadecimal(uri[i + 2]) >= 0;
     if (!is_code) {
@@ -95,8 +96,8 @@ Result<fs::path> decode_file_uri(std::string_view uri, const std::string& place)
   return path_of(*relative);
 }
 
-// Returns the path if a file exists there. Otherwise returns the file that was probably meant: the URI without
-// decoding, or a name in the same folder that is equal in another Unicode form.
+// Returns `path` if a file exists there. Otherwise returns the file that was probably meant: `literal`, which is the
+// URI without decoding, or a file in the same folder whose name is equal in another Unicode form.
 fs::path existing(const fs::path& path, const fs::path& literal) {
   std::error_code code;
   if (fs::exists(path, code)) return path;

@@ -1,7 +1,8 @@
-/// Finds the bytes behind the URI of a glTF buffer: in the URI itself (data:...;base64,), or in a file. Private to io.
+/// Finds the bytes to which the URI of a glTF buffer refers. They are in the URI itself (data:...;base64,) or in a
+/// file. Private to io.
 ///
-/// The file must be a regular file inside the folder of the asset, also if the URI is percent-encoded or has .., and
-/// after following links: an untrusted model must not read /etc/passwd or wait for a device.
+/// The file must be a regular file inside the folder of the asset. This is checked after the URI is decoded and links
+/// and .. are followed, because an untrusted model must not read /etc/passwd or wait for a device.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 
@@ -17,19 +18,21 @@ namespace chronormal::inline internal {
 /// Returns true if the URI contains the bytes itself.
 [[nodiscard]] bool is_data_uri(std::string_view uri) noexcept;
 
-/// Decodes a data URI that must have at least `least` bytes. Errors: kInvalidInput at `place`: not base64 (RFC 4648),
-/// another media type than a buffer may have (application/octet-stream, application/gltf-buffer), too few bytes.
+/// Decodes a data URI that must have at least `least` bytes. Errors: kInvalidInput at `place` for text that is not
+/// base64 (RFC 4648), for another media type than a buffer may have (application/octet-stream,
+/// application/gltf-buffer), and for too few bytes.
 [[nodiscard]] Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, const std::string& place);
 
-/// Returns the path of a relative URI. `folder` is the asset's, or nothing for the standard input. Errors:
-/// kInvalidInput at `place`: no file of that name, a device, a broken percent code; unless external files are allowed,
-/// also an absolute path, another scheme, and everything outside the folder.
+/// Returns the path of the file to which a relative URI refers. `folder` is the folder of the asset, or has no value
+/// for the standard input. Errors: kInvalidInput at `place` for a URI that names no file or a device, and for a broken
+/// percent code. Unless allow_external is true, also for an absolute path, another scheme, and everything outside the
+/// folder.
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
-/// Returns the name of the file for a relative URI if a resolver finds files by their names, without a file system. The
-/// name is the folder and the URI, joined to a path without "." and "..". Errors: those of resolve_file_uri(), and a
-/// URI that leads out of the folder.
+/// Returns the name under which a resolver looks for the file of a relative URI; the file system is not used. The name
+/// is the folder and the URI, joined to a path without "." and "..". Errors: those of resolve_file_uri(), and a URI
+/// that leads out of the folder.
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 

@@ -13,7 +13,7 @@ struct Parts {
   std::uint16_t whole, letter, mark;
 };
 
-// Lists composed letters with the two characters into which each decomposes, ascending, from the Unicode Character
+// Composed letters with the two characters into which each decomposes, in ascending order, from the Unicode Character
 // Database (Decomposition_Mapping).
 constexpr auto kParts = std::to_array<Parts>(
     {{0xC0, 0x41, 0x300},      {0xC1, 0x41, 0x301},      {0xC2, 0x41, 0x302},      {0xC3, 0x41, 0x303},
@@ -194,8 +194,8 @@ void take_apart(char32_t c, std::u32string& result) {
   result += found->mark;
 }
 
-// Returns the characters of a UTF-8 text, decomposed. A byte that is not valid UTF-8 becomes a number beyond all
-// characters.
+// Returns the characters of a UTF-8 text, with composed letters decomposed. A byte that is not valid UTF-8 becomes a
+// number above all characters.
 std::u32string parts_of(std::string_view text) {
   constexpr char32_t kBytes = 0x200000;
   std::u32string result;
