@@ -53,7 +53,7 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
     case GltfInterpolation::kCubicSpline:
       break;
   }
-  // These are the formula in appendix C.4 of the specification, and its derivative with respect to time.
+  // Uses the formula in appendix C.4 of the specification, and its derivative with respect to time.
   const double rise = to.value - from.value;
   const double value = from.value + s * s * (3 - 2 * s) * rise +
                        duration * s * (1 - s) * ((1 - s) * from.out_tangent - s * to.in_tangent);

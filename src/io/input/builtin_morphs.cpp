@@ -27,8 +27,8 @@ constexpr std::array kBlendShapes = {
     BuiltinMorph{"bumps", "blend shapes: 12 overlapping targets on the front of a head, 6,144 faces"},
 };
 
-// A grid of (columns + 1) x (rows + 1) points, with each quad as two triangles. `closed` joins the last column to the
-// first.
+// A grid of (columns + 1) x (rows + 1) points, in which each cell consists of two triangles. If `closed` is true, the
+// last column is joined to the first.
 struct Grid {
   std::size_t columns, rows;
   bool closed;
@@ -52,7 +52,8 @@ struct Grid {
     return Topology::triangles(vertex_count(), std::move(corners)).value();
   }
 
-  // Returns a keyframe with the positions point(u, v), where u, v in [0, 1] run over columns and rows.
+  // Returns a keyframe at `time` with the positions point(u, v). u runs from 0 to 1 over the columns, and v over the
+  // rows.
   template <class Point>
   [[nodiscard]] Motion::Keyframe keyframe(double time, Point point) const {
     Motion::Keyframe keyframe{{}, time, {}};
@@ -79,7 +80,7 @@ Motion connected(Topology topology, std::vector<Motion::Keyframe> keyframes) {
   return motion;
 }
 
-// Makes a wave in which every point moves around an ellipse, and a weaker wave across it.
+// Makes a cloth with a wave in which every point moves around an ellipse, and a weaker wave across it.
 Motion cloth() {
   const Grid grid{133, 132, false};
   std::vector<Motion::Keyframe> keyframes;
@@ -94,7 +95,7 @@ Motion cloth() {
   return connected(grid.topology(), std::move(keyframes));
 }
 
-// Makes a tube along y; bending keeps the length of its middle line.
+// Makes a tube along y that bends. The bending keeps the length of its middle line.
 Motion bend() {
   const Grid grid{149, 150, true};
   const auto tube = [&grid](double time, double bend_angle) {
@@ -123,7 +124,7 @@ Motion twist() {
   return connected(grid.topology(), {column(0, 0), column(1, 2 * kPi / 3)});
 }
 
-// Makes a sphere that turns inside out: every point moves past the centre to the opposite side, and rotates on the way.
+// Makes a sphere that turns inside out. Every point moves past the centre to the opposite side, and rotates on the way.
 Motion eversion() {
   const Grid grid{100, 105, true};
   const auto sphere = [&grid](double time, double scale, double turn) {
@@ -142,7 +143,7 @@ Motion soup() {
   std::mt19937_64 random(20110601);
   std::vector<std::uint32_t> corners(3 * kFaces);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
-  // Makes random numbers without the standard distributions, which differ between libraries.
+  // The standard distributions differ between libraries, so random numbers are made without them.
   const auto coordinate = [&random] {
     return static_cast<float>(std::ldexp(static_cast<double>(random() >> 40), -23) - 1);
   };
@@ -155,7 +156,8 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
-// Makes an egg with ripples, and targets that move parts of its front. Neighbouring targets overlap, as in a face.
+// Makes an egg with ripples, and targets that move parts of its front. Neighbouring targets overlap, as those of a face
+// do.
 Motion bumps() {
   constexpr std::size_t kTargets = 12;
   const Grid grid{64, 48, true};
@@ -167,8 +169,8 @@ Motion bumps() {
       const double radius = 1 + 0.03 * portable::sin(5 * around) * portable::sin(6 * down);
       const Vec3d base = radius * Vec3d{out.x, 0.85 * out.y, 1.2 * out.z};
       if (target == 0) return base;
-      // The front of the egg, which faces x, has four rows of three targets. Every second target pushes outwards; the
-      // others move vertices along the surface.
+      // The front of the egg, which faces x, has four rows of three targets. Every second target pushes outwards, and
+      // the others move vertices along the surface.
       const std::size_t row = (target - 1) / 3, column = (target - 1) % 3;
       const double centre_around = 0.45 * (static_cast<double>(column) - 1);
       const double centre_down = kPi / 2 + 0.35 * (static_cast<double>(row) - 1.5);

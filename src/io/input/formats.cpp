@@ -1,4 +1,4 @@
-// The only table of file formats.
+// Lists all file formats with the functions that read and write them. No other file lists formats.
 #include "io/input/formats.h"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ constexpr std::array<Extension, 1> kObj = {".obj"}, kPly = {".ply"}, kNpz = {".n
 constexpr std::array<Extension, 2> kMaya = {".mc", ".mcx"}, kTarget = {".target", ".target.gz"};
 constexpr std::array<Extension, 3> kGltf = {".gltf", ".glb", ".vrm"};
 
-// Returns true if a common keyword of OBJ begins the first line that is neither empty nor a comment.
+// Returns true if the first line that is neither empty nor a comment begins with a common keyword of OBJ.
 bool is_obj(std::string_view first_bytes) {
   constexpr std::array<std::string_view, 12> kKeywords = {"v",      "vn", "vt", "f", "o",      "g",
                                                           "mtllib", "s",  "l",  "p", "usemtl", "vp"};
@@ -42,7 +42,8 @@ bool is_obj(std::string_view first_bytes) {
     if (keyword.empty() || keyword.starts_with('#')) continue;
     return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
   }
-  return has_comment;  // only comments so far
+  // A text that has only comments so far may be an OBJ file.
+  return has_comment;
 }
 
 bool is_ply(std::string_view first_bytes) {
@@ -61,7 +62,7 @@ std::string write_plain_obj(const Topology& topology, VectorView<const float> po
   return write_obj(topology, positions, origin);
 }
 
-// Ignores the limit of expansion, because no count in MD2 can be larger than the file.
+// Reads an MD2 file. No count in MD2 can be larger than the file, so the limit of expansion is not needed.
 Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, double frames_per_second,
                               std::size_t /*max_expansion*/) {
   return read_md2(bytes, name, frames_per_second);
@@ -141,7 +142,8 @@ std::string unknown_format(std::string_view bytes, std::string_view what) {
 
 std::string way_in(std::string_view file_name, std::string_view bytes) {
   struct Foreign {
-    std::string_view kind;  // a result of known_kind()
+    // A text that known_kind() returns.
+    std::string_view kind;
     std::array<std::string_view, 4> extensions;
     std::string_view way;
   };

@@ -1,8 +1,9 @@
-/// The only table of file formats: how each is recognised, what kind of data it contains, and which functions read and
+/// Lists all file formats: how each format is recognised, what kind of data it contains, and which functions read and
 /// write it. Private to io.
 ///
-/// A new format is a new entry. tests/io/input/formats_test.cpp and motion_readers_test.cpp go through the table and
-/// fail for a reader without truncation, boundary and mutation tests, or no fuzz target fuzz/NAME_fuzz.cpp.
+/// To add a format, add an entry to the table. tests/io/input/formats_test.cpp and motion_readers_test.cpp go through
+/// the table. They fail for a reader that has no truncation, boundary and mutation tests, or no fuzz target
+/// fuzz/NAME_fuzz.cpp.
 #ifndef CHRONORMAL_IO_INPUT_FORMATS_H_
 #define CHRONORMAL_IO_INPUT_FORMATS_H_
 
@@ -21,7 +22,7 @@
 
 namespace chronormal::inline internal {
 
-/// The content of a file.
+/// The kind of data in a file.
 enum class Holds {
   kMesh,    ///< one mesh: a keyframe of a sequence, a target, or the faces of a cache
   kTarget,  ///< deltas that a target adds to a base (io/mesh/make_human_target.h)
@@ -31,21 +32,22 @@ enum class Holds {
 };
 
 struct Format {
-  std::string_view name;  ///< "obj": for messages, and name of its fuzz target
+  std::string_view name;  ///< name for messages and for the fuzz target: "obj"
   Holds holds;
-  std::span<const std::string_view> extensions;  ///< lower case, with the dot: ".obj"
-  /// Returns true if a file that begins with these bytes (a few hundred are enough) looks like this format. nullptr if
-  /// only the extension tells.
+  std::span<const std::string_view> extensions;  ///< extensions of file names in lower case and with the dot: ".obj"
+  /// Returns true if a file that begins with these bytes (a few hundred are enough) looks like this format. nullptr for
+  /// a format that is recognised only by its extension.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
 
-  // The reader for the kind of data that the format holds; the other readers are nullptr. All are nullptr for glTF,
-  // targets and Maya's descriptions, which cannot be read from one block of bytes alone. `name` is for messages.
-  // Errors: kInvalidInput, always with a place. The origin is subtracted from positions (io/mesh/far_origin.h).
+  // The reader for the kind of data that the format holds; the other readers are nullptr. All readers are nullptr for
+  // glTF, targets and descriptions of Maya caches, which cannot be read from one block of bytes alone. `name` is for
+  // messages. The reader subtracts the origin from positions (io/mesh/far_origin.h). Errors: kInvalidInput, always with
+  // a place.
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
-  /// Reads a mesh with smoothing groups and normals; nullptr if the format is read without them.
+  /// Reads a mesh with its smoothing groups and normals; nullptr if the reader of the format ignores them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,
                                         const Origin& origin) = nullptr;
-  /// Reads a mesh with velocities; nullptr if the format has none.
+  /// Reads a mesh with its velocities; nullptr if the format has no velocities.
   Result<MeshFrame> (*read_moving_mesh)(std::string_view bytes, const std::string& name,
                                         const Origin& origin) = nullptr;
   Result<Motion> (*read_motion)(std::string_view bytes, const std::string& name, double frames_per_second,
@@ -57,11 +59,11 @@ struct Format {
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
-  /// Finds the places of samples (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
+  /// Finds the places of samples in a cache (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
-  // The next two write the format; nullptr if that is not supported.
+  // Write a mesh or a motion in the format; nullptr if writing is not supported.
   std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions,
                             const Origin& origin) = nullptr;
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;
@@ -70,36 +72,37 @@ struct Format {
 /// Returns all formats, in the order in which `recognises` is called.
 [[nodiscard]] std::span<const Format> formats() noexcept;
 
-/// Returns the format with the extension of the file name, in upper or lower case, or nullptr if there is none.
+/// Returns the format that has the extension of the file name, in upper or lower case, or nullptr if no format has it.
 [[nodiscard]] const Format* find_format(std::string_view file_name) noexcept;
 
 /// Returns the format of a file by its extension. If the extension is unknown or missing, as for the standard input,
 /// returns the format by the content. Returns nullptr if the content does not tell the format either.
 [[nodiscard]] const Format* find_format(std::string_view file_name, std::string_view bytes) noexcept;
 
-/// Returns the first words of a message about a file of unknown format. If the kind of the bytes is known, they are
-/// "this is a PNG image"; otherwise "neither the name nor the content tells the format", where `what` gives the last
-/// two words.
+/// Returns the first words of a message about a file of unknown format: "this is a PNG image" if the kind of the bytes
+/// is known, and otherwise "the file is not WHAT, by its name and its content".
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
 /// Returns advice for a file that is not supported but that other programs can convert: "this is an FBX file, which is
-/// not read: ...". The name or the first bytes of the file tell its format. Returns an empty text for other files.
+/// not read: ...". The format is recognised by the name or the first bytes of the file. Returns an empty text for other
+/// files.
 [[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
 
-/// Returns the extensions of all formats of these kinds for messages: ".obj, .ply". `last` stands before the last one.
+/// Returns the extensions of all formats that hold one of these kinds of data, for messages: ".obj, .ply". `last` is
+/// the separator before the last extension.
 [[nodiscard]] std::string extensions_of(std::initializer_list<Holds> kinds, std::string_view last = ", ");
 
-/// The data to read from a mesh file besides positions and faces, if its format has them. No format has both shading
-/// and velocities.
+/// The data to read from a mesh file besides positions and faces, if its format has such data. No format has both
+/// shading and velocities.
 struct WantedOfMesh {
   bool shading = false;
   bool velocities = false;
   Origin origin = {};  ///< the point that is subtracted from positions
 };
 
-/// Detects the format of a mesh and reads the requested attributes that it stores. `place` is for messages, and begins
-/// the place of every error. Errors: kInvalidInput if the format does not contain a mesh, with a message that lists the
-/// supported formats; those of the reader.
+/// Reads a mesh, with the data in `wanted` that the file stores. The format is found by the file name or the content.
+/// `place` is for messages, and begins the place of every error. Errors: kInvalidInput if the format does not contain a
+/// mesh, with a message that lists the supported formats; those of the reader.
 [[nodiscard]] Result<MeshFrame> read_mesh(std::string_view bytes, const std::string& file_name,
                                           const std::string& place, WantedOfMesh wanted = {});
 

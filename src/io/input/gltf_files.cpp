@@ -1,5 +1,5 @@
-// Finds the glTF files among inputs. The names of files decide which are glTF files and which are keyframes. A folder
-// that directly contains meshes is a sequence, whatever its subfolders contain.
+// Finds the glTF files among inputs. The names of the files show which are glTF files and which are keyframes of a
+// sequence. A folder that directly contains meshes is a sequence, whatever its subfolders contain.
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
@@ -22,8 +22,8 @@ bool holds(const std::string& path, Holds kind) {
   return format != nullptr && format->holds == kind;
 }
 
-// Returns the glTF files in a folder and its subfolders, or none if the folder directly contains meshes. A folder that
-// cannot be listed is reported when it is opened.
+// Returns the glTF files in a folder and its subfolders. Returns no files if the folder directly contains meshes, or if
+// it cannot be listed; the caller that opens the folder then reports the error.
 Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::error_code code;
   fs::recursive_directory_iterator entries(path_of(folder), fs::directory_options::skip_permission_denied, code);
@@ -31,7 +31,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
   std::string own_mesh, own_gltf;
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = utf8_of(entries->path());
-    std::error_code ignored;  // a broken link is not a file
+    std::error_code ignored;  // a broken link does not count as a file
     if (file_name_of(path).starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (!fs::is_directory(entries->path(), ignored)) {
@@ -67,7 +67,7 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
     } else if (is_pattern) {
       InputOptions pattern;
       pattern.files = {input};
-      // A pattern without matches is reported when the input is opened.
+      // A pattern without matches is not an error here. It is reported when the input is opened.
       Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder);
       found = matches ? std::move(matches).value() : pattern.files;
     } else if (is_folder) {

@@ -1,6 +1,6 @@
-// The entry point for reading any input. open_input() tries the forms of an input in this order: a built-in morph, a
-// base with its targets, a cache with its mesh, a single file that holds everything, the files of a sequence. The
-// format of a file is found by its extension, or else by its content; no file is opened twice.
+// Opens any input. open_input() tries the forms of an input in this order: a built-in morph, a base with its targets, a
+// cache with its mesh, a single file that holds everything, the files of a sequence. The format of a file is found by
+// its extension, or else by its content. No file is opened twice.
 #include "chronormal/io/input.h"
 
 #include <algorithm>
@@ -51,14 +51,14 @@ Error chooses_nothing(const InputOptions& options) {
                 "this option is only for sequences of keyframes, and the input is not one; leave the option out");
 }
 
-// The result of opening an input: either a document, or a motion or a mesh.
+// The result of opening an input: a document, a motion, or a mesh.
 struct Opened {
   std::optional<GltfDocument> document;
-  std::size_t file_size = 0;  // size of the document
-  ReadMotion read;            // for a document: empty until it is read
+  std::size_t file_size = 0;  // size of the file of the document in bytes
+  ReadMotion read;            // motion and other data; for a document, empty until they are requested
 };
 
-// Return the names of a file and of several files, for messages and tables.
+// Return the name of a file, or one name for several files, for messages and tables.
 std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {
@@ -71,7 +71,7 @@ std::string name_of_files(const std::vector<std::string>& files) {
                            : short_name(files.front()) + " ... " + short_name(files.back());
 }
 
-// An input that is a point cache: its file, and the channel after "#".
+// The parts of an input that is a point cache: its file, the name of a channel after "#", and the format.
 struct CacheInput {
   std::string path;
   std::string channel;
@@ -107,7 +107,7 @@ std::vector<double> times_of(const Motion& motion) {
   return times;
 }
 
-// Keeps the chosen keyframes of a motion that was read whole.
+// Keeps only the chosen keyframes of a motion that was read completely.
 Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (!options.chooses_frames()) return Success{};
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
@@ -125,8 +125,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
                   "--from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
-    // Velocities at the ends may depend on this keyframe and on keyframes that were not chosen, so it is copied for
-    // curves and loops.
+    // The velocities at the ends of the chosen range may depend on this keyframe and on keyframes that were not chosen.
+    // For curves and loops, the keyframe is therefore copied and not moved.
     Motion::Keyframe& keyframe = motion.keyframes[k];
     kept.push_back(options.is_curved() || options.loop ? keyframe : std::move(keyframe));
   }
@@ -142,8 +142,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   return set_end_velocities(options, times, positions, motion);
 }
 
-// Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream has its own file
-// descriptor: it does not read the file by its name, and maps nothing.
+// Makes a stream of the chosen keyframes of a motion whose positions are still in the file. The stream reads the file
+// through a descriptor of its own, and maps nothing.
 Result<MotionStream> stream_samples(const InputOptions& options, Motion outline, PositionedFile file,
                                     CacheLayout layout, const std::string& name) {
   std::vector<std::size_t> frames(outline.keyframes.size());
@@ -171,15 +171,15 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   return MotionStream(std::move(outline), read, options.kept_bytes);
 }
 
-// Returns the cache of a layout, without positions.
+// Returns a cache with the times of a layout, but without positions.
 Result<PositionCache> outline_of(const CacheLayout& layout) {
   PositionCache cache{layout.vertex_count, {}, layout.origin};
   for (const double time : layout.times) cache.samples.push_back({time, {}});
   return cache;
 }
 
-// A file with a cache whose samples can be read one by one, and its layout. There is none if the samples cannot be read
-// like this, or if the file has a fault, which the reader of the whole file then reports.
+// A cache file whose samples can be read one by one, and its layout. find_samples() returns nothing if the samples
+// cannot be read one by one, or if the file has a fault. The reader of the whole file then reports the fault.
 struct FoundSamples {
   PositionedFile file;
   CacheLayout layout;
@@ -196,23 +196,24 @@ std::optional<FoundSamples> find_samples(const CacheInput& input, const CacheOpt
   return FoundSamples{std::move(*file), std::move(layout).value()};
 }
 
-// Adds a note if positions were float32 in their file and lost digits there, because they are far from the origin.
-// `first` are the positions of the first keyframe.
+// Adds a note if the positions in the file are float32 and so far from the origin that they have lost digits. `first`
+// has the positions of the first keyframe.
 void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion& read) {
   if (origin != Origin{} || far_origin(first) == Origin{}) return;
   if (std::string note = note_of_lost_digits(first); !note.empty()) read.notes.push_back(std::move(note));
 }
 
-// Returns a warning if a cache seems to belong to another mesh, or to have the vertices of this mesh in another order;
-// otherwise an empty text.
+// Returns a warning if a cache seems to belong to another mesh, or to have the vertices of this mesh in another order.
+// Otherwise returns an empty text.
 //
-// Motion keeps the lengths of edges, or changes them smoothly. If vertices are in a wrong order, edges are as long as
-// the distances between arbitrary points. In all but the smallest meshes these are much longer. In small meshes the
-// coordinates are compared too, separately on each axis: if the cache has the coordinates of the mesh in another order,
-// its vertices are in another order.
+// A motion usually keeps the lengths of edges, or changes them smoothly. If the vertices are in a wrong order, edges
+// are as long as the distances between arbitrary points, which are much longer in all but the smallest meshes. For
+// small meshes, the coordinates are compared too, separately on each axis. If the cache has the same coordinates as the
+// mesh in another order, its vertices are in another order.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
-  constexpr std::size_t kFewCoordinates = 1 << 20;  // few enough to be sorted quickly
+  // So few coordinates can be sorted quickly.
+  constexpr std::size_t kFewCoordinates = 1 << 20;
   const std::size_t vertices = faces.vertex_count();
   double size = 0, moved = 0, radius_of_mesh = 0, radius = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -305,7 +306,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   Result<PositionCache> cache = samples ? outline_of(samples->layout) : read_cache(input, cache_options, options);
   if (!cache) return cache.error();
   const Origin of_mesh_origin = read.motion.origin, of_cache_origin = cache.value().origin;
-  // A cache may consist of several files, so their size is estimated from the number of positions.
+  // A cache may consist of several files, so the total size is estimated from the number of positions.
   read.bytes_read += sizeof(float) * 3 * std::uint64_t{cache.value().vertex_count} * cache.value().samples.size();
   if (options.progress) options.progress(2, 2);
   Result<Motion> motion =
@@ -335,7 +336,7 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   return read;
 }
 
-// Reads a mesh without motion, as a single keyframe.
+// Reads a mesh without motion, as a motion of a single keyframe.
 Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& path, const InputOptions& options) {
   if (options.chooses_frames()) return chooses_nothing(options);
   ReadMotion read;
@@ -346,8 +347,8 @@ Result<ReadMotion> read_still_mesh(std::string_view bytes, const std::string& pa
   return read;
 }
 
-// Returns true if an input is a single file, not a pattern or a folder, and may hold everything: positions, faces and
-// motion. A mesh file counts only if meshes without motion are allowed.
+// Returns true if an input is a single file that may hold everything: positions, faces and motion. Patterns and folders
+// do not count. A mesh file counts only if meshes without motion are allowed.
 bool may_be_whole(const std::string& input, const InputOptions& options) {
   const Format* const format = find_format(input);
   if (format != nullptr && format->holds == Holds::kMesh && !options.allow_mesh) return false;
@@ -375,7 +376,7 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
-// Reads a file with a whole motion, or only its outline if samples can be read one by one.
+// Reads a file with a whole motion. If its samples can be read one by one, leaves the positions in the file.
 Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);
@@ -394,8 +395,7 @@ Status read_whole_motion(const Format& format, std::string_view bytes, const std
     note_if_far(read.motion.origin, read.motion.keyframes.front().positions, read);
     return keep_chosen(options, read.motion);
   }
-  // An error in the first sample is ignored here, because the sample is read again later, and the error is reported
-  // then.
+  // An error in the first sample is ignored here. The sample is read again later, and the error is reported then.
   first.resize(layout->coordinates());
   if (read_sample(*layout, *file, name, 0, first)) note_if_far(layout->origin, first, read);
   Result<MotionStream> stream =
@@ -503,14 +503,14 @@ Status check_input(const InputOptions& options) {
 struct Input::State {
   std::string name;
   Opened opened;
-  Expansion expansion;       // limit of memory for everything but documents
-  GltfMotionOptions chosen;  // options of the document
+  Expansion expansion;       // limit of memory for all inputs except documents
+  GltfMotionOptions chosen;  // the options with which the document is read
   bool allow_mesh = false;
   Path path;
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
   std::optional<CutPath> cut;
   std::optional<Error> cut_error;
-  // The next members are for a document, and are set when they are first requested.
+  // The next members belong to a document, and are set when they are first requested.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;
@@ -534,7 +534,7 @@ Status Input::State::read_motion() {
   return Success{};
 }
 
-// Cuts the motion into straight segments, and replaces it by them. Does so only once.
+// Replaces a motion along curves by straight segments. Later calls do nothing.
 Status Input::State::cut_motion() {
   if (cut) return Success{};
   if (cut_error) return *cut_error;

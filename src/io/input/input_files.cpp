@@ -1,4 +1,4 @@
-// Finds the files of inputs, in order, and reads single meshes from them.
+// Finds the files of an input in their order, and reads single meshes from files.
 #include "io/input/input_files.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kNoneMatches = "no file has this name or matches this pattern";
 constexpr std::string_view kTopologyMustNotChange = "; all keyframes must have the same faces";
 
-// Removes the digits at the beginning of the text, and returns them without leading zeros.
+// Removes the digits at the beginning of the text, and returns them without their leading zeros.
 std::string_view take_number(std::string_view& text) {
   std::size_t end = 0;
   while (end < text.size() && scan::is_digit(text[end])) ++end;
@@ -33,7 +33,7 @@ std::string_view take_number(std::string_view& text) {
   return number;
 }
 
-// Splits a name at its placeholder for a number, %d or %0Nd as in output names, into the parts before and after it.
+// Splits a file name at its placeholder for a number (%d or %0Nd) into the parts before and after the placeholder.
 // Returns nothing if the name has no placeholder.
 std::optional<std::pair<std::string, std::string>> around_number(const std::string& input) {
   const std::size_t percent = input.find('%', begin_of_name(input));
@@ -44,7 +44,7 @@ std::optional<std::pair<std::string, std::string>> around_number(const std::stri
   return std::pair{input.substr(0, percent), std::string(rest.substr(1))};
 }
 
-// Finds the files whose names are `before`, digits, and `after`.
+// Finds the files whose names consist of `before`, digits, and `after`.
 std::vector<std::string> match_numbered(const std::string& before, const std::string& after) {
   std::vector<std::string> files = match_pattern(before + "[0-9]*" + after, false);
   const auto is_other = [&](std::string_view file) {
@@ -132,7 +132,8 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   read.bytes_read += bytes.size();
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
-  // The normals of all keyframes are wanted only if every keyframe so far had normals.
+  // If the normals of all keyframes are wanted, those of this keyframe are read only if every earlier keyframe had
+  // normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
   WantedOfMesh of_mesh{wanted, options.velocities, read.motion.origin};
@@ -146,7 +147,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       if (!shifted) return shifted;
       bool has_more_digits = shifted.value().has_more_digits;
       for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits; ++i) {
-        // Errors in the other files are ignored here; they are reported when those files are read as keyframes.
+        // Errors in these files are ignored here. They are reported when the files are read as keyframes.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
         const Result<MeshFrame> other =
@@ -200,25 +201,25 @@ Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOpt
 }
 
 double closing_time(std::span<const double> times, std::span<const std::size_t> frames) {
-  const std::size_t count = frames.size() - 1;  // number of different keyframes
+  const std::size_t count = frames.size() - 1;  // number of keyframes, without the repeated first one
   const double first = times[frames[0]], last = times[frames[count - 1]];
   return last + (last - first) / static_cast<double>(count - 1);
 }
 
 namespace {
 
-// Gives both ends of a loop the velocities of the closed curve.
+// Sets the velocities at both ends of a loop to those of the closed curve.
 Status set_loop_velocities(const InputOptions& options, std::size_t count,
                            const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   const Result<std::vector<std::size_t>> frames = choose_frames(count, options);
   if (!frames) return frames.error();
   const std::size_t round = chosen.keyframes.size() - 1;
   const double period = chosen.keyframes.back().time - chosen.keyframes.front().time;
-  constexpr std::size_t kBeside = 3;  // number of keyframes on each side on which velocities depend
+  constexpr std::size_t kBeside = 3;  // velocities depend on this number of keyframes on each side
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    // Counts from kBeside rounds earlier, so that the index is not negative.
+    // Adding kBeside rounds of the loop keeps the index from being negative.
     const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);
@@ -244,7 +245,8 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // The velocities of the whole sequence are computed from the keyframes that the same step would select in it.
+  // Every N-th keyframe was chosen. The velocities at the ends are those of the longer sequence that takes every N-th
+  // keyframe from the beginning to the end of the files.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

@@ -16,66 +16,68 @@
 
 namespace chronormal::inline internal {
 
-/// A motion as it is read from files, with other data that the files store.
+/// A motion as it was read from files, with other data from the files.
 struct ReadMotion {
   Motion motion;
-  std::optional<MotionStream> stream = {};  ///< the motion as a stream, if keyframes are still in files
+  std::optional<MotionStream> stream = {};  ///< the motion as a stream, if its keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;                      ///< see Input
-  std::vector<std::string> other_files = {};  ///< files of a sequence that are examined for more digits than float32 if
-                                              ///< its first file has none
-  std::uint64_t bytes_read = 0;               ///< size of all files
-  std::vector<std::string> notes = {};        ///< notes as in Input
-  std::optional<FileSeries> series = {};      ///< see Input
+  std::string shaded_by;  ///< as in Input
+  /// The files of a sequence that are examined for more digits than float32, if the first file has no such digits.
+  std::vector<std::string> other_files = {};
+  std::uint64_t bytes_read = 0;           ///< total size of the files in bytes
+  std::vector<std::string> notes = {};    ///< notes as in Input
+  std::optional<FileSeries> series = {};  ///< as in Input
 };
 
 /// A function that returns the files of a folder that belong to the input, in any order.
 using FolderLister = std::function<Result<std::vector<std::string>>(const std::string& folder)>;
 
-/// Returns true if path a comes before path b. Runs of digits count as numbers of any size; plain order breaks ties.
+/// Returns true if path `a` comes before path `b`. Runs of digits are compared as numbers of any size. Paths that are
+/// equal in this way are compared character by character.
 [[nodiscard]] bool stands_before(const std::string& a, const std::string& b);
 
-/// Sorts the files of the folder or pattern `input`.
+/// A function that sorts the files of the folder or the pattern `input`.
 using FileSorter = std::function<Status(const std::string& input, std::vector<std::string>& files)>;
 /// Sorts the files by stands_before().
 [[nodiscard]] Status sort_by_number(const std::string& input, std::vector<std::string>& files);
 
-/// Returns the files that the options name, in order, as io/input.h describes. list_folder lists folders, and `sort`
-/// sorts the files of folders and patterns. Does not open the files. Errors: kFailed if nothing of that name exists or
-/// nothing matches a pattern; kUsage for "-" twice; those of list_folder and sort. The place is the input.
+/// Returns the files that the options name, in order, as io/input.h describes. list_folder() lists folders, and sort()
+/// sorts the files of folders and patterns. No file is opened. Errors: kFailed if nothing of that name exists or
+/// nothing matches a pattern; kUsage for "-" twice; those of list_folder() and sort(). The place is the input.
 [[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
                                                                 const FolderLister& list_folder,
                                                                 const FileSorter& sort = sort_by_number);
 
-/// Returns the last part of a path, and "<stdin>" for "-".
+/// Returns the last part of a path, or "<stdin>" for the path "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
 
 /// Reads the mesh of the next keyframe of `read` from its file. Adds the shading of the mesh to `read` if the options
 /// keep it. The place of every error is `place`, or begins with it.
 [[nodiscard]] Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path,
                                                const std::string& place, ReadMotion& read);
-/// Does the same as read_mesh_file(), from bytes that are in memory.
+/// Reads the mesh of the next keyframe like read_mesh_file(), from bytes that are in memory.
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// Returns the indices of the keyframes, out of `count`, that the options select. In a loop, the first of them is
-/// repeated at the end. Errors: kUsage with the option as the place, if there are fewer than two.
+/// Returns the indices of the keyframes that the options select out of `count` keyframes. For a loop, the first
+/// selected index is repeated at the end. Errors: kUsage with the option as the place, if fewer than two keyframes are
+/// left.
 [[nodiscard]] Result<std::vector<std::size_t>> choose_frames(std::size_t count, const InputOptions& options);
 
-/// Returns the time at which a loop comes back to its first keyframe. `frames` are the chosen keyframes, of which the
-/// last one is the first one again. `times` are the times of all keyframes of the sequence.
+/// Returns the time in seconds at which a loop comes back to its first keyframe. `frames` are the indices of the chosen
+/// keyframes; the last index repeats the first. `times` are the times of all keyframes of the sequence.
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
-/// Sets the end_velocities of the first and the last chosen keyframe, if vertices move on curves and the velocities
-/// there depend on keyframes that were not chosen. If every N-th keyframe is chosen, the keyframes beyond the ends are
-/// also N apart. `times` are the times of all keyframes of the sequence, and read(k) returns the positions of keyframe
-/// k.
+/// Sets end_velocities of the first and the last chosen keyframe. This is needed if vertices move on curves and the
+/// velocities at the ends depend on keyframes that were not chosen. If every N-th keyframe is chosen, the keyframes
+/// beyond the ends are also N apart. `times` are the times of all keyframes of the sequence, and read(k) returns the
+/// positions of keyframe k.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,
                                         Motion& chosen);
 
-/// Returns an error unless `other` has the same vertex count and the same faces as `first`. Messages call the first
+/// Checks that `other` has the same number of vertices and the same faces as `first`. Error messages call the first
 /// mesh first_name.
 [[nodiscard]] Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                                          const std::string& place);

@@ -1,4 +1,4 @@
-// Finds the files of an input, and gets their sizes and times from the system.
+// Finds the files of an input, and asks the system for their sizes and times.
 #include "io/input/input_identity.h"
 
 #include <cerrno>

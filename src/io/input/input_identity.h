@@ -1,5 +1,5 @@
-/// The names, sizes and modification times of the files of an input. By them, two inputs, or two states of one input,
-/// can be told apart without reading a file. Private to io and the program.
+/// Identifies the files of an input by their names, sizes and modification times. A run uses them to tell, without
+/// reading the files, whether an input is the one of an earlier run and has not changed. Private to io and the program.
 #ifndef CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 #define CHRONORMAL_IO_INPUT_INPUT_IDENTITY_H_
 
@@ -14,15 +14,16 @@ namespace chronormal::inline internal {
 
 struct FileIdentity {
   std::string path;
-  std::uint64_t size = 0;    ///< bytes
-  std::int64_t changed = 0;  ///< nanoseconds since 1970
+  std::uint64_t size = 0;    ///< size in bytes
+  std::int64_t changed = 0;  ///< time of the last change, in nanoseconds since 1970
 
   /// Returns size and time for messages and journals: "1200 bytes, changed at 1795430000.123456789 s".
   [[nodiscard]] std::string text() const;
 };
 
-/// Returns the files that the options name, in order; none for a built-in morph. Errors: those of finding the files;
-/// kUsage for a pipe, which cannot be read again, and for a Maya .xml, because its data are in other files.
+/// Returns the files that the options name, in order, or no files for a built-in morph. Errors: those of finding the
+/// files; kUsage for a pipe, which cannot be read again, and for the .xml of a Maya cache, because its data are in
+/// other files.
 [[nodiscard]] Result<std::vector<FileIdentity>> identify_files(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

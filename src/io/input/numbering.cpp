@@ -23,10 +23,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A number of any size: 0.DIGITS times ten to the power of `point`. Without digits it is 0.
+// A number of any size: 0.DIGITS times ten to the power of `point`. A number without digits is 0.
 struct Number {
   bool is_negative = false;
-  std::string digits;  // without zeros at both ends
+  std::string digits;  // digits without zeros at the beginning and the end
   std::int64_t point = 0;
 
   [[nodiscard]] bool is_integer() const {
@@ -45,13 +45,14 @@ struct Number {
 
 // The place of a number in a name.
 struct Place {
-  std::size_t begin = 0, end = 0;    // the number, with its sign
-  std::size_t digits = 0;            // place of its first digit
-  std::size_t point = 0, power = 0;  // positions of the decimal point and of the letter e; `end` if missing
+  std::size_t begin = 0, end = 0;    // where the number begins (with its sign) and ends
+  std::size_t digits = 0;            // where its first digit is
+  std::size_t point = 0, power = 0;  // where the decimal point and the letter e are; `end` if there is none
 };
 
 struct Cut {
-  std::vector<std::string> texts;  // one text more than numbers; the last one is the extension in lower case
+  // the texts between the numbers: one more than numbers, and the last one is the extension in lower case
+  std::vector<std::string> texts;
   std::vector<Place> places;
 
   [[nodiscard]] std::string key() const {
@@ -61,8 +62,8 @@ struct Cut {
   }
 };
 
-// Returns the extension of a name in lower case, or an empty text if no format has this extension: in a name such as
-// walk_0.05, the end is part of a number.
+// Returns the extension of a name in lower case. Returns an empty text if no format has this extension, because in a
+// name such as walk_0.05 the last part belongs to a number.
 std::string known_extension(std::string_view name) {
   return find_format(name) == nullptr ? std::string() : lower_extension(name);
 }
@@ -102,7 +103,7 @@ Cut cut_name(std::string_view name, Syntax syntax) {
     place.end = at;
     if (place.point == 0) place.point = place.end;
     if (place.power == 0) place.power = place.end;
-    // This minus is at the start of the name, or after a blank or a separator.
+    // A minus is a sign at the start of the name, or after a blank or a separator.
     if (place.begin > 0 && name[place.begin - 1] == '-' &&
         (place.begin == 1 || name[place.begin - 2] == ' ' || is_separator(name[place.begin - 2])))
       --place.begin;
@@ -147,10 +148,11 @@ double value_of(const Number& number) {
   return code == std::errc{} || number.point < 0 ? value : std::numeric_limits<double>::infinity();
 }
 
-// A set of names with the same texts, and the numbers that distinguish them.
+// A set of names with the same texts between their numbers, and the numbers that distinguish these names.
 struct Group {
   std::vector<std::size_t> files;
-  std::vector<std::size_t> varying;  // numbers that differ between the files
+  // Indices of the numbers that differ between the files.
+  std::vector<std::size_t> varying;
 };
 
 class Names {
@@ -210,8 +212,8 @@ class Names {
     return some;
   }
 
-  // Returns true if the points between digits can be decimal points, and not separators as in versions (v2.0001) and
-  // lists (1.9, 1.10).
+  // Returns true if points between digits can be decimal points. Returns false if they are separators, as in versions
+  // (v2.0001) and lists (1.9, 1.10).
   [[nodiscard]] bool have_fractions() const {
     std::map<std::pair<std::string, std::size_t>, std::vector<std::pair<std::string, std::string>>> found;
     for (std::size_t i = 0; i < cuts_.size(); ++i) {
@@ -246,7 +248,7 @@ class Names {
     return true;
   }
 
-  // Makes a minus before a number its sign if the set also has the same name without the minus.
+  // Takes a minus before a number as its sign if the set also has the same name without the minus.
   void take_signs() {
     std::set<std::vector<std::string>> texts;
     for (const Cut& cut : cuts_) texts.insert(cut.texts);
@@ -267,7 +269,7 @@ class Names {
   std::vector<std::vector<Number>> numbers_ = std::vector<std::vector<Number>>(files_.size());
 };
 
-// Returns a group in words: "walk_0.obj ... walk_9.obj (10 files)".
+// Describes a group for messages: "walk_0.obj ... walk_9.obj (10 files)".
 std::string group_words(const std::vector<std::string>& files, const Group& group) {
   const std::string first = file_name_of(files[group.files.front()]);
   if (group.files.size() == 1) return first;
@@ -275,9 +277,9 @@ std::string group_words(const std::vector<std::string>& files, const Group& grou
          " files)";
 }
 
-// Divides each group in which several numbers differ: files whose numbers differ only in the last place form a part
-// (take1_1 and take1_2; take2_1 and take2_2). If every part would be a single file, as for dates, the group stays
-// whole.
+// Divides each group in which several numbers differ. Files whose numbers differ only in the last place form a part:
+// take1_1 and take1_2 are one part, take2_1 and take2_2 another. If every part would be a single file, as for dates,
+// the group stays whole.
 std::vector<Group> divided(const Names& names, const std::vector<Group>& groups) {
   std::vector<Group> result;
   for (const Group& group : groups) {
@@ -307,8 +309,8 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Returns true if a shell may have listed the files in this order: sorted by bytes, or as most languages sort, where
-// only letters and digits count at first.
+// Returns true if a shell may have listed the files in this order. Shells sort by bytes, or as most languages sort,
+// where only letters and digits count at first.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {
     std::string letters;

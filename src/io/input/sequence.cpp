@@ -33,7 +33,7 @@ Result<std::vector<std::string>> list_folder(const std::string& folder) {
     const std::filesystem::path path = entries->path();
     const std::string name = utf8_of(path.filename());
     const Format* const own = find_format(name);
-    std::error_code ignored;  // a broken link is not a file
+    std::error_code ignored;  // a broken link does not count as a file
     if (own != nullptr && own->holds == Holds::kMesh && !name.starts_with('.') &&
         !std::filesystem::is_directory(path, ignored)) {
       if (format != nullptr && format != own)
@@ -64,15 +64,16 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
   return error;
 }
 
-// A frame other than the first.
+// The data of a frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
   std::vector<float> velocities = {};
-  std::uint64_t bytes = 0;  // size of its file in bytes; 0 if it was already counted
+  std::uint64_t bytes = 0;  // size of its file in bytes, or 0 if this size was already counted
 };
 
-// Reads a frame other than the first. of_first has the faces and the origin of the first frame. `faces` is nullptr if
-// the text of faces cannot be compared. `shaded` gets the normals of the frame if they are requested.
+// Reads a frame other than the first. of_first has the faces and the origin of the first frame. `faces` has the text of
+// the faces of the first frame, or is nullptr if this text cannot be compared. `shaded` gets the normals of the frame
+// if they are requested, and is nullptr otherwise.
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
@@ -94,14 +95,16 @@ ReadFrame read_frame(const InputOptions& options, const std::string& path, const
   return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
 }
 
-// Returns the text of the faces of an OBJ file, to be compared with other files; nothing for other formats.
+// Returns the text of the faces of an OBJ file, with which the faces of other files are compared. Returns nothing for
+// other formats.
 std::optional<ObjFaces> faces_of(const std::string& path, std::string_view bytes, const std::vector<float>& positions) {
   const Format* const format = find_format(file_name_of(path), bytes);
   if (format == nullptr || format->read_mesh != read_obj) return std::nullopt;
   return ObjFaces(bytes, positions);
 }
 
-// Returns the total size of the files, or nothing if one of them is missing or cannot be read again, like a pipe.
+// Returns the total size of the files in bytes. Returns nothing if a file is missing, or cannot be read twice because
+// it is, for example, a pipe.
 std::optional<std::uint64_t> bytes_of(const std::vector<std::string>& files, const std::vector<std::size_t>& frames) {
   std::uint64_t bytes = 0;
   for (const std::size_t k : frames) {
@@ -162,8 +165,8 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Selects the files that are examined for more digits than float32, if the first file has none: the last one, because
-// it has most likely moved, and others evenly in between.
+// Selects the files that are examined for more digits than float32 if the first file has no such digits. These are the
+// last file, whose mesh has most likely moved, and others evenly in between.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;
@@ -212,13 +215,14 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions), std::move(first.value().velocities));
 
-  // Reads the remaining frames, one for each thread at a time. Reads one frame at a time from a resolver, which may not
-  // be thread-safe, and if normals are kept, because those of a frame are only read if the previous frame had normals.
+  // Each thread reads one frame at a time. Frames are read one after the other in two cases: from a resolver, which may
+  // not be thread-safe, and if normals are kept, because the normals of a frame are read only if the previous frame had
+  // normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // The text can only be compared if positions are used exactly as in the file.
+  // The texts can be compared only if positions are used exactly as they are in the file.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {
@@ -279,7 +283,7 @@ Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const 
   if (valid) valid = validate_outline(outline);
   if (!valid) return valid.error();
 
-  // The first file stays mapped, so that the text of its faces can be compared with other files.
+  // The first file stays mapped, so that the text of its faces can be compared with the other files.
   struct First {
     FileBytes file;
     std::optional<ObjFaces> faces;

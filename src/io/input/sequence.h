@@ -10,9 +10,9 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the files that the options name; for a folder, all its meshes. Does not open them. `notes` gets a sentence
-/// if listed files were sorted. Errors: those of find_input_files() and sort_as_sequence() (io/input/numbering.h);
-/// kInvalidInput for a folder without meshes, or with files of two formats.
+/// Returns the files that the options name, and all meshes of a folder that they name, without opening the files.
+/// `notes` gets a sentence if files were sorted that the user had listed. Errors: those of find_input_files() and
+/// sort_as_sequence() (io/input/numbering.h); kInvalidInput for a folder without meshes, or with files of two formats.
 [[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options,
                                                            std::vector<std::string>* notes = nullptr);
 
@@ -21,13 +21,15 @@ namespace chronormal::inline internal {
 /// (motion/motion.h).
 ///
 /// The names of the files give the times (times_of_files() of io/input/numbering.h). Errors: kUsage for a frame rate if
-/// names are times in seconds; those of opening and of the readers, with the frame in the place ("frame 3 (walk_3.obj),
-/// line 17"); kInvalidInput for fewer than two files, and if vertex count or faces differ from frame 0.
+/// the names give times in seconds; those of opening files and of the readers, with the frame in the place ("frame 3
+/// (walk_3.obj), line 17"); kInvalidInput for fewer than two files, and if the number of vertices or the faces differ
+/// from frame 0.
 [[nodiscard]] Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
-/// Reads the same sequence as a stream: the files of keyframes after the first are read on demand, and their errors are
-/// reported then. All files are read at once if they are small (InputOptions::kept_bytes), if one is not a regular
-/// file, or if the options keep the normals of all keyframes and the first file has some.
+/// Reads a sequence like read_sequence(), but as a stream. The files of keyframes after the first are read when they
+/// are needed, and their errors are reported then. All files are read at once if they are small
+/// (InputOptions::kept_bytes), if one of them is not a regular file, or if the options keep the normals of all
+/// keyframes and the first file has normals.
 [[nodiscard]] Result<ReadMotion> stream_sequence(const std::vector<std::string>& files, const InputOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Reads morph targets over a base: meshes of its topology, and deltas.
+// Reads morph targets over a base. A target is a mesh with the faces of the base, or a file of deltas.
 #include "io/input/targets.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns the format of a target by the name of its file, or nullptr if no target can have this format.
+// Returns the format that the name of a file gives, or nullptr if a target cannot have this format.
 const Format* target_format(const std::string& file_name) {
   const Format* const format = find_format(file_name);
   return format != nullptr && (format->holds == Holds::kTarget || format->holds == Holds::kMesh) ? format : nullptr;
@@ -34,7 +34,7 @@ bool is_same_file(const std::string& a, const std::string& b) {
   return a == b || fs::equivalent(path_of(a), path_of(b), ignored);
 }
 
-// Returns all targets in a folder and its subfolders, without the base.
+// Returns all targets in a folder and its subfolders, except the base.
 Result<std::vector<std::string>> list_targets(const std::string& folder, const std::string& base) {
   std::error_code code;
   fs::recursive_directory_iterator entries(path_of(folder), code);
@@ -43,7 +43,7 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   while (!code && entries != fs::recursive_directory_iterator{}) {
     const std::string path = utf8_of(entries->path()), name = file_name(path);
     const Format* const own = target_format(name);
-    std::error_code ignored;  // a broken link is not a file
+    std::error_code ignored;  // a broken link does not count as a file
     if (name.starts_with('.')) {
       entries.disable_recursion_pending();
     } else if (own != nullptr && !fs::is_directory(entries->path(), ignored) && !is_same_file(path, base)) {
@@ -63,7 +63,7 @@ Result<std::vector<std::string>> list_targets(const std::string& folder, const s
   return files;
 }
 
-// Returns the name of a file in messages.
+// Returns the name of a file for messages.
 std::string place_of(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 // Returns the name of a file without its extensions: "blink" for "a/blink.target.gz".
@@ -73,8 +73,8 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that the limit of expansion allows the positions of another keyframe. A target with a single line takes as
-// much memory as any other target, so a small file can ask for much.
+// Checks that the limit of expansion allows the positions of another keyframe. Even a target file of a single line
+// needs memory for all vertices, so a small file can ask for much.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
@@ -122,7 +122,8 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   if (files.empty())
     return invalid_input(place_of(base), "there is no target, only the base itself; name the files of the targets");
 
-  // Reads normals only from the base, because viewers that compute normals of targets from positions use no others.
+  // Normals are read only from the base. Viewers compute the normals of targets from positions, so the stored ones
+  // would not be used.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

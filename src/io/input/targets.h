@@ -1,15 +1,15 @@
-/// Reads morph targets over a base mesh: a star of segments, one from the base to each target. Private to io.
+/// Reads morph targets over a base mesh as a motion, with a segment from the base to each target. Private to io.
 ///
 ///     base.obj  +  smile.obj, blink.target.gz, 'mouth_*.target', targets/
 ///
 ///     keyframes   0 base   1 smile   2 blink   3 mouth_1 ...
 ///     segments    0 -> 1   0 -> 2   0 -> 3 ...
 ///
-/// A target is a mesh with the faces of the base (.obj, .ply), or deltas that are added to it
-/// (io/mesh/make_human_target.h). Inputs are files and patterns as in io/input.h, and folders: all targets in a folder
-/// and its subfolders, sorted by path with numbers as numbers. Names that begin with a dot and links to folders are
-/// skipped. The file of the base itself is skipped wherever it comes among the inputs, so that it may be in the folder
-/// of its targets.
+/// A target is a mesh with the faces of the base (.obj, .ply), or deltas that are added to the base
+/// (io/mesh/make_human_target.h). Inputs are files and patterns as in io/input.h, and folders. A folder stands for all
+/// targets in it and its subfolders, sorted by path, where digits are compared as numbers. Names that begin with a dot
+/// and links to folders are skipped. The file of the base itself is skipped wherever it comes among the inputs, so that
+/// it may be in the folder of its targets.
 #ifndef CHRONORMAL_IO_INPUT_TARGETS_H_
 #define CHRONORMAL_IO_INPUT_TARGETS_H_
 
@@ -19,13 +19,13 @@
 namespace chronormal::inline internal {
 
 /// Reads the base and the targets of the options. A keyframe gets the name of its file without the extensions
-/// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time; memory is 12 bytes per vertex for
-/// each target, even if it moves few vertices.
+/// ("blink"). The result is valid (motion/motion.h). Only one file is open at a time. Each target takes 12 bytes of
+/// memory per vertex, even if it moves few vertices.
 ///
-/// Errors: kFailed for files that are missing or cannot be read; kInvalidInput of the readers, for a mesh whose vertex
-/// count or faces differ from the base's, for a folder without targets, or with targets of several formats, and if
-/// there is no target besides the base; kUsage for "-" twice. The place is the input, or begins with the path of the
-/// file ("targets/blink.target, line 17").
+/// The place of an error is the input, or begins with the path of the file ("targets/blink.target, line 17"). Errors:
+/// kFailed for files that are missing or cannot be read; kInvalidInput of the readers, for a mesh whose number of
+/// vertices or faces differ from the base, for a folder without targets or with targets of several formats, and if
+/// there is no target besides the base; kUsage for "-" twice.
 [[nodiscard]] Result<ReadMotion> read_targets(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

@@ -19,11 +19,11 @@
 namespace chronormal {
 namespace {
 
-// A name with a place for a number.
+// A file name with a place for a number.
 struct NamePattern {
   std::string before, after;
   bool has_number = false;
-  std::size_t width = 0;  // digits of the number, padded with zeros
+  std::size_t width = 0;  // number of digits to which the number is padded with zeros
 
   [[nodiscard]] std::string name(std::size_t k) const {
     if (!has_number) return before;
@@ -65,7 +65,8 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
-  // No file gets its final name before all keyframes were read, since they may come from files with these names.
+  // No file gets its final name before all keyframes have been read, because the keyframes may come from files with
+  // these names.
   std::vector<OutputFile> files;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status;
@@ -73,7 +74,8 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
     assert(coordinates.size() == 3 * motion.topology.vertex_count());
     const auto positions = VectorView<const float>::packed(coordinates.data(), motion.topology.vertex_count());
     const std::string bytes = format.write_mesh(motion.topology, positions, motion.origin);
-    // Keyframes have similar sizes, so the first one predicts the total before anything is written.
+    // Keyframes have similar sizes, so the size of the first one gives an estimate of the total. A total that is too
+    // large is refused before anything is written.
     const std::uint64_t all = std::uint64_t{bytes.size()} * motion.keyframes.size();
     if (Status status = k == 0 ? expansion.check(all, pattern) : Success{}; !status) return status;
     Result<OutputFile> file = OutputFile::create(names.value()[k], force);

@@ -1,4 +1,4 @@
-/// Adds a limit of expansion to write_motion() of io/output.h. Private to io, workflow and the program.
+/// Limits the size of the files that write_motion() of io/output.h writes. Private to io, workflow and the program.
 #ifndef CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
 #define CHRONORMAL_IO_INPUT_WRITE_MOTION_H_
 
@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes a motion like write_motion() of io/output.h, but refuses output that exceeds the expansion of the input:
-/// files for each keyframe repeat all faces. Errors: also those of expansion.check().
+/// Writes a motion like write_motion() of io/output.h, but refuses output that is too large for the size of the input.
+/// Such output is possible because a file for each keyframe repeats all faces. Errors: also those of expansion.check().
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, const Expansion& expansion,
                                   bool weld = true);
 

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns whether text is a number as JSON writes it.
+// Returns true if a text is a number as JSON writes numbers.
 bool is_number(std::string_view text) {
   const auto skip_digits = [&] {
     const std::size_t count = std::min(text.find_first_not_of("0123456789"), text.size());
@@ -36,7 +36,8 @@ bool is_number(std::string_view text) {
   return text.empty();
 }
 
-// Returns true if a number is too large for double. A number that is too small for double does not count: it becomes 0.
+// Returns true if a number is too large for double. Returns false for a number that is too small for double, which
+// becomes 0.
 bool overflows(std::string_view number) {
   constexpr std::size_t kMostDigits = 308;  // the largest double has one digit more
   const std::size_t exponent_at = std::min(number.find_first_of("eE"), number.size());
@@ -45,7 +46,8 @@ bool overflows(std::string_view number) {
   const auto [stop, code] = from_chars(number.data(), number.data() + number.size(), value);
   if (code == std::errc()) return std::isinf(value);
   if (code != std::errc::result_out_of_range) return false;
-  // The number is far too large or too small. The place of its first digit that is not 0 decides which.
+  // The exponent alone shows that the number is far too large or far too small. The place of the first digit that is
+  // not 0 decides between them.
   const std::string_view mantissa = number.substr(0, exponent_at);
   const auto first = static_cast<std::ptrdiff_t>(mantissa.find_first_of("123456789"));
   const auto point = static_cast<std::ptrdiff_t>(std::min(mantissa.find('.'), mantissa.size()));
@@ -54,19 +56,20 @@ bool overflows(std::string_view number) {
   std::int64_t exponent = 0;
   if (!digits.empty() && from_chars(digits.data(), digits.data() + digits.size(), exponent).ec != std::errc())
     return digits.front() != '-';
-  // If the exponent is much larger than the text has digits, the exponent alone decides whether the number is large.
+  // Clamping the exponent avoids overflow. An exponent so far from 0 outweighs any number of digits that a text can
+  // have.
   constexpr std::int64_t kFar = std::int64_t{1} << 40;
   return std::clamp(exponent, -kFar, kFar) + (point - first) > 0;
 }
 
-// The results of a scan of the text before a tree is built.
+// The facts that a scan of the text finds before a tree is built.
 struct Scan {
-  std::size_t too_deep = std::string_view::npos;  // first byte that is nested deeper than allowed
+  std::size_t too_deep = std::string_view::npos;  // offset of the first byte that is nested deeper than allowed
   struct Number {
     std::size_t begin, end;
-    std::size_t nulls;  // number of nulls before it
+    std::size_t nulls;  // number of nulls in the text before this number
   };
-  std::vector<Number> too_large;  // numbers beyond the range of double
+  std::vector<Number> too_large;  // numbers that are too large for double
 };
 
 Scan scan_json(std::string_view text) {
@@ -97,12 +100,12 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// A builder of the tree while the parser goes through the text, without the items that JsonItems takes. (The library's
-// own parser with a callback is slow: at the end of every object it goes through all siblings.)
+// A builder of the tree of values while the parser goes through the text. It leaves out the items that JsonItems takes.
+// (The library's own parser with a callback is slow: at the end of every object it goes through all siblings.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
-  // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` are these
-  // numbers; each has the number of nulls before it, by which the builder recognises its place.
+  // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` has these
+  // numbers. The builder recognises the place of each by the number of nulls before it.
   TreeBuilder(const JsonItems& items, const std::vector<Scan::Number>& infinities)
       : items_(items), infinities_(infinities) {}
 
@@ -141,7 +144,7 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
   bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& exception) override {
     error_at_ = position > 0 ? position - 1 : 0;
-    // The library's text repeats the place; the part after the last ": " is enough.
+    // The message of the library repeats the place of the error. Only the part after the last ": " is kept.
     std::string_view message = exception.what();
     if (const std::size_t colon = message.rfind(": "); colon != std::string_view::npos)
       message.remove_prefix(colon + 2);
@@ -150,8 +153,8 @@ class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  // Puts a value at the current place: into the innermost array, as the current member of the innermost object, or as
-  // the root. Returns its address.
+  // Puts a value into the innermost open array, sets it as the current member of the innermost open object, or makes it
+  // the root. Returns the address of the value in the tree.
   nlohmann::json* put(nlohmann::json&& value) {
     if (stack_.empty()) {
       root_ = std::move(value);
@@ -199,17 +202,18 @@ Result<nlohmann::json> parse_json(std::string_view text, const std::string& name
     text.remove_prefix(kByteOrderMark.size());
     offset += kByteOrderMark.size();
   }
-  if (text.starts_with(kByteOrderMark))  // the library would skip it too
+  // The library would skip a second byte order mark, which JSON does not allow.
+  if (text.starts_with(kByteOrderMark))
     return invalid_input(binary::place(name, offset), "the JSON is not valid: it has a second byte order mark");
-  // JSON never contains a zero byte. A sparse file may have a terabyte of them, and the parser would handle each, so
-  // only the first is kept.
+  // JSON never contains a zero byte. A sparse file may have a terabyte of zero bytes, and the parser would look at each
+  // of them, so only the first one is kept.
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) text = text.substr(0, zero + 1);
   const Scan scan = scan_json(text);
   if (scan.too_deep != std::string_view::npos)
     return invalid_input(binary::place(name, offset + scan.too_deep),
                          "arrays and objects are nested deeper than " + std::to_string(kDeepestJson) + " levels");
-  // The library refuses numbers that are too large for double everywhere, so null replaces them. The shortest such
-  // number is 1e309, so there is always room for "null".
+  // The library refuses numbers that are too large for double, so null replaces them here. The shortest such number is
+  // 1e309, so there is always room for "null".
   std::string replaced;
   if (!scan.too_large.empty()) {
     replaced = text;

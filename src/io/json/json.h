@@ -1,8 +1,8 @@
-/// Reads JSON from outside, with a place for every complaint. Private to io.
+/// Reads JSON from files, and reports the place of every fault. Private to io.
 ///
-/// A JsonView is a value of a document and its JSON pointer (RFC 6901). Its getters check type and range. The first
-/// complaint about a document is kept in a JsonComplaint; from then on every getter returns its fallback. So a parser
-/// reads an object without checks in between, and tests once at the end whether there was a complaint.
+/// A JsonView is a value of a document with its JSON pointer (RFC 6901). Its getters check type and range. The first
+/// complaint about a document is kept in a JsonComplaint; from then on every getter returns its fallback. A parser can
+/// therefore read an object without checks in between, and test once at the end for a complaint.
 #ifndef CHRONORMAL_IO_JSON_JSON_H_
 #define CHRONORMAL_IO_JSON_JSON_H_
 
@@ -20,24 +20,25 @@
 
 namespace chronormal::inline internal {
 
-/// The deepest allowed nesting of arrays and objects; glTF itself needs about ten levels.
+/// The deepest allowed nesting of arrays and objects. glTF itself needs about ten levels.
 inline constexpr std::size_t kDeepestJson = 256;
 
-/// A way to remove the objects of a long list while it is parsed, so that they need no memory: every object in the
-/// array `key` of the root is passed to `take` with its index, and dropped. Other items stay in the array.
+/// Removes the objects of a long list while the text is parsed, so that they need no memory at the same time. Every
+/// object in the array `key` of the root is passed to `take` with its index, and then dropped. Items that are not
+/// objects stay in the array.
 struct JsonItems {
   std::string_view key;
   std::function<void(std::size_t index, const nlohmann::json& item)> take;
 };
 
-/// Parses UTF-8 text (a byte order mark is allowed) that begins at byte `offset` of the file `name`. Numbers that are
-/// too large for double become infinity, and a JsonView complains about them when they are read. Errors: kInvalidInput
-/// with the place "NAME, byte N" for text that is not JSON or is nested deeper than kDeepestJson (checked before a tree
-/// is built).
+/// Parses UTF-8 text, which begins at byte `offset` of the file `name` and may have a byte order mark. Numbers that are
+/// too large for double become infinity, and a JsonView complains about them when they are read. Objects that `items`
+/// takes are not in the result. Errors: kInvalidInput with the place "NAME, byte N" for text that is not JSON or is
+/// nested deeper than kDeepestJson (checked before a tree is built).
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text, const std::string& name, std::size_t offset,
                                                 const JsonItems& items);
 
-/// The first fault of a document.
+/// The first fault that was found in a document.
 class JsonComplaint {
  public:
   explicit JsonComplaint(std::string name) : name_(std::move(name)) {}
@@ -45,7 +46,7 @@ class JsonComplaint {
   void add(const std::string& pointer, std::string message) {
     if (!first_) first_ = invalid_input(place(pointer), std::move(message));
   }
-  /// Adds an error that was found elsewhere, unless there is a complaint already.
+  /// Adds an error that was found without a JsonView, unless there is a complaint already.
   void add(Error error) {
     if (!first_) first_ = std::move(error);
   }
@@ -64,11 +65,11 @@ class JsonView {
   JsonView(const nlohmann::json& value, std::string pointer, JsonComplaint& complaint)
       : value_(&value), pointer_(std::move(pointer)), complaint_(&complaint) {}
 
-  /// Returns true if the object has this member. Values that are not objects have none.
+  /// Returns true if the object has this member, and false if the value is not an object.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Return a member as a view if it is a non-empty object (or array). Return nothing if it is missing, or after a
-  /// complaint.
+  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing, or after
+  /// a complaint.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
@@ -79,14 +80,14 @@ class JsonView {
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Return an integer from 0 to `most`; 4.0 counts as an integer, as glTF demands.
+  /// Return the member `key` as an integer from 0 to `most`. 4.0 counts as an integer, as glTF demands.
   [[nodiscard]] std::optional<std::size_t> find_count(const char* key, std::size_t most) const;
   [[nodiscard]] std::size_t count(const char* key, std::size_t most, std::size_t fallback) const;
   [[nodiscard]] std::size_t required_count(const char* key, std::size_t most) const;
-  /// Return an index below `count`. Complain about a larger one: "there are only N WHAT".
+  /// Return the member `key` as an index below `count`. Complain about a larger index: "there are only N WHAT".
   [[nodiscard]] std::optional<std::size_t> find_index(const char* key, std::size_t count, const char* what) const;
   [[nodiscard]] std::optional<std::size_t> required_index(const char* key, std::size_t count, const char* what) const;
-  /// Returns the value of this view as an index.
+  /// Returns the value of this view as an index below `count`, or nothing after a complaint.
   [[nodiscard]] std::optional<std::size_t> as_index(std::size_t count, const char* what) const;
   [[nodiscard]] bool flag(const char* key) const;
   [[nodiscard]] std::string text(const char* key) const;

@@ -12,15 +12,15 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
-// The most blanks that are copied from before a sibling to before an added value. Otherwise a file with a megabyte of
-// blanks would grow by a megabyte for every number.
+// The largest number of blanks that are copied from before a sibling to before an added value. Without a limit, a file
+// with a megabyte of blanks would grow by a megabyte for every added value.
 constexpr std::size_t kMostBlanks = 256;
 
 std::size_t skip_blanks(std::string_view text, std::size_t at) {
   return std::min(text.find_first_not_of(kBlanks, at), text.size());
 }
 
-// Returns the end of the string whose opening quotation mark is at `at`.
+// Returns the offset behind the string whose opening quotation mark is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; text[at] != '"'; ++at) {
     if (text[at] == '\\') ++at;
@@ -67,7 +67,8 @@ bool is_named(std::string_view quoted, std::string_view name) {
   return quoted.substr(1, quoted.size() - 2) == name;
 }
 
-// Returns the index that a token of a pointer stands for. It must have no sign and no leading zeros.
+// Returns the index for which a token of a JSON pointer stands. Returns nothing if the token is no number, or has a
+// sign or leading zeros.
 std::optional<std::size_t> to_index(std::string_view token) {
   std::size_t index = 0;
   const char* const end = token.data() + token.size();
@@ -80,8 +81,8 @@ std::optional<std::size_t> to_index(std::string_view token) {
 
 // An item of an array or a member of an object.
 struct JsonText::Member {
-  std::string_view key;   // with its quotation marks; empty in arrays
-  std::string_view text;  // text of the value, either a part of the node's text or an added text
+  std::string_view key;   // name with its quotation marks; empty in arrays
+  std::string_view text;  // text of the value, either a part of the text of the node or an added text
   bool added = false, replaced = false;
   std::unique_ptr<Node> value;  // set if a pointer led to this value
 };
@@ -96,8 +97,8 @@ struct JsonText::Node {
 
   std::string_view text;
   bool changed = false, expanded = false;
-  std::vector<Member> members;  // added members stand last
-  std::size_t end_of_last = 1;  // place in text at which members are added
+  std::vector<Member> members;  // the parts; added members stand last
+  std::size_t end_of_last = 1;  // offset in `text` at which members are added
   std::string_view blanks;      // blanks before the last member
   std::string_view colon = ":";
 };
@@ -140,7 +141,7 @@ std::string decode_json_string(std::string_view quoted) {
     }
     std::uint32_t code = hexadecimal(quoted.substr(i + 1, 4));
     i += 4;
-    // Characters beyond the first 65536 are written as two codes, a surrogate pair.
+    // Characters above U+FFFF are written as two codes, a surrogate pair.
     if (code >= 0xD800 && code < 0xDC00 && i + 6 < quoted.size()) {
       code = 0x10000 + ((code - 0xD800) << 10) + (hexadecimal(quoted.substr(i + 3, 4)) - 0xDC00);
       i += 6;
@@ -271,7 +272,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     }
     if (!node.is_object())
       return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
-    // Adds all missing levels at once.
+    // The missing levels on the way to the value are added as one text.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();
     add_member(node, token, std::move(made));
@@ -342,7 +343,7 @@ void JsonText::add_pieces(const Node& node, std::vector<std::string_view>& resul
 }
 
 std::vector<std::string_view> JsonText::pieces() const {
-  // The root itself may have been replaced; only the blanks around it are kept.
+  // The root itself may have been replaced. Of the old text, only the blanks around the root are then kept.
   std::vector<std::string_view> result;
   const std::size_t begin = skip_blanks(text_, text_.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
   result.push_back(text_.substr(0, begin));

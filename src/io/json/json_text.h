@@ -1,4 +1,4 @@
-/// Changes JSON text, and leaves every byte between the changes as it is. Private to io.
+/// Changes values in JSON text, and leaves every byte between the changes as it is. Private to io.
 ///
 /// A value is found by its JSON pointer (RFC 6901), and its replacement is spliced into the text, so that numbers,
 /// blanks and the order of members elsewhere do not change:
@@ -9,9 +9,9 @@
 ///     join(json.pieces());                              // { "a": [1, 2, 3], "n": 1e400, "b": {"c":true} }
 ///
 /// Names     may be escaped in the text ("a" is "\u0061"); if several members have the same name, the last one is used.
-/// Order     each change works on the result of the earlier ones: a value that was set can be changed again.
+/// Order     each change works on the result of earlier changes: a value that was set can be changed again.
 /// Style     an added value gets the same blanks as the last sibling, so that an indented list stays indented.
-/// Cost      containers are split into parts once, when the first pointer leads through them.
+/// Cost      an array or object is split into parts once, when a pointer first leads through it.
 #ifndef CHRONORMAL_IO_JSON_JSON_TEXT_H_
 #define CHRONORMAL_IO_JSON_JSON_TEXT_H_
 
@@ -30,20 +30,20 @@ namespace chronormal::inline internal {
 /// The byte order mark that some editors write at the start of a file: U+FEFF in UTF-8. JSON does not allow it.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// Returns the text that a JSON string stands for, in UTF-8: the input is "\u00e9" without its quotation marks. It must
-/// be valid.
+/// Returns the text, in UTF-8, for which a JSON string stands. The string must be valid, and is passed without its
+/// quotation marks: "\u00e9".
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 
 /// Returns the names in a pointer, or nothing if it is not a valid pointer.
 [[nodiscard]] std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer);
 
-/// Returns the pointer to a member of the value at a pointer.
+/// Returns the JSON pointer to the member `name` of the value at `pointer`.
 [[nodiscard]] std::string with_json_token(const std::string& pointer, std::string_view name);
 
-/// Returns how deep the arrays and objects of valid JSON are nested; 0 for a number.
+/// Returns the number of levels to which the arrays and objects of valid JSON are nested, for example 0 for a number.
 [[nodiscard]] std::size_t json_depth(std::string_view text) noexcept;
 
-/// A member of an object, or an item of an array, whose name is empty.
+/// A member of an object, or an item of an array. The name of an item is empty.
 struct JsonMember {
   std::string name;
   std::string_view value;
@@ -51,8 +51,8 @@ struct JsonMember {
 
 class JsonText {
  public:
-  /// Takes a text, which must be JSON that parse_json() accepts, possibly with a byte order mark, and must outlive
-  /// this.
+  /// Takes a text, which must be JSON that parse_json() accepts, possibly with a byte order mark. The text must outlive
+  /// this object.
   explicit JsonText(std::string_view text);
   JsonText(JsonText&&) noexcept;
   JsonText& operator=(JsonText&&) noexcept;
@@ -60,25 +60,25 @@ class JsonText {
   JsonText& operator=(const JsonText&) = delete;
   ~JsonText();
 
-  /// Returns the text of a value, or nothing if there is no such value. Must be called before any change
+  /// Returns the text of a value, or nothing if there is no such value. Must be called before any change.
   [[nodiscard]] std::optional<std::string_view> find(std::string_view pointer);
   /// Returns the members of an object or the items of an array, in their order. Returns none for other values, or if
-  /// the pointer leads to no value. Must be called before any change
+  /// the pointer leads to no value. Must be called before any change.
   [[nodiscard]] std::vector<JsonMember> members(std::string_view pointer);
 
-  /// Replaces the value at a pointer, or adds it as a member, together with missing objects on the way. `value` must be
-  /// JSON. Errors, after which the text is unchanged: kInvalidInput, with the pointer as the place, if the pointer is
-  /// not valid, leads through a value that is neither object nor array, or leads to an item that an array does not
-  /// have.
+  /// Replaces the value at a pointer. If there is no such value, adds it as a member, together with missing objects on
+  /// the way. `value` must be JSON. Errors, after which the text is unchanged: kInvalidInput, with the pointer as the
+  /// place, if the pointer is not valid, leads through a value that is neither object nor array, or leads to an item
+  /// that an array does not have.
   [[nodiscard]] Status set(std::string_view pointer, std::string value);
-  /// Appends a value to an array, which is added if it is missing. Errors: those of set(); kInvalidInput if the
+  /// Appends a value to an array. Adds the array if it is missing. Errors: those of set(); kInvalidInput if the
   /// existing value is not an array.
   [[nodiscard]] Status append(std::string_view pointer, std::string value);
 
-  /// Returns the pointers of all replaced and added values, sorted. If several levels were added at once, returns only
-  /// the pointer of the outermost.
+  /// Returns the pointers of all replaced and added values, sorted. If one call added several levels, only the pointer
+  /// of the outermost level is returned.
   [[nodiscard]] std::vector<std::string> pointers() const;
-  /// Returns the changed text in pieces, which are valid as long as this object and the source live.
+  /// Returns the changed text in pieces, which are valid as long as this object and the source text live.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
  private:
@@ -97,7 +97,7 @@ class JsonText {
   std::deque<std::string> kept_;  // texts of changes; their addresses do not change
 };
 
-/// Joins the pieces of a text.
+/// Joins the pieces of a text into one string.
 [[nodiscard]] std::string join(const std::vector<std::string_view>& pieces);
 
 }  // namespace chronormal::inline internal

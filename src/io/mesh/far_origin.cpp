@@ -5,7 +5,8 @@
 namespace chronormal::inline internal {
 
 std::string note_of_lost_digits(std::span<const float> positions) {
-  constexpr double kMuch = 1e-4;  // a step is large if it exceeds this share of the extent
+  // The step between neighbouring float32 numbers is too large if it exceeds this part of the extent.
+  constexpr double kMuch = 1e-4;
   double extent = 0, step = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     float low = positions[axis], high = low;

@@ -1,6 +1,6 @@
-/// Handles positions far from the origin, as in surveys. A float32 has 24 bits, and far from the origin most of them
-/// are equal for all vertices. So a common origin is subtracted in double before positions are rounded, and writers add
-/// it again (Motion::origin). Private to io.
+/// Handles positions far from the origin, which occur in surveys. A float32 has 24 bits, and far from the origin most
+/// of them are equal for all vertices. Readers therefore subtract a common origin in double before they round
+/// positions, and writers add it again (Motion::origin). Private to io.
 #ifndef CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 #define CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 
@@ -15,9 +15,10 @@ namespace chronormal::inline internal {
 
 using Origin = std::array<double, 3>;
 
-/// Finds the origin to subtract from positions (V, 3) if that saves at least four bits, that is, if they are farther
-/// from (0, 0, 0) than 16 times their extent. The origin is near their middle, and a multiple of a power of two of
-/// about that extent, so that subtracting it does not round. Returns (0, 0, 0) otherwise.
+/// Finds the origin to subtract from positions (V, 3). An origin is useful if the positions are farther from (0, 0, 0)
+/// than 16 times their extent, so that at least four bits are saved. The origin is near the middle of the positions.
+/// Its coordinates are multiples of a power of two of about the size of the extent, so that subtracting them does not
+/// round. Returns (0, 0, 0) if no origin is useful.
 template <class Real>
 [[nodiscard]] Origin far_origin(std::span<const Real> positions) {
   constexpr double kFar = 16, kBeside = 4;
@@ -41,16 +42,16 @@ template <class Real>
 }
 
 /// Returns true if rounding a number to float32 loses some of its decimal digits. last_digit is the value of a 1 in the
-/// place of its last digit.
+/// place of the last decimal digit.
 [[nodiscard]] inline bool loses_digits(double value, double last_digit) noexcept {
   return std::fabs(value - double{static_cast<float>(value)}) > last_digit / 2 * (1 + 1e-6);
 }
 
-/// Returns a note on the digits that positions lost before, when they were rounded to float32, if the loss is large
-/// relative to their extent. Returns an empty text otherwise.
+/// Returns a note about positions (V, 3) that were rounded to float32 far from the origin, if the steps between float32
+/// numbers there are large relative to the extent of the positions. Returns an empty text otherwise.
 [[nodiscard]] std::string note_of_lost_digits(std::span<const float> positions);
 
-/// Returns the coordinates as text: "(452312, 5411872, 0)".
+/// Returns the coordinates of an origin as text: "(452312, 5411872, 0)".
 [[nodiscard]] std::string origin_text(const Origin& origin);
 
 }  // namespace chronormal::inline internal

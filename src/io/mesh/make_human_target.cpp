@@ -18,7 +18,7 @@ namespace {
 
 using scan::NumberFault;
 
-// A stream of zlib, which is initialised by inflateInit2() and ended by inflateEnd() in the destructor.
+// A stream of zlib. inflateInit2() initialises it, and the destructor calls inflateEnd().
 struct Inflater {
   z_stream stream{};
   bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 means gzip only
@@ -31,7 +31,7 @@ struct Inflater {
   }
 };
 
-// Unpacks all members of a gzip file, but no more than `most` bytes. Memory grows with the result.
+// Unpacks all members of a gzip file, but no more than `most` bytes. The memory grows with the result.
 Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const std::string& name) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max(), kFirstRoom = 16384;
   Inflater inflater;
@@ -46,11 +46,11 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
   for (;;) {
     if (stream.avail_in == 0) {
       const std::string_view part = packed.substr(handed_over, kMostAtOnce);
-      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));  // zlib only reads it
+      stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(part.data()));  // zlib only reads these bytes
       stream.avail_in = static_cast<uInt>(part.size());
       handed_over += part.size();
     }
-    // The buffer may grow to one byte more than allowed, so that an excess is detected.
+    // The buffer may become one byte longer than allowed, so that a result which is too long is noticed.
     if (done == text.size()) text.resize(std::min(most + 1, std::max(kFirstRoom, 2 * done)));
     const auto room = static_cast<uInt>(std::min(text.size() - done, kMostAtOnce));
     stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
@@ -64,7 +64,8 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code == Z_BUF_ERROR)
-      return error("the gzip data are cut off; copy the file again");  // zlib had room, so it waits for more input
+      // zlib still has room in the buffer, so it is waiting for more input.
+      return error("the gzip data are cut off; copy the file again");
     if (code != Z_STREAM_END) {
       std::string message = "the gzip data are damaged; copy the file again";
       if (stream.msg != nullptr) message.append(" (").append(stream.msg).append(")");
@@ -100,7 +101,7 @@ class TargetReader {
   const std::string& name_;
   scan::Lines lines_;
   VectorView<const float> base_;
-  std::vector<bool> has_delta_;  // for each vertex
+  std::vector<bool> has_delta_;  // true for each vertex that has a delta
   MakeHumanTarget target_;
 };
 

@@ -1,5 +1,5 @@
-/// Targets of MakeHuman and MPFB: deltas that a shape adds to some of the vertices of a base mesh. They are text, often
-/// gzipped:
+/// Reads targets of MakeHuman and MPFB. A target lists the deltas that a shape adds to some of the vertices of a base
+/// mesh. The files are text, often gzipped:
 ///
 ///     # comments and empty lines may be anywhere
 ///     161 .003 0 .018        a delta: vertex, counted from 0, and x y z in the units of the base
@@ -23,14 +23,14 @@
 
 namespace chronormal::inline internal {
 
-/// Deltas: deltas[i] is added to the vertex vertices[i]. Each vertex occurs at most once.
+/// The deltas of a target: deltas[i] is added to the vertex vertices[i]. Each vertex occurs at most once.
 struct MakeHumanTarget {
   std::vector<std::uint32_t> vertices;
   std::vector<float> deltas;  ///< (vertices.size(), 3)
 };
 
-/// Returns the largest size in bytes to which a gzipped target may expand, for a base with this many vertices. A line
-/// of deltas takes 20 to 40 bytes.
+/// Returns the largest size in bytes to which a gzipped target may expand, for a base with vertex_count vertices. A
+/// line of deltas takes 20 to 40 bytes.
 [[nodiscard]] constexpr std::size_t most_target_bytes(std::size_t vertex_count) noexcept {
   return std::size_t{65536} + 256 * vertex_count;
 }
@@ -40,15 +40,16 @@ struct MakeHumanTarget {
 
 /// Reads a target over a base with these positions, which must be finite; `name` is for messages.
 ///
-/// Errors: kInvalidInput with the place "NAME, line N" (of the unpacked text): a line that is not one index and three
-/// numbers; numbers that are not finite or too large for float32; an index without a vertex; a vertex that already has
-/// a delta (programs disagree whether to add both or to use the last); a delta whose float32 sum with the coordinate
-/// exceeds the range of float32; a file of 0 bytes. With the place "NAME, byte N" (of the file): gzip data that are
-/// damaged or end early, are followed by something else, or unpack to more than most_target_bytes().
+/// Errors: kInvalidInput with the place "NAME, line N" (of the unpacked text) for a line that is not one index and
+/// three numbers; numbers that are not finite or too large for float32; an index without a vertex; a vertex that
+/// already has a delta (programs disagree on adding both or using the last); a delta whose float32 sum with the
+/// coordinate exceeds the range of float32; a file of 0 bytes. kInvalidInput with the place "NAME, byte N" (of the
+/// file) for gzip data that are damaged or end early, are followed by other data, or unpack to more than
+/// most_target_bytes().
 ///
-/// A file without any delta is valid: it is the base itself. A text that was cut off inside its last number, or between
-/// two lines, cannot be told from a complete file and is read without an error. Cost: one pass; memory in proportion to
-/// the text and a bit per vertex.
+/// A file without any delta is valid: the target equals the base. A text that was cut off inside its last number, or
+/// between two lines, cannot be told from a complete file and is read without an error. Cost: one pass; memory in
+/// proportion to the text, and a bit per vertex.
 [[nodiscard]] Result<MakeHumanTarget> read_make_human_target(std::string_view bytes, const std::string& name,
                                                              VectorView<const float> base);
 

@@ -16,21 +16,22 @@ struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
 
-  /// True if the given origin was subtracted from positions, and this kept digits that float32 would have lost
+  /// True if the caller's origin was subtracted from positions, and this kept digits that float32 would have lost
   /// otherwise.
   bool has_more_digits = false;
   /// A sentence for each kind of part that was skipped.
   std::vector<std::string> notes = {};
 
-  /// (V, 3): the velocity of each vertex, in length units per second, if it is requested and the file has it.
+  /// The velocity of each vertex, (V, 3), in length units per second. Empty unless the caller requests velocities and
+  /// the file has them.
   std::vector<float> velocities = {};
 
-  // The next members say how the file shades its mesh. They are empty unless the caller requests them.
-  /// The smoothing group of each face, numbered from 1 in the order in which the file names them; 0 for none. Empty if
-  /// the file has no groups.
+  // The next members describe the shading of the mesh in the file. They are empty unless the caller requests them.
+  /// The smoothing group of each face, numbered from 1 in the order in which the file names the groups; 0 for a face in
+  /// no group. Empty if the file has no groups.
   std::vector<std::uint32_t> group_of_face = {};
-  /// (corners, 3): the normal of each corner as in the file, not normalised, and (0, 0, 0) for a corner without one.
-  /// Empty if no corner of the file has a normal.
+  /// The normal of each corner as in the file, (corners, 3), not normalised, and (0, 0, 0) for a corner without a
+  /// normal. Empty if no corner of the file has a normal.
   std::vector<float> normal_of_corner = {};
 };
 

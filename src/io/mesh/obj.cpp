@@ -24,8 +24,9 @@ std::string_view without_byte_order_mark(std::string_view bytes) {
   return bytes;
 }
 
-// Removes and returns the next word of a statement, which is empty at its end or before a comment. Inside a word, #
-// does not begin a comment: some programs write the number 1.#QNAN, which must not be read as 1.
+// Removes and returns the next word of a statement. Returns an empty word at the end of the statement or before a
+// comment. Inside a word, # does not begin a comment, because some programs write NaN as 1.#QNAN, which must not be
+// read as 1.
 std::string_view take_word(std::string_view& line) {
   const std::string_view word = scan::take_word(line);
   if (!word.starts_with('#')) return word;
@@ -43,20 +44,21 @@ bool has_comment(std::string_view line) {
 // The shading of the faces that were read so far.
 struct Shading {
   std::vector<float> normals;                   // (vn, 3)
-  std::vector<std::uint32_t> normal_of_corner;  // index of the normal plus 1; 0 for none
+  std::vector<std::uint32_t> normal_of_corner;  // for each corner, the index of its normal plus 1, or 0 for none
   bool has_normals = false;                     // true if some corner has a normal
   std::map<std::string, std::uint32_t, std::less<>> groups;
   std::vector<std::uint32_t> group_of_face;
-  std::uint32_t group = 0;                               // group of the faces that follow
-  bool has_groups = false;                               // true if there was a statement "s"
-  std::size_t unknown_normals = 0, nameless_groups = 0;  // counts of corners, and of statements "s" without a word
+  std::uint32_t group = 0;  // smoothing group of the faces that follow
+  bool has_groups = false;  // true if there was a statement "s"
+  // The number of corners with an unknown normal, and the number of statements "s" without a word.
+  std::size_t unknown_normals = 0, nameless_groups = 0;
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
 };
 
 class ObjReader {
  public:
-  /// Creates a reader, which skips statements of shading if `shading` is nullptr.
+  /// Creates a reader. The reader skips statements of shading if `shading` is nullptr.
   ObjReader(std::string_view bytes, const std::string& name, const Origin& origin, Shading* shading)
       : name_(name),
         lines_(bytes, bytes.find('\n') == std::string_view::npos ? '\r' : '\n'),
@@ -94,11 +96,12 @@ class ObjReader {
 
   const std::string& name_;
   scan::Lines lines_;
-  std::size_t statement_line_ = 0;  // line where the current statement begins
-  std::string joined_;              // a statement of several lines
+  std::size_t statement_line_ = 0;  // number of the line at which the current statement begins
+  std::string joined_;              // text of a statement that extends over several lines
   std::vector<float> positions_;
   PolygonBuilder faces_;
-  // The largest positive index so far. Only at the end of the file is it known whether that vertex exists.
+  // The largest positive index so far, and the place where it was used. Only the end of the file shows if this vertex
+  // exists.
   struct Largest {
     std::int64_t index = 0;
     std::size_t line = 0;
@@ -134,7 +137,7 @@ Result<MeshFrame> ObjReader::read() {
   note(dropped_faces_, " face has fewer than three corners and is left out",
        " faces have fewer than three corners and are left out");
   if (shading_ == nullptr) return mesh;
-  // Normals may follow the faces that refer to them, so indices are checked at the end.
+  // Normals may come after the faces that refer to them, so the indices of normals are checked at the end.
   for (std::uint32_t& index : shading_->normal_of_corner) {
     if (index > shading_->normal_count()) {
       index = 0;
@@ -183,7 +186,7 @@ Status ObjReader::read_statement(std::string_view line) {
   return Success{};
 }
 
-// Returns whether only blanks are left of a statement.
+// Returns true if the rest of a statement has only blanks.
 bool is_over(std::string_view rest) { return std::all_of(rest.begin(), rest.end(), scan::is_blank); }
 
 Status ObjReader::read_vertex(std::string_view numbers) {
@@ -212,7 +215,7 @@ Status ObjReader::read_vertex(std::string_view numbers) {
   return Success{};
 }
 
-// Reads a coordinate, and subtracts the origin.
+// Reads a coordinate and subtracts the origin from it. `axis` is 0, 1 or 2.
 NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, float& coordinate) {
   if (!is_far_) return scan::parse_float(word, coordinate);
   double value = 0, last_digit = 0;
@@ -222,8 +225,8 @@ NumberFault ObjReader::read_coordinate(std::string_view word, std::size_t axis, 
   return fault;
 }
 
-// Takes a corner off the line if it is only the digits of a positive index. Otherwise returns 0 and leaves the line
-// unchanged.
+// Removes a corner from the front of the line and returns its index, if the corner is only the digits of a positive
+// index. Otherwise returns 0 and leaves the line unchanged.
 std::int64_t take_plain_corner(std::string_view& line) {
   constexpr std::ptrdiff_t kMostDigits = 9;
   const char* at = line.data();
@@ -294,7 +297,8 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   if (index < -count) return error(open_corner() + unknown_vertex(index) + " so far");
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;
-  // largest_ detects an index that does not fit into 32 bits at the end of the file.
+  // An index that does not fit into 32 bits is larger than the number of vertices. The check of largest_ at the end of
+  // the file reports it.
   if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
     return error("the mesh has more than 4,294,967,295 corners");
   return Success{};
@@ -313,7 +317,8 @@ Status ObjReader::read_normal(std::string_view numbers) {
   return Success{};
 }
 
-// Reads a smoothing group. Groups are told apart by their names; numbers are compared by value, so 01 is the group 1.
+// Reads the smoothing group of the next faces. Groups are told apart by their names, and numbers are compared by value,
+// so 01 is the group 1.
 Status ObjReader::read_group(std::string_view line) {
   const std::string_view word = take_word(line);
   shading_->has_groups = true;
@@ -330,8 +335,8 @@ Status ObjReader::read_group(std::string_view line) {
   return Success{};
 }
 
-// Sets the normal of the next corner; an empty word means no normal. An index without a normal is detected at the end
-// of the file, because the normal may follow.
+// Sets the normal of the next corner. An empty word means that the corner has no normal. An index without a normal is
+// found at the end of the file, because the normal may come after the face.
 void ObjReader::resolve_normal(std::string_view word) {
   std::int64_t index = 0;
   if (!word.empty()) {
@@ -364,7 +369,7 @@ void append_vectors(std::string& text, std::string_view keyword, VectorView<cons
   }
 }
 
-// Appends the faces. If normal_of_corner is empty, corners have only vertices.
+// Appends the statements of all faces. If normal_of_corner is empty, corners have only vertices.
 void append_faces(std::string& text, const Topology& topology, std::span<const std::uint32_t> normal_of_corner) {
   std::size_t corner = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f) {

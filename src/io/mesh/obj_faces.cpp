@@ -1,4 +1,4 @@
-// Compares the text of the faces with the first file, and parses only the positions before the faces.
+// Compares the text of the faces with that of the first file, and parses only the positions before the faces.
 #include "io/mesh/obj_faces.h"
 
 #include <algorithm>
@@ -9,10 +9,10 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The part of a file before its first face.
+// The part of an OBJ file before its first face.
 struct Head {
   std::vector<float> positions;
-  std::size_t end = 0;  // start of the line of the first face
+  std::size_t end = 0;  // offset of the line of the first face
 };
 
 std::optional<Head> read_head(std::string_view bytes, std::size_t expected) {

@@ -25,9 +25,9 @@ using ply::Property;
 using ply::Role;
 using ply::Scalar;
 
-// A source returns the values of the body (all after the header) in order; there is one for each encoding. Its
-// functions return false if a value is missing or malformed; message() and place() then describe the error and its
-// place.
+// A source of the values of an ascii file. There is a source for each encoding, which returns the values behind the
+// header in order. The functions of a source return false if a value is missing or malformed; message() and place()
+// then describe the error and its place.
 
 class AsciiSource {
  public:
@@ -36,7 +36,8 @@ class AsciiSource {
         lines_(bytes.substr(header.body_begin), header.separator),
         header_lines_(header.line_count) {}
 
-  // Returns the fewest bytes of a row: each value is a digit and a separator. The last row may have no line end.
+  // Returns the smallest number of bytes that a value can take: a digit and a separator. The last row may have no
+  // separator at its end, so bytes_left() counts one byte more.
   [[nodiscard]] static std::size_t fewest_bytes(const Property& /*property*/) { return 2; }
   [[nodiscard]] std::size_t bytes_left() const { return left_ - lines_.position() + 1; }
 
@@ -97,8 +98,8 @@ class AsciiSource {
   std::size_t left_;
   scan::Lines lines_;
   std::size_t header_lines_;
-  std::string_view row_;   // rest of the line after next_
-  std::string_view next_;  // the next result of take(); empty at the end of the line
+  std::string_view row_;   // rest of the current line behind next_
+  std::string_view next_;  // the word that take() returns next; empty at the end of the line
   std::string message_;
 };
 
@@ -152,7 +153,8 @@ class BinarySource {
     if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite", type);
     if (std::fabs(value) > std::numeric_limits<float>::max())
       return fail("the coordinate is too large for float32", type);
-    last_digit = 0;  // so any rounding to float32 counts as a loss of digits
+    // Any rounding to float32 then counts as a loss of digits.
+    last_digit = 0;
     return true;
   }
 
@@ -205,7 +207,7 @@ class BinarySource {
                " bytes are left for this row; copy or export it again";
     return false;
   }
-  // Reports an error at the value that was read last.
+  // Reports an error at the value that was read last. Returns false.
   bool fail(std::string message, Scalar type) {
     message_ = std::move(message);
     position_ -= ply::byte_size(type);
@@ -257,8 +259,9 @@ class BodyReader {
 
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
-    if (element.properties.empty()) return Success{};  // takes no bytes, whatever the count
-    // The counts are limited by the size of the file, so this memory is, too.
+    // Such an element takes no bytes, however large its count is.
+    if (element.properties.empty()) return Success{};
+    // The counts have been checked against the size of the file, so the memory is limited by this size, too.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
     for (std::uint64_t row = 0; row < element.count; ++row) {
@@ -315,7 +318,7 @@ class BodyReader {
     return true;
   }
 
-  // Reads a coordinate, and subtracts the origin.
+  // Reads a coordinate and subtracts the origin from it.
   [[nodiscard]] bool read_coordinate(const Property& property, float& coordinate) {
     if (!is_far_) return source_.coordinate(property.type, coordinate);
     double value = 0, last_digit = 0;
@@ -455,7 +458,8 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
   std::size_t most_corners = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     most_corners = std::max(most_corners, topology.face(f).size());
-  const bool is_short = most_corners <= 255;  // lengths of lists fit in uchar, the usual type
+  // Lengths of lists fit into uchar, the usual type.
+  const bool is_short = most_corners <= 255;
   const char* const index_type = positions.count <= 0x80000000U ? "int" : "uint";
   const char* const encoding_name = encoding == PlyEncoding::kAscii                ? "ascii"
                                     : encoding == PlyEncoding::kBinaryLittleEndian ? "binary_little_endian"

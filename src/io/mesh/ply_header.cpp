@@ -38,8 +38,8 @@ std::optional<Scalar> find_scalar(std::string_view word) {
   return std::nullopt;
 }
 
-// Returns the character that ends lines. In a file with old Macintosh line ends, a CR without LF follows the first
-// word.
+// Returns the character that ends lines. If a CR without LF follows the first word, the file has old Macintosh line
+// ends.
 char find_separator(std::string_view bytes) {
   return bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
 }
@@ -72,7 +72,7 @@ class HeaderReader {
   Header header_;
   bool has_format_ = false;
   std::set<std::string_view> element_names_;
-  std::set<std::string_view> property_names_;  // names in the last element
+  std::set<std::string_view> property_names_;  // names of the properties in the current element
 };
 
 Result<Header> HeaderReader::read() {
@@ -221,14 +221,14 @@ Status HeaderReader::check_elements() {
 }  // namespace
 
 Result<Header> read_header(std::string_view bytes, const std::string& name) {
-  // A longer header is refused, because a file that is not PLY may have no end of its header.
+  // The longest header in bytes. A limit is needed because a file that is not PLY may have no end of its header.
   constexpr std::size_t kLongest = std::size_t{16} << 20;
   return HeaderReader(bytes.substr(0, kLongest), name).read();
 }
 
 Result<bool> assign_velocities(Header& header, const std::string& name) {
-  // Programs for particles and simulations use the names vx, vy, vz; exporters of attributes append the axis to
-  // "velocity".
+  // The names of velocities. Programs for particles and simulations use vx, vy, vz; exporters of attributes append the
+  // axis to "velocity".
   constexpr std::array<std::array<std::string_view, 3>, 2> kNames = {
       {{"vx", "vy", "vz"}, {"velocity_x", "velocity_y", "velocity_z"}}};
   std::vector<Property>& properties = header.elements[header.vertex_element].properties;

@@ -23,14 +23,14 @@ enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, k
   return type != Scalar::kFloat32 && type != Scalar::kFloat64;
 }
 
-/// The meaning of a property for the reader.
+/// The part that a property plays for the reader.
 enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOther };
 
 struct Property {
   std::string_view name;
   Scalar type{};  ///< type of the value, or of the items of the list
   bool is_list = false;
-  Scalar count_type{};  ///< lists only; an integer
+  Scalar count_type{};  ///< type of the length of the list; only for lists, and always an integer type
   Role role = Role::kOther;
 };
 
@@ -46,17 +46,17 @@ struct Header {
   std::size_t vertex_element = 0;
   std::size_t face_element = 0;
   char separator = '\n';       ///< the character that ends a line
-  std::size_t body_begin = 0;  ///< byte after the header
-  std::size_t line_count = 0;  ///< lines of the header
+  std::size_t body_begin = 0;  ///< offset of the first byte behind the header
+  std::size_t line_count = 0;  ///< number of lines in the header
 };
 
-/// Reads and checks the header. Afterwards there is one element vertex with the scalars x, y, z, and one element face
-/// with the list vertex_indices of an integer type, both with a count above 0. Views point into `bytes`. Errors: those
-/// of read_ply(), with the place "NAME, line N".
+/// Reads and checks the header. If there is no error, the file has one element vertex with the scalars x, y, z, and one
+/// element face with the list vertex_indices of an integer type, both with a count above 0. Views in the result point
+/// into `bytes`. Errors: those of read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
-/// Assigns the roles of velocities to properties. Returns true if there are velocities. Errors: those of
-/// read_moving_ply(), with the place "NAME, header".
+/// Finds the properties that are velocities, and sets their roles. Returns true if there are velocities. Errors: those
+/// of read_moving_ply(), with the place "NAME, header".
 [[nodiscard]] Result<bool> assign_velocities(Header& header, const std::string& name);
 
 }  // namespace chronormal::inline internal::ply

@@ -13,15 +13,16 @@
 
 namespace chronormal::inline internal {
 
-/// A builder of faces. It stores no offsets until the first face that is not a triangle, because most meshes have only
-/// triangles.
+/// A builder of faces. Most meshes have only triangles, so it stores no offsets of faces until the first face that is
+/// not a triangle.
 class PolygonBuilder {
  public:
   static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();
 
   void reserve_triangles(std::size_t count) { corners_.reserve(3 * count); }
 
-  /// Adds a corner to the face that is being built. Returns false if the mesh has too many to be counted in 32 bits.
+  /// Adds a corner to the face that is being built. Returns false if the mesh would have more corners than 32 bits can
+  /// count.
   [[nodiscard]] bool add_corner(std::uint32_t vertex) {
     if (corners_.size() >= kMaxCorners) return false;
     corners_.push_back(vertex);
@@ -33,7 +34,7 @@ class PolygonBuilder {
   /// Returns the number of finished faces, which is the index of the face that is being built.
   [[nodiscard]] std::size_t face_count() const noexcept { return face_count_; }
 
-  /// Leaves out the face that is being built.
+  /// Discards the face that is being built.
   void drop_face() { corners_.resize(face_begin_); }
 
   void end_face() {
@@ -45,7 +46,7 @@ class PolygonBuilder {
     ++face_count_;
   }
 
-  /// Makes the topology; the builder is used up. Errors: from Topology::polygons().
+  /// Makes the topology of all faces. The builder must not be used afterwards. Errors: those of Topology::polygons().
   [[nodiscard]] Result<Topology> build(std::size_t vertex_count) {
     corners_.shrink_to_fit();
     offsets_.shrink_to_fit();

@@ -1,4 +1,4 @@
-// Follows links and identifies files, in the same way on all systems.
+// Follows symbolic links and identifies files, in the same way on all systems.
 #include "io/system/files.h"
 
 #include <system_error>

@@ -1,4 +1,4 @@
-// The system of Linux, of other POSIX systems, and of Emscripten.
+// Implements io/system for Linux, other POSIX systems, and Emscripten.
 #ifndef _WIN32
 
 #include <fcntl.h>
@@ -56,7 +56,7 @@ FileStatus status_from(const struct stat& found, int descriptor) {
   return status;
 }
 
-// Opens a path, and tries again after a signal.
+// Opens a path. Tries again if a signal interrupts the call.
 int open_path(const std::string& path, int flags, mode_t mode) {
   int descriptor = -1;
   do descriptor = ::open(path.c_str(), flags | O_CLOEXEC, mode);
@@ -64,7 +64,8 @@ int open_path(const std::string& path, int flags, mode_t mode) {
   return descriptor;
 }
 
-// Waits until a pipe that the other side made non-blocking is ready. Returns false for any other error in errno.
+// Waits until a pipe that the other side made non-blocking is ready. Also returns true if a signal interrupted the last
+// call. Returns false for any other error in errno.
 bool may_go_on(int descriptor, short events) noexcept {
   if (errno == EINTR) return true;
   if (errno != EAGAIN) return false;
@@ -129,7 +130,8 @@ bool write_bytes(int descriptor, std::string_view bytes) noexcept {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
     if (count > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(count));
-    } else if (count == 0) {  // which no system should return
+      // No system should report success for 0 bytes; this avoids an endless loop.
+    } else if (count == 0) {
       errno = EIO;
       return false;
     } else if (!may_go_on(descriptor, POLLOUT)) {
@@ -170,7 +172,8 @@ bool set_end(int descriptor, std::uint64_t size) {
 void forget_bytes([[maybe_unused]] int descriptor, [[maybe_unused]] std::uint64_t at,
                   [[maybe_unused]] std::uint64_t size) noexcept {
 #ifdef __linux__
-  // Pages that are freed here are the next ones that files get, and their bytes never go to the disk.
+  // The system can use the freed pages for the next files, and the bytes that were in them are never written to the
+  // disk.
   (void)::fallocate(descriptor, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(at),
                     static_cast<off_t>(size));
 #endif
@@ -183,7 +186,7 @@ std::uint64_t written_bytes([[maybe_unused]] int descriptor, std::uint64_t size,
   off_t hole = 0;
   while (written < enough) {
     const off_t data = ::lseek(descriptor, hole, SEEK_DATA);
-    if (data < 0 && errno == ENXIO) break;  // there is a hole to the end
+    if (data < 0 && errno == ENXIO) break;  // the rest of the file is a hole
     hole = data < 0 ? -1 : ::lseek(descriptor, data, SEEK_HOLE);
     if (hole <= data) {
       written = size;
@@ -199,7 +202,8 @@ std::uint64_t written_bytes([[maybe_unused]] int descriptor, std::uint64_t size,
 }
 
 bool take_permissions(int descriptor, const FileStatus& old) {
-  if (::fchown(descriptor, old.owner, old.group) != 0) errno = 0;  // only the owner or root may do that
+  // Only root may give a file to another owner, so a failure is not an error.
+  if (::fchown(descriptor, old.owner, old.group) != 0) errno = 0;
   return ::fchmod(descriptor, static_cast<mode_t>(old.permissions)) == 0;
 }
 
@@ -232,7 +236,7 @@ const char* map_file(int descriptor, std::size_t size) noexcept {
   return static_cast<const char*>(mapping);
 }
 
-// A mapping is ours alone (MAP_PRIVATE, read only), so the const_casts do no harm.
+// Mappings are read-only and private to this process (MAP_PRIVATE), so the const_casts do no harm.
 void unmap(const char* bytes, std::size_t size) noexcept { (void)::munmap(const_cast<char*>(bytes), size); }
 
 void release_mapping(const char* bytes, std::size_t size) noexcept {
@@ -301,13 +305,14 @@ constexpr Request kRequests[] = {
     {SIGXCPU, "stopped, since it used more time than allowed (SIGXCPU)"},
 };
 
-Endings watched{};  // set before the handlers are
+// Must be set before the handlers are installed.
+Endings watched{};
 
 extern "C" void end_by_request(int signal) {
   for (const Request& request : kRequests) {
     if (request.signal == signal) watched.by_request(request.message);
   }
-  // SA_RESETHAND has restored the default action, which runs when the handler returns.
+  // SA_RESETHAND has restored the default action of the signal. That action runs when this handler returns.
   (void)std::raise(signal);
 }
 
@@ -324,8 +329,9 @@ extern "C" void end_by_abort(int /*signal*/) { watched.by_abort(); }
 void install(int signal, void (*handler)(int), unsigned flags = SA_RESETHAND) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = static_cast<int>(flags);  // of SIG_IGN nothing
-  (void)sigfillset(&action.sa_mask);          // a macro on macOS
+  // SA_RESETHAND has no meaning for SIG_IGN.
+  action.sa_flags = static_cast<int>(flags);
+  (void)sigfillset(&action.sa_mask);  // a macro on macOS
   (void)::sigaction(signal, &action, nullptr);
 }
 
@@ -336,7 +342,8 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-// The system assigns the lowest numbers first. Each stream is opened in its unused direction.
+// The system assigns the lowest free numbers first, so each closed stream gets its own number. It is opened in the
+// direction that the program does not use.
 void prepare_standard_streams() noexcept {
   for (int stream = kStandardInput; stream <= kStandardError; ++stream) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;

@@ -1,37 +1,38 @@
-/// The beginning and the end of a process, as the system has them. What a program does then is its own matter:
-/// cli/terminal/process.h. Private to the program.
+/// Prepares the standard streams of a process, and calls functions of the program when something ends it.
+/// cli/terminal/process.h decides what these functions do. Private to the program.
 #ifndef CHRONORMAL_IO_SYSTEM_PROCESS_H_
 #define CHRONORMAL_IO_SYSTEM_PROCESS_H_
 
 namespace chronormal::inline internal {
 
-/// Opens each standard stream that is closed on the null device, the wrong way round: reading and writing still fail,
-/// but no file that is opened later becomes this stream. On Windows, bytes then pass unchanged through all three.
+/// Opens each closed standard stream on the null device, in the wrong direction. Reading and writing then still fail,
+/// but no file that is opened later becomes this stream. On Windows, also makes all three streams pass bytes unchanged.
 void prepare_standard_streams() noexcept;
 
-/// Actions of a program when something ends it. Each runs in the handler of a signal, or in a thread that the system
-/// has made for it, while all other threads go on.
+/// The functions that are called when something ends the program. Each runs in a signal handler, or in a thread that
+/// the system creates for it, while all other threads go on.
 struct Endings {
-  /// Somebody tells the program to end. The process ends when this returns, as the system says: by the signal on POSIX
-  /// systems, with the exit code of Ctrl-C on Windows.
+  /// Called when somebody asks the program to end. When the function returns, the process ends: by the signal on POSIX
+  /// systems, and with the exit code of Ctrl-C on Windows.
   void (*by_request)(const char* message);
-  /// Somebody has closed the pipe that this thread writes to. Where this returns true the process ends; where it
-  /// returns false, writing is an error. Windows has no signal for it: writing is an error always.
+  /// Called when somebody has closed the pipe to which this thread writes. If the function returns true, the process
+  /// ends. If it returns false, the write fails with an error. On Windows, the write always fails, because there is no
+  /// signal.
   bool (*by_lost_reader)();
-  /// An input that is mapped became shorter, or its disk failed. Must not return.
+  /// Called when a mapped input became shorter, or its disk failed. Must not return.
   void (*by_lost_input)();
-  /// A library called std::abort(). Must not return; nullptr where that ends the program by the signal.
+  /// Called when a library has called std::abort(). Must not return. If nullptr, the signal ends the program.
   void (*by_abort)();
 };
 
-/// Calls these from now on. What was ignored before stays ignored. Writing beyond the limit of a file is an error like
-/// any other.
+/// Installs the functions from now on. Signals that the process ignored before stay ignored. Writing beyond the size
+/// limit of a file becomes an ordinary error.
 void watch_endings(const Endings& endings) noexcept;
 
-/// Gives memory that was freed back to the system, where the C library can be told to.
+/// Gives freed memory back to the system, if the C library supports that.
 void give_back_free_memory() noexcept;
 
-/// Ends the process at once, without destructors. Safe to call from a handler.
+/// Ends the process at once, without destructors. Safe to call in a signal handler.
 [[noreturn]] void end_now(int exit_code) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-// The list has a place for every temporary file that exists at the same time. A name in it belongs to whoever takes it
-// out: the file's owner, when it is done, or remove_temporaries(), which never gives it back.
+// Keeps a list with a place for every temporary file that exists at the same time. Whoever takes a name out of the list
+// owns it: the object of the file when it is done, or remove_temporaries(), which never puts a name back.
 #include "io/system/temporary_file.h"
 
 #include <array>
@@ -15,14 +15,16 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostFiles = std::size_t{1} << 16U;  // the frames of a sequence come into being together
+// The files for all frames of a sequence are open at the same time.
+constexpr std::size_t kMostFiles = std::size_t{1} << 16U;
 
 std::array<std::atomic<char*>, kMostFiles> names{};
 std::array<std::atomic<char*>, kMostFiles>
-    removed{};  // by remove_temporaries(): who owned these may still look at them
+    // Names that remove_temporaries() took. They are never freed, because their objects may still read them.
+    removed{};
 static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not wait");
 
-// Makes 16 hexadecimal digits.
+// Returns 16 random hexadecimal digits.
 std::string random_digits() {
   std::uint64_t number = random_number();
   std::string digits;
@@ -30,12 +32,14 @@ std::string random_digits() {
   return digits;
 }
 
-// Makes a name in the folder of target. It does not depend on the name of target, so that it is never too long.
+// Returns a new name in the folder of `target`. The name does not contain the name of the target, so it is never too
+// long.
 std::string name_beside(const std::string& target) {
   return utf8_of(path_of(target).parent_path() / (".chronormal-" + random_digits() + ".tmp"));
 }
 
-// Takes the first free place of the list. Returns kMostFiles if there is none; the file is written all the same.
+// Puts a name into the first free place of the list, and returns this place. Returns kMostFiles if the list is full;
+// the file is then written without an entry.
 std::size_t enter(char* name) noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
     char* nobody = nullptr;
@@ -44,7 +48,8 @@ std::size_t enter(char* name) noexcept {
   return kMostFiles;
 }
 
-// Copies a name onto the heap, where the list needs it. Returns nullptr, with errno, where there is no memory.
+// Copies a name onto the heap, because the list needs names that outlive their objects. Returns nullptr and sets errno
+// if there is no memory.
 char* copy_of(const std::string& name) noexcept {
   void* const copy = std::malloc(name.size() + 1);
   return copy == nullptr ? nullptr : static_cast<char*>(std::memcpy(copy, name.c_str(), name.size() + 1));
@@ -70,7 +75,7 @@ Error TemporaryFile::not_opened(const std::string& place) {
   return error;
 }
 
-// Moves the descriptor out before the object ends here and removes the name.
+// The descriptor is moved out first. The destructor of `file` then removes the name, but does not close the descriptor.
 Descriptor TemporaryFile::nameless(const std::string& target) {
   TemporaryFile file;
   file.open(name_beside(target), {.reads = true, .writes = true, .makes = Opening::Makes::kNew, .is_private = true});
@@ -79,7 +84,7 @@ Descriptor TemporaryFile::nameless(const std::string& target) {
 
 void TemporaryFile::open(const std::string& name, const Opening& how) {
   name_ = copy_of(name);
-  if (name_ == nullptr) return;  // errno says so
+  if (name_ == nullptr) return;  // errno has the reason
   place_ = stays_ ? kMostFiles : enter(name_);
   Opening without_links = how;
   without_links.follows_links = false;
@@ -103,8 +108,8 @@ bool TemporaryFile::rename_to(const std::string& target, bool replace) noexcept 
   return renamed;
 }
 
-// Takes the name out of the list. If a handler has taken it already, the process is about to end, and the handler may
-// still read the name: it is not freed.
+// Takes the name out of the list and frees it. If a signal handler has taken the name already, the process is about to
+// end and the handler may still read the name. The name is then not freed.
 void TemporaryFile::forget() noexcept {
   const int system_error = errno;
   char* own = name_;

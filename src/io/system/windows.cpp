@@ -1,5 +1,6 @@
-// The system of Windows. Descriptors are those of its C library, whose files are opened here, so that names are UTF-16,
-// bytes stay as they are, and a file can be renamed and removed while somebody has it open.
+// Implements io/system for Windows. Descriptors are those of the C library of Windows, but files are opened by calls of
+// the system. This allows names in UTF-16, passes bytes unchanged, and lets a file be renamed and removed while
+// somebody has it open.
 #ifdef _WIN32
 
 #define WIN32_LEAN_AND_MEAN
@@ -127,7 +128,7 @@ std::optional<FileStatus> status_from(HANDLE handle) {
   }
   BY_HANDLE_FILE_INFORMATION found{};
   if (::GetFileInformationByHandle(handle, &found) == 0) {
-    // Wine has no more than these two for a file that is standard input.
+    // Under Wine, only these two calls work for a file that is the standard input.
     LARGE_INTEGER size{};
     if (::GetFileSizeEx(handle, &size) == 0 || ::GetFileTime(handle, nullptr, nullptr, &found.ftLastWriteTime) == 0) {
       (void)fail();
@@ -139,7 +140,7 @@ std::optional<FileStatus> status_from(HANDLE handle) {
   }
   if ((found.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) != 0) status.kind = FileStatus::Kind::kFolder;
   status.size = joined(found.nFileSizeHigh, found.nFileSizeLow);
-  // Windows counts tenths of microseconds from 1601 on.
+  // Windows counts times in units of 100 nanoseconds from the year 1601.
   const auto ticks =
       static_cast<std::int64_t>(joined(found.ftLastWriteTime.dwHighDateTime, found.ftLastWriteTime.dwLowDateTime));
   status.changed = (ticks - 116444736000000000) * 100;
@@ -151,10 +152,10 @@ std::optional<FileStatus> status_from(HANDLE handle) {
 
 HANDLE open_handle(const std::string& path, DWORD access, DWORD makes) {
   return ::CreateFileW(wide(path).c_str(), access, kShared, nullptr, makes,
-                       FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, nullptr);  // which opens folders, too
+                       FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, nullptr);  // these flags also open folders
 }
 
-// Reads or writes at a place of a file.
+// Calls ReadFile() or WriteFile() for a place in a file.
 template <class Call, class Bytes>
 std::optional<std::size_t> call_at(Call call, int descriptor, std::uint64_t at, Bytes* bytes, std::size_t size) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
@@ -168,12 +169,14 @@ std::optional<std::size_t> call_at(Call call, int descriptor, std::uint64_t at, 
   return std::nullopt;
 }
 
-// Writes text to a console in UTF-16, whatever its code page is, and less than the 32 KiB that it takes at a time.
+// Writes text to a console in UTF-16, so that the code page of the console does not matter. A console takes less than
+// 32 KiB at a time, so long text is written in parts.
 bool write_to_console(HANDLE console, std::string_view text) {
   constexpr std::size_t kMost = std::size_t{1} << 13;
   while (!text.empty()) {
     std::size_t size = std::min(text.size(), kMost);
-    const auto is_inside = [&] { return (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U; };  // a character
+    // Returns true if the text would be cut inside a character.
+    const auto is_inside = [&] { return (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U; };
     for (int back = 0; size < text.size() && size > 1 && back < 3 && is_inside(); ++back) --size;
     const std::wstring wide_text = wide(text.substr(0, size));
     DWORD count = 0;
@@ -184,7 +187,8 @@ bool write_to_console(HANDLE console, std::string_view text) {
   return true;
 }
 
-// Tells whether one name with *, ? and [...] stands for another. Letters match in either case, as files do.
+// Returns true if a name matches a pattern with *, ? and [...]. Upper and lower case are equal, as in file names of
+// Windows.
 bool matches(std::wstring_view pattern, std::wstring_view name) {
   const auto folded = [](wchar_t c) {
     return reinterpret_cast<std::uintptr_t>(
@@ -271,7 +275,7 @@ std::optional<std::size_t> read_some(int descriptor, std::span<char> bytes, bool
   DWORD count = 0;
   const auto size = static_cast<DWORD>(std::min(bytes.size(), kMost));
   if (::ReadFile(handle_of(descriptor), bytes.data(), size, &count, nullptr) != 0) return count;
-  if (::GetLastError() == ERROR_BROKEN_PIPE) return 0;  // its writer is done
+  if (::GetLastError() == ERROR_BROKEN_PIPE) return 0;  // the writer has closed the pipe
   (void)fail();
   return std::nullopt;
 }
@@ -283,7 +287,8 @@ bool write_bytes(int descriptor, std::string_view bytes) noexcept {
     DWORD count = 0;
     const auto size = static_cast<DWORD>(std::min(bytes.size(), kMost));
     if (::WriteFile(handle_of(descriptor), bytes.data(), size, &count, nullptr) == 0) return fail();
-    if (count == 0) {  // a disk that is full, or a pipe that takes nothing
+    // The disk is full, or a pipe accepts no bytes.
+    if (count == 0) {
       errno = ENOSPC;
       return false;
     }
@@ -329,15 +334,18 @@ void forget_bytes(int /*descriptor*/, std::uint64_t /*at*/, std::uint64_t /*size
 
 std::uint64_t written_bytes(int /*descriptor*/, std::uint64_t size, std::uint64_t /*enough*/) { return size; }
 
-bool take_permissions(int /*descriptor*/, const FileStatus& /*old*/) { return true; }  // those of the folder hold
+// The permissions of the folder apply to new files.
+bool take_permissions(int /*descriptor*/, const FileStatus& /*old*/) { return true; }
 
 bool flush_file(int descriptor) {
   return ::FlushFileBuffers(handle_of(descriptor)) != 0 || ::GetLastError() == ERROR_INVALID_FUNCTION || fail();
 }
 
-void flush_folder_of(const std::string& /*path*/) {}  // MOVEFILE_WRITE_THROUGH has done it
+// MOVEFILE_WRITE_THROUGH has already written the rename to the disk.
+void flush_folder_of(const std::string& /*path*/) {}
 
-// Locks of Windows keep others from reading, too, so that a byte is locked that no file has.
+// A lock on Windows also keeps other processes from reading the locked bytes. A byte far beyond the end of any file is
+// therefore locked.
 bool lock_file(int descriptor) noexcept {
   OVERLAPPED place{};
   place.Offset = 0xFFFFFFFE;
@@ -356,7 +364,8 @@ bool rename_file(const char* from, const char* to, bool replace) noexcept {
   if (::MoveFileExW(wide(from).c_str(), target.c_str(), how) != 0) return true;
   (void)fail();
   if (!replace || errno != EACCES) return false;
-  // Windows says that access is denied where somebody has the target open: asking for it alone tells why.
+  // Windows reports "access denied" if somebody has the target open. Opening the target alone tells this case from
+  // others.
   const HANDLE old = ::CreateFileW(target.c_str(), DELETE, kShared, nullptr, OPEN_EXISTING, 0, nullptr);
   if (old == INVALID_HANDLE_VALUE) return fail();
   (void)::CloseHandle(old);
@@ -364,21 +373,21 @@ bool rename_file(const char* from, const char* to, bool replace) noexcept {
   return false;
 }
 
-// Nobody can replace a file that is mapped, and bake may write over its input: only files are mapped that are too large
-// to be read into memory.
+// Windows cannot replace a file while it is mapped, but a bake may write over its own input. Only files that are too
+// large to be read into memory are therefore mapped.
 const char* map_file(int descriptor, std::size_t size) noexcept {
   constexpr std::size_t kSmallest = std::size_t{1} << 30;
   if (size < kSmallest) return nullptr;
   const HANDLE mapping = ::CreateFileMappingW(handle_of(descriptor), nullptr, PAGE_READONLY, 0, 0, nullptr);
   if (mapping == nullptr) return nullptr;
   const void* const bytes = ::MapViewOfFile(mapping, FILE_MAP_READ, 0, 0, 0);
-  (void)::CloseHandle(mapping);  // the view keeps it
+  (void)::CloseHandle(mapping);  // the view keeps the mapping alive
   return static_cast<const char*>(bytes);
 }
 
 void unmap(const char* bytes, std::size_t /*size*/) noexcept { (void)::UnmapViewOfFile(bytes); }
 
-// Unlocking pages that were never locked takes them out of the working set.
+// VirtualUnlock() on pages that were never locked removes them from the working set, which releases their memory.
 void release_mapping(const char* bytes, std::size_t size) noexcept {
   (void)::VirtualUnlock(const_cast<char*>(bytes), size);
 }
@@ -393,7 +402,7 @@ std::uint64_t random_number() noexcept {
   }
 }
 
-// Looks through the folders of the pattern from the first to the last.
+// Searches the folders of the pattern from the outermost to the innermost.
 std::vector<std::string> match_pattern(const std::string& pattern, bool /*has_escapes*/) {
   const std::size_t begin = begin_of_name(pattern);
   const std::string before = pattern.substr(0, begin), name = pattern.substr(begin);
@@ -440,7 +449,7 @@ std::span<char*> arguments_of_program(int /*count*/, char** /*arguments*/) {
 }
 
 std::optional<std::string> file_of_program() {
-  std::wstring name(32768, L'\0');  // the longest name that there is
+  std::wstring name(32768, L'\0');  // the longest name that Windows allows
   const DWORD size = ::GetModuleFileNameW(nullptr, name.data(), static_cast<DWORD>(name.size()));
   if (size == 0 || size >= name.size()) return std::nullopt;
   return narrow(std::wstring_view(name).substr(0, size));
@@ -448,7 +457,7 @@ std::optional<std::string> file_of_program() {
 
 bool is_terminal(int stream) noexcept { return is_console(stream); }
 
-// Asks the console to understand marks, which those before Windows 10 cannot.
+// Asks the console to interpret escape sequences, which consoles before Windows 10 cannot do.
 bool is_clever_terminal(int stream) noexcept {
   const HANDLE handle = handle_of(stream);
   DWORD mode = 0;
@@ -466,9 +475,11 @@ std::size_t columns_of_terminal(int stream) noexcept {
 
 namespace {
 
-Endings watched{};  // set before the handlers are
+// Must be set before the handlers are installed.
+Endings watched{};
 
-// Runs in a thread of its own, and ends the process with the code that Windows uses. Wine would use 0.
+// Ends the process with the exit code that Windows uses. The system runs this function in a thread of its own. Under
+// Wine, the exit code would otherwise be 0.
 BOOL WINAPI end_by_request(DWORD event) {
   const bool is_key = event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT;
   watched.by_request(is_key ? "interrupted (Ctrl-C)" : "ended, since its console was closed");
@@ -484,7 +495,8 @@ extern "C" void end_by_abort(int /*signal*/) { watched.by_abort(); }
 
 }  // namespace
 
-// The C library gives no descriptor to a stream that is closed, and opens none in its place: its numbers stay free.
+// The C library of Windows gives no descriptor to a closed stream, and opens no other file under the number of this
+// stream.
 void prepare_standard_streams() noexcept {
   for (int stream = kStandardInput; stream <= kStandardError; ++stream) {
     if (::_get_osfhandle(stream) < 0) {
