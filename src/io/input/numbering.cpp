@@ -45,9 +45,9 @@ struct Number {
 
 // The place of a number in a name.
 struct Place {
-  std::size_t begin = 0, end = 0;    // where the number begins (with its sign) and ends
-  std::size_t digits = 0;            // where its first digit is
-  std::size_t point = 0, power = 0;  // where the decimal point and the letter e are; `end` if there is none
+  std::size_t begin = 0, end = 0;    // begin (at its sign) and end of the number
+  std::size_t digits = 0;            // offset of its first digit
+  std::size_t point = 0, power = 0;  // offsets of the decimal point and of the letter e; `end` if there is none
 };
 
 struct Cut {

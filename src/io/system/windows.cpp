@@ -152,7 +152,7 @@ std::optional<FileStatus> status_from(HANDLE handle) {
 
 HANDLE open_handle(const std::string& path, DWORD access, DWORD makes) {
   return ::CreateFileW(wide(path).c_str(), access, kShared, nullptr, makes,
-                       FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, nullptr);  // these flags also open folders
+                       FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, nullptr);  // the flags also open folders
 }
 
 // Calls ReadFile() or WriteFile() for a place in a file.
