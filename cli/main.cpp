@@ -1,4 +1,4 @@
-// The program chronormal: runs the command that the command line names, and maps its result to an exit code.
+// Starts the program chronormal: runs the command that the command line names, and turns its result into an exit code.
 
 #include <exception>
 #include <new>

@@ -1,4 +1,4 @@
-// The command `audit`: its options, and the output of its result or of its part in a shard.
+// Defines the command `audit`: its options, and the output of its result or, in a shard, of its part of the result.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,26 +30,26 @@ namespace {
 struct AuditArguments {
   InputOptions input;
   CommonOptions common;
-  std::string rule;  // empty: the default for the input
+  std::string rule;  // if empty, the rule depends on the input
   JudgeArguments judge;
   std::optional<std::string> poses;  // "random", or the file of the poses
   std::optional<std::string> weights;
   AuditLimits limits;
-  std::optional<std::string> errors;  // the file for all single errors
+  std::optional<std::string> errors;  // the file to which the error of every sample is written
   RunArguments run;
   bool no_weld = false;
   bool json = false;
 };
 
-// The message if a tolerance is given and nothing in the input moves. Such an input must not pass, because an export
-// may have lost its animations.
+// The message if the user gives a tolerance but nothing in the input moves. Such an input must not pass, because an
+// export may have lost its animations.
 constexpr const char* kNothingMoves =
     "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 
 constexpr const char* kDividesSequences =
     "only a sequence of keyframes can be divided, not a glTF file; leave this option out";
 
-// Quotes a word so that a shell reads it back.
+// Quotes a word so that a shell reads the same word back.
 std::string shell_word(const std::string& word) {
   constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:@%+=";
   if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
@@ -58,7 +58,8 @@ std::string shell_word(const std::string& word) {
   return printable(quoted + "'");
 }
 
-// Returns the part of a command line that names the input, selects its keyframes, and chooses the path of vertices.
+// Returns the words of a command line that name the input, select its keyframes, and choose the path of vertices. A
+// recommended command contains them.
 std::string words_of(const InputOptions& input) {
   std::string words;
   constexpr std::size_t kMost = 4;
@@ -111,7 +112,7 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       options.common.table(false)};
 }
 
-// Audits an input that is not glTF. The result is empty on a rank that has nothing to print.
+// Audits an input that is not a glTF file. The result is empty on a rank that has nothing to print.
 Result<std::optional<Audit>> audit_motion(Input& input, const AuditArguments& options, const AuditOptions& how,
                                           CommandRun& run, AuditRun& segments) {
   const Result<MotionStream*> motion = input.stream();
@@ -233,26 +234,26 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   return how;
 }
 
-// Explains that an input does not pass because of errors at samples whose faces almost vanish. `place` ends the
-// sentence.
+// Returns the sentence for an input that does not pass because of errors at samples whose faces almost vanish. `place`
+// ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}, where faces almost vanish{}",
                    error.faint_worst, *audited.limits.degrees, place);
 }
 
-// Explains why torn edges do not pass.
+// Returns the sentence for an input that does not pass because more edges are torn at one moment than the limit allows.
 std::string why_torn(const Audited& audited, const MotionError& error) {
   return formatted("{} at one moment, beyond the limit of {}",
                    counted(error.most_torn, "edge is torn", "edges are torn"), grouped(*audited.limits.torn_edges));
 }
 
-// Explains that an input does not pass because normals cancel.
+// Returns the sentence for an input that does not pass because the normals around some vertices cancel.
 std::string why_cancelled(const MotionError& error) {
   return formatted("{} no true normal, since the normals of the faces around cancel, so they cannot be judged",
                    counted(error.cancelled, "sample has", "samples have"));
 }
 
-// Explains which limit an input exceeds: the tolerance of errors, or else another limit.
+// Returns the sentence that says which limit an input exceeds: the tolerance of errors, or else another limit.
 std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
                        const std::string& unlit_label, const std::string& faint_label,
                        const std::string& cancelled_label) {
@@ -270,7 +271,7 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
   return why_torn(audited, error);
 }
 
-// Explains why a viewer does not pass.
+// Returns the sentence that says why the errors in a viewer are beyond the limits.
 std::string why_beyond(const Audited& audited, const ViewerAudit& found) {
   if (found.beyond > 0 && audited.limits.degrees)
     return formatted("{}: a mesh has {} than this viewer supports; {}", found.viewer.title,
@@ -325,8 +326,8 @@ Result<int> run_one(const AuditArguments& options, const AuditOptions& how, Prog
   return say_what_is_beyond(found, "") ? kExitDone : kExitBeyond;
 }
 
-// Returns the exit code for two files: the worse of both. A file that cannot be judged is worse than one that exceeds
-// the tolerance.
+// Returns the exit code for two files, which is the worse of their exit codes. A file that cannot be judged is worse
+// than one that exceeds the tolerance.
 int worse_exit(int a, int b) {
   constexpr std::array<int, 4> kWorstFirst = {static_cast<int>(ErrorCode::kFailed),
                                               static_cast<int>(ErrorCode::kInvalidInput), kExitBeyond, kExitDone};

@@ -1,4 +1,4 @@
-// The command `bake`: its options, the file that it writes, and its report.
+// Defines the command `bake`: its options, the file that it writes, and its report.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -25,25 +25,26 @@
 namespace chronormal::cli {
 namespace {
 
-// The largest result in bytes that is audited after a bake. An audit judges every target, so for a larger file the user
-// would wait too long for one line of the report.
+// The largest result, in bytes, that is audited after a bake. An audit judges every target, so the user would wait too
+// long for the audit of a larger file, which gives only one line of the report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
 struct BakeArguments {
   InputOptions input;
   CommonOptions common;
-  std::string encode;     // empty: depends on what drives the weights
-  std::string weighting;  // empty: as the stored base normals suggest
+  std::string encode;     // if empty, the encoding depends on what drives the weights
+  std::string weighting;  // if empty, the stored base normals suggest the weighting
   double crease_angle = 180;
   bool recompute_base = false, smooth = false, dense_zeros = false;
   std::optional<std::size_t> most_bytes;
-  std::string viewers;                // empty: the default viewers
-  std::optional<std::string> output;  // if requested by name
+  std::string viewers;                // if empty, the default viewers
+  std::optional<std::string> output;  // the output, if -o names it
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
-  std::optional<std::string> drivers;  // the file for the drivers, beside the result
-  std::optional<std::string> poses;    // the file of the poses for which the rig is baked
+  // the file beside the result to which the drivers of the correction targets are written
+  std::optional<std::string> drivers;
+  std::optional<std::string> poses;  // the file of the poses for which the rig is baked
   bool json = false, no_audit = false, no_weld = false;
 };
 
@@ -110,7 +111,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Returns true if some mesh has no candidate within the requested limits.
+// Returns true if a mesh has no candidate within the limits that the user gave.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
@@ -139,17 +140,19 @@ void warn_if_worse(const BakeReport& report, bool of_animations) {
   if (report.audit && report.audit->is_worse()) warn({worse_text(*report.audit, of_animations)});
 }
 
-// Audits the input (by audit_before) and the written file, both against the true normals of the original glTF file.
+// Audits the input (by calling audit_before) and the written file, both against the true normals of the original glTF
+// file.
 //
-// Tracks of the result have more keys than tracks of the input. So an audit of the result has more samples, and may
-// find errors that the input has as well. The result is called worse only after the input was audited at equally many
-// samples. Returns nothing if an audit can judge neither file. Errors: kFailed if the written file cannot be read.
+// Tracks of the result have more keys than tracks of the input. An audit of the result therefore has more samples, and
+// may find errors that the input also has at these moments. The result is called worse only after the input was audited
+// at equally many samples. Returns nothing if an audit can judge neither file. Errors: kFailed if the written file
+// cannot be read.
 template <class AuditBefore>
 Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const BakeArguments& options,
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
-  // A guard: while it lives, a user who interrupts the audit is told that the file is complete.
+  // A guard for the time of the audit. A user who interrupts the audit is told that the output file is complete.
   struct Stands {
     Stands() {
       say_at_end(
@@ -164,7 +167,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   audited.weighting = how.weighting;
   constexpr std::size_t kEnoughSegments = 120;
   audited.most_segments = kEnoughSegments;
-  if (author != nullptr) {  // a sequence looks the same in all viewers and has no poses of its own
+  // Only a glTF file has poses of its own, and looks different from viewer to viewer.
+  if (author != nullptr) {
     audited.viewers = how.viewers;
     audited.viewers.insert(audited.viewers.end(), how.spared.begin(), how.spared.end());
     audited.is_posed = how.is_posed;
@@ -191,8 +195,8 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
   return result;
 }
 
-// Returns true if every normal of the result that was audited can be lit. Otherwise returns false, and prints a message
-// if a tolerance was requested.
+// Returns true if the audit found no normal of the result that is zero, infinite or NaN, so that a viewer can light
+// every normal. Otherwise returns false, and prints a message if the user gave a tolerance.
 bool is_lit(const BakeArguments& options, const BakeReport& report) {
   const std::size_t unlit = report.audit ? report.audit->after.error.unlit : 0;
   if (!options.tolerance || unlit == 0) return true;
@@ -235,7 +239,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   baked.value().left_out_bytes = left_out.value();
   std::vector<std::string> warnings = baked.value().warnings;
   for (std::string& warning : edit.warnings(output)) warnings.push_back(std::move(warning));
-  // The result, which may replace the input, is written last, so that nothing is lost if an earlier write fails.
+  // The result is written last, because it may replace the input. If an earlier write fails, nothing is lost.
   if (options.drivers) {
     if (const Status written = write_output(*options.drivers, baked.value().drivers, options.common.force); !written)
       return written.error();
@@ -255,7 +259,7 @@ Result<int> run_gltf(const BakeArguments& options, BakeOptions how, const Input&
   return is_lit(options, told) ? code : kExitBeyond;
 }
 
-// Opens the input again with the normals of all keyframes, for an audit.
+// Opens the input again, with the normals of all keyframes, because the audit needs these normals.
 Result<Input> open_whole(const BakeArguments& options, Progress& progress) {
   InputOptions wanted = options.input;
   wanted.shading = KeepShading::kAll;
@@ -281,7 +285,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (how.encoding == BakeEncoding::kKeys && how.tolerance.value_or(kHarmlessTolerance) < kLeastKeyTolerance)
     return misuse("--tolerance", "the tolerance must be at least 0.001 degrees with --encode keys");
   if (how.encoding == BakeEncoding::kKeys && options.input.is_curved()) {
-    // The tolerance is for the error against the curves. Cutting the curves into straight pieces uses up a part of it.
+    // The user's tolerance limits the error against the curves. Cutting the curves into straight pieces uses up a part
+    // of this tolerance.
     const double asked = how.tolerance.value_or(kHarmlessTolerance),
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
@@ -307,7 +312,7 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
     return invalid_input(
         input.name(),
         "the weights of this animation jump, so it cannot be baked as a sequence; bake the glTF file itself");
-  // By default hard edges follow the stored normals of the file.
+  // By default, hard edges follow the stored normals of the file.
   const StoredNormals& stored = *input.normals().value();
   if (!stored.of_keyframes.empty()) {
     const std::vector<float>& first = stored.of_keyframes.front();
@@ -322,8 +327,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   if (options.input.is_curved()) baked.value().cut = input.cut_path();
   warn(baked.value().warnings);
   BakeReport told{input.name(), output, std::nullopt, std::nullopt, input.notes()};
-  // An audit judges the triangles of the file. If the input has larger polygons, their normals differ from the normals
-  // of these triangles.
+  // An audit judges the triangles of the written file. Their normals differ from the normals of larger polygons, so a
+  // mesh with such polygons is not audited.
   if (baked.value().bytes <= kMostAudited && motion.topology.all_triangles()) {
     std::optional<Input> whole;
     auto audited = audit_both(how, options, nullptr, [&](AuditOptions asked, KnownAuthors&) -> Result<Audit> {
@@ -351,8 +356,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Finds the output file. Without -o, the last of several files is the output, as in IN OUT, if its extension allows
-// that.
+// Finds the name of the output file. Without -o, the last of several files is the output, as in IN OUT, if its
+// extension is one that bake can write.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {
@@ -369,7 +374,7 @@ Status take_output(BakeArguments& options) {
 }
 
 // Checks that no output replaces another output or an input. Only OUT may be the same file as INPUT, because the result
-// keeps the whole content of INPUT.
+// keeps all content of INPUT.
 Status check_files(const BakeArguments& options) {
   std::vector<NamedFile> poses;
   if (options.poses && *options.poses != "random") poses.push_back({"--poses", *options.poses});
@@ -386,7 +391,7 @@ Result<int> run(BakeArguments options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
-  // This error is found by the extension alone, so it is reported before anything is read. Other errors about the name
+  // The extension alone reveals this error, so it is reported before anything is read. Other errors about the name
   // depend on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
@@ -407,7 +412,7 @@ Result<int> run(BakeArguments options) {
                                              : run_sequence(options, how.value(), input.value(), progress);
 }
 
-// Returns the options that all commands share, but with an optional OUT.
+// Returns the options that all commands share, but makes OUT optional.
 std::vector<Option> with_output(std::vector<Option> table, std::optional<std::string>& output) {
   table.front() = {"-o,--output OUT", &output, "where to write (default: the last INPUT of several)"};
   return table;

@@ -1,4 +1,4 @@
-/// The page of reports that is built into the program.
+/// Gives access to the page of reports that is built into the program.
 #ifndef CLI_COMMANDS_BUILT_IN_PAGE_H_
 #define CLI_COMMANDS_BUILT_IN_PAGE_H_
 

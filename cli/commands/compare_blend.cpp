@@ -5,7 +5,7 @@
 namespace chronormal::cli {
 namespace {
 
-// Checks the options as far as possible without the input.
+// Checks the options as far as this is possible before the input is read.
 Status check(const InputOptions& input, bool elements_given, const BlendArguments& arguments) {
   if (*arguments.rows < 1 || *arguments.rows > kMostBlendRows)
     return misuse("--blend", "the number of poses must be a whole number from 1 to 10,000");
@@ -21,7 +21,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
   return Success{};
 }
 
-// Adds the option as the place to an error of the library.
+// Names `option` as the place of a usage error of the library that has no place.
 Error blamed(Error error, const std::string& option) {
   if (error.code == ErrorCode::kUsage && error.place.empty()) error.place = option;
   return error;

@@ -1,4 +1,4 @@
-/// The option --blend of `compare`.
+/// Implements the option --blend of `compare`.
 #ifndef CLI_COMMANDS_COMPARE_BLEND_H_
 #define CLI_COMMANDS_COMPARE_BLEND_H_
 
@@ -19,8 +19,9 @@ struct BlendArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input and compares. If elements are requested, their normals follow the geometry of a glTF file instead of
-/// the stored normals. Errors: kUsage for options that exclude each other; those of reading and of compare_blends().
+/// Reads the input and compares blends of its targets. If the user chooses elements, their normals follow the geometry
+/// of a glTF file instead of the stored normals. Errors: kUsage for options that exclude each other; those of reading
+/// and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

@@ -1,4 +1,4 @@
-// The command `compare`: its options, and the output of its result or of its part in a shard.
+// Defines the command `compare`: its options, and the output of its result or, in a shard, of its part of the result.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -30,12 +30,12 @@ constexpr std::size_t kMostSamples = 1000000;
 struct CompareArguments {
   InputOptions input;
   CommonOptions common;
-  std::optional<std::string> schemes;  // a list; by default, depends on the elements
+  std::optional<std::string> schemes;  // names between commas; the default depends on the elements
   std::optional<std::size_t> samples;
   ElementArguments elements{"faces"};
-  std::string weighting;            // empty: area
-  std::string access;               // empty: random
-  std::string table;                // empty: text
+  std::string weighting;            // if empty, area
+  std::string access;               // if empty, random
+  std::string table;                // if empty, text for people
   std::optional<std::string> face;  // N or N:SEGMENT
   bool each = false;
   bool json = false;
@@ -43,7 +43,7 @@ struct CompareArguments {
   bool no_times = false;
   bool certify = false;
   std::optional<double> tolerance;    // degrees
-  std::optional<std::string> errors;  // the file for all single errors
+  std::optional<std::string> errors;  // the file to which the error of every sample is written
   RunArguments run;
   BlendArguments blend;
   TruthArguments truth;
@@ -68,7 +68,7 @@ std::vector<std::string> scheme_names(const CompareArguments& options) {
   return options.schemes ? split_at_commas(*options.schemes) : std::vector<std::string>();
 }
 
-// Returns the first given option that has no effect with --blend, or an empty text.
+// Returns the first given option that has no effect together with --blend, or an empty text.
 std::string option_of_schemes(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -197,7 +197,7 @@ Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareAr
   return prints.value() ? std::optional(std::move(named)) : std::nullopt;
 }
 
-// Returns the first given option that is not supported if several ranks divide one motion, or an empty text.
+// Returns the first given option that is not supported when several ranks divide one motion, or an empty text.
 std::string option_of_one_process(const CompareArguments& options) {
   if (options.errors) return "--errors";
   if (options.face) return "--face";
@@ -227,7 +227,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
   } else {
     inputs.push_back(options.input);
   }
-  // Reports all wrong inputs before the first one is read.
+  // Wrong options of all inputs are reported before the first input is read.
   for (const InputOptions& input : inputs) {
     if (const Status status = check_input(input); options.each && !status) return status.error();
   }
@@ -249,12 +249,13 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     if (!comparison.value()) break;
     comparisons.push_back(std::move(*comparison.value()));
     if (options.each && !wanted.base.empty())
-      comparisons.back().name = wanted.files.front();  // all inputs have the same base
+      // With --each, all inputs have the same base, so the name of the target tells them apart.
+      comparisons.back().name = wanted.files.front();
   }
   return comparisons;
 }
 
-// Checks that no output replaces another one or an input.
+// Checks that no output replaces another output or an input.
 Status check_files(const CompareArguments& options) {
   std::vector<NamedFile> outputs = {{"OUT", options.common.output}}, read = input_files(options.input);
   if (options.errors) outputs.push_back({"--errors", *options.errors});
@@ -282,7 +283,7 @@ Result<int> run_blend(const CompareArguments& options) {
   return kExitDone;
 }
 
-// Returns the first given option that has no effect with --truth, or an empty text.
+// Returns the first given option that has no effect together with --truth, or an empty text.
 std::string option_of_samples(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.samples) return "--samples";
@@ -313,7 +314,7 @@ Result<int> run_truth(const CompareArguments& options) {
   return kExitDone;
 }
 
-// Returns the first given option that has no effect with --face, or an empty text.
+// Returns the first given option that has no effect together with --face, or an empty text.
 std::string option_of_all_faces(const CompareArguments& options) {
   if (!options.access.empty()) return "--access";
   if (options.certify) return "--certify";
@@ -370,7 +371,7 @@ Result<int> run(const CompareArguments& options) {
   if (!options.face && options.blend.rows && options.truth.every)
     return misuse("--truth", "--truth is for sequences and --blend for blend shapes; leave one of the two out");
   if (!options.face && options.blend.rows) return run_blend(options);
-  // Reports wrong names before any long computation.
+  // Wrong names are reported before any long computation.
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "the list has an empty name; remove the extra comma");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();

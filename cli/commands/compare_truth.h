@@ -1,4 +1,4 @@
-/// The option --truth of `compare`.
+/// Implements the option --truth of `compare`.
 #ifndef CLI_COMMANDS_COMPARE_TRUTH_H_
 #define CLI_COMMANDS_COMPARE_TRUTH_H_
 
@@ -17,7 +17,8 @@ struct TruthArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input, leaves keyframes out, and compares with them. Errors: those of reading and of compare_with_truth().
+/// Reads the input, leaves some keyframes out, and compares interpolated normals with the normals at these keyframes.
+/// Errors: those of reading and of compare_with_truth().
 [[nodiscard]] Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
                                                                     const ElementArguments& elements,
                                                                     const TruthArguments& arguments,

@@ -1,4 +1,4 @@
-// The command `convert` writes a motion in another format.
+// Defines the command `convert`, which writes a motion in another format.
 #include <memory>
 #include <utility>
 
@@ -43,7 +43,8 @@ Result<int> run(const ConvertArguments& options) {
   InputOptions wanted = options.input;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  wanted.velocities = options.common.output.ends_with(".npz");  // the only output format with velocities
+  // Only .npz files can store velocities.
+  wanted.velocities = options.common.output.ends_with(".npz");
   Result<Input> input = open_input("convert", std::move(wanted), progress);
   if (!input) return input.error();
   const Result<MotionStream*> motion = input.value().stream();

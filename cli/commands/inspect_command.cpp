@@ -1,4 +1,4 @@
-// The command `inspect`: its options, and how it lists what a file contains.
+// Defines the command `inspect`: its options, and how it lists what a file contains.
 #include <memory>
 #include <utility>
 
@@ -22,7 +22,8 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
   InputOptions wanted = options;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  wanted.shading = KeepShading::kFirst;  // problems of normals and groups also affect audits
+  // Faults of stored normals and groups are listed too, because they affect audits.
+  wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input("inspect", std::move(wanted), progress);
   if (!input) return input.error();
   Result<Inspected> result =

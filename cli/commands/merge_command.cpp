@@ -1,4 +1,4 @@
-// The command `merge` joins the parts that shards wrote.
+// Defines the command `merge`, which joins the parts that shards have written.
 #include <memory>
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-// The command `query collapse`: the times when faces have no area.
+// Defines the question `collapse` of the command `query`: the times when faces have no area.
 
 #include "cli/commands/query_question.h"
 

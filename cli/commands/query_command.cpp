@@ -1,5 +1,6 @@
-// The command `query`, which answers several queries about whole intervals of time. Each query has its own file
-// (cli/commands/query_question.h); this file has the common parts: the input, the span, and the output of the answer.
+// Defines the command `query`, which answers questions about whole intervals of time. Each question has its own file
+// (cli/commands/query_question.h). This file has their common parts: the input, the span of time, and the output of the
+// answer.
 
 #include <algorithm>
 #include <memory>
@@ -33,7 +34,7 @@ struct QueryArguments {
                                      shutter_question()};
 };
 
-// Tells whether the command line gave an option a value.
+// Returns true if the command line gave an option a value.
 bool was_given(const Option& option) {
   return std::visit(
       [](const auto* target) {
@@ -69,8 +70,8 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
-// Prints a warning if a mesh has a skin: joints move vertices on curves, which straight segments cannot represent, so
-// the answer is about the mesh without its skin. Errors: kUsage if positions in the world were requested.
+// Prints a warning if a mesh has a skin. Joints move vertices on curves, which straight segments cannot represent, so
+// the answer is about the mesh without its skin. Errors: kUsage if the user asked for positions in the world.
 Status check_skins(const Input& input, const InputOptions& options) {
   if (input.document() == nullptr) return Success{};
   for (const GltfNode& node : input.document()->nodes()) {
@@ -164,7 +165,8 @@ std::string footer(const std::vector<Question>& questions) {
 
 Command query_command() {
   auto options = std::make_shared<QueryArguments>();
-  // A query takes an interval of time instead of a range of keyframes.
+  // The command takes an interval of time instead of a range of keyframes, so --from and --to have another meaning
+  // here.
   std::vector<Option> input = input_table(options->input, {{"--from", ""}, {"--to", ""}}), own;
   input.insert(input.begin(), {"QUESTION", &options->question, "the question (listed below)"});
   for (const Question& question : options->questions)

@@ -1,4 +1,4 @@
-// The command `query cones`: cones that contain the normals of faces and of meshlets.
+// Defines the question `cones` of the command `query`: cones that contain the normals of faces and of meshlets.
 
 #include <memory>
 

@@ -1,4 +1,5 @@
-// The command `query contain`: the points inside a closed mesh, and the times when they cross its surface.
+// Defines the question `contain` of the command `query`: the points inside a closed mesh, and the times when they cross
+// its surface.
 
 #include <memory>
 #include <utility>

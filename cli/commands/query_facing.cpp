@@ -1,4 +1,5 @@
-// The command `query facing`: the times when faces show their front to a viewer, and silhouette edges.
+// Defines the question `facing` of the command `query`: the times when faces show their front to a viewer, and
+// silhouette edges.
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,4 @@
-/// A query of `chronormal query`. Each has a file query_NAME.cpp with one function that describes it.
+/// A question of the command `query`. Each question has a file query_NAME.cpp with one function that describes it.
 #ifndef CLI_COMMANDS_QUERY_QUESTION_H_
 #define CLI_COMMANDS_QUERY_QUESTION_H_
 
@@ -12,16 +12,17 @@
 
 namespace chronormal::cli {
 
-/// A function that answers the query for a motion, and for elements if the query supports them.
+/// A function that answers the question for a motion. The last argument has no effect unless takes_elements is true.
 using Ask =
     std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&, const ElementOptions&)>;
 
 struct Question {
   std::string name, summary;
-  std::vector<Option> options;  ///< options of this query only
-  /// Parses the options before any input is read, and returns the function. Errors: kUsage with an option as the place.
+  std::vector<Option> options;  ///< options of this question only
+  /// Parses the options before any input is read, and returns the function that answers. Errors: kUsage with an option
+  /// as the place.
   std::function<Result<Ask>()> understand;
-  bool takes_elements = false;  ///< false if the query is only about faces
+  bool takes_elements = false;  ///< false if the question is only about faces
 };
 
 [[nodiscard]] Question collapse_question();

@@ -1,4 +1,4 @@
-// The command `query shutter`: mean normals for motion blur.
+// Defines the question `shutter` of the command `query`: mean normals for motion blur.
 
 #include "cli/commands/query_question.h"
 

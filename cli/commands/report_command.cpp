@@ -34,16 +34,16 @@ struct ReportArguments {
 
 bool is_container(const ReportArguments& options) { return lower_extension(options.common.output) == ".bin"; }
 
-// Returns the path at which the template is installed with the program, or nothing if the system does not tell where
-// the program is. It is PREFIX/share/chronormal/report.html for PREFIX/bin/chronormal.
+// Returns the path at which the template of the page is installed with the program: PREFIX/share/chronormal/report.html
+// for PREFIX/bin/chronormal. Returns nothing if the system does not know where the program is.
 std::optional<std::string> usual_template() {
   const std::optional<std::string> program = file_of_program();
   if (!program) return std::nullopt;
   return utf8_of(path_of(*program).parent_path().parent_path() / "share" / "chronormal" / "report.html");
 }
 
-// Reads the template of the page. This comes before any computation, so that no work is lost if it fails. The template
-// that --template names has priority, then the built-in one, then the one that is installed with the program.
+// Reads the template of the page: the file that --template names, or else the built-in template, or else the one that
+// is installed with the program. Called before any computation, so that no work is lost if the template cannot be read.
 Result<std::string> read_template(const ReportArguments& options) {
   if (!options.page_template && !built_in_page().empty()) return std::string(built_in_page());
   const std::optional<std::string> path = options.page_template ? options.page_template : usual_template();

@@ -1,4 +1,4 @@
-// The command `sample`: its options, and the files of normals that it writes.
+// Defines the command `sample`: its options, and the files of normals that it writes.
 #include <memory>
 #include <utility>
 
@@ -25,9 +25,9 @@ struct SampleArguments {
   ElementArguments elements = {"vertices"};
   std::string weighting = "area";
   std::string length = "unit";
-  std::string scheme;      // empty: exact normals
-  std::string hard_edges;  // empty: by the crease angle
-  std::string format;      // empty: by the extension
+  std::string scheme;      // if empty, exact normals
+  std::string hard_edges;  // if empty, hard edges follow the crease angle
+  std::string format;      // if empty, the extension of OUT decides
   RunArguments run;
 };
 
@@ -165,7 +165,8 @@ Result<Request> understand(const SampleArguments& options) {
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // OUT may exist: an interrupted run may have written it just before its end, which write_samples() detects.
+    // OUT may exist already, because an interrupted run may have written it just before its end. write_samples()
+    // detects this case.
     return request;
   }
   const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);

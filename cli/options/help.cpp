@@ -1,5 +1,5 @@
-// Breaks all lines of help. A line that begins with a blank, like the rows of a list, is kept; all other lines are
-// joined into paragraphs.
+// Breaks the text of help into lines. A line that begins with a blank, like the rows of a list, is kept. Other lines
+// are joined into paragraphs, and then broken again.
 #include "cli/options/help.h"
 
 #include <algorithm>
@@ -30,7 +30,8 @@ struct Paragraph {
   std::size_t hang = 0;  ///< indentation of all lines after the first
 };
 
-// Splits a text at separators. (With a stream, a lack of memory would look like the end of the text.)
+// Splits a text at separators. (A std::istringstream is not used, because a lack of memory would look like the end of
+// the text.)
 std::vector<std::string> parts_of(const std::string& text, char separator) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -41,7 +42,7 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return parts;
 }
 
-// Splits a text into paragraphs, whose lines are joined, and rows, which keep their lines.
+// Splits a text into paragraphs, whose lines are joined, and rows, which keep their line breaks.
 std::vector<Paragraph> paragraphs_of(const std::string& text) {
   std::vector<Paragraph> paragraphs;
   bool flows = false;
@@ -62,8 +63,8 @@ std::vector<Paragraph> paragraphs_of(const std::string& text) {
   return paragraphs;
 }
 
-// Breaks a paragraph between words. Every line begins at `indent`, except the first, which continues the text before
-// it.
+// Breaks a paragraph between words. All lines except the first begin at column `indent`; the first line continues the
+// text before it.
 std::string broken(const Paragraph& paragraph, std::size_t indent, std::size_t columns) {
   const std::size_t first = std::min(paragraph.text.find_first_not_of(' '), paragraph.text.size());
   std::string result = paragraph.text.substr(0, first);
@@ -109,18 +110,18 @@ std::string row(const std::string& name, const std::string& text, std::size_t co
 
 bool takes_several(const Option& option) { return std::holds_alternative<std::vector<std::string>*>(option.target); }
 
-// Returns the spelling for help: "-o, --output OUT".
+// Returns the spelling of an option for help: "-o, --output OUT".
 std::string spelled(const Option& option) {
   std::string text = option.spelling;
   if (const std::size_t comma = text.find(','); comma < text.find(' ')) text.insert(comma + 1, 1, ' ');
   return takes_several(option) && names_of(option).empty() ? text + "..." : text;
 }
 
-// Returns the first line of a help.
+// Returns the first line of the help of an option.
 std::string brief(const Option& option) { return option.help.substr(0, option.help.find('\n')); }
 
-// Returns the meaning of an option for help: the first line of its text, or if `all` is true also the sentences after
-// it.
+// Returns the meaning of an option for help: the first line of its text. If `all` is true, the result has the following
+// sentences, too.
 std::string meaning(const Option& option, bool all) {
   std::string text = brief(option) + (option.rules.required ? " (required)" : "");
   if (const std::size_t end = option.help.find('\n'); all && end != std::string::npos)
@@ -141,7 +142,7 @@ std::string usage_of(const Command& command) {
   return formatted("chronormal {}{} [OPTIONS]", command.name, arguments);
 }
 
-// Escapes a text for roff. There a period or an apostrophe at the start of a line would begin a command.
+// Escapes a text for roff. In roff, a period or an apostrophe at the start of a line would begin a command.
 std::string for_manual(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -174,7 +175,7 @@ std::string command_names(const std::vector<Command>& commands) {
   return names;
 }
 
-// Quotes a text with the single quotes of a shell.
+// Puts a text into single quotes, as a shell reads them.
 std::string quoted_for_shell(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -273,8 +274,8 @@ std::string help_of_command(const Command& command, bool all, std::size_t column
   std::string text =
       flowing(command.summary, 0, columns) + "\n\n" + broken({"Usage: " + usage_of(command), 7}, 0, columns) + "\n\n";
   const auto add_row = [&](const Option& option) { text += row(spelled(option), meaning(option, all), columns); };
-  // Prints a heading before its first option, so none is printed without options. The options of the first table choose
-  // the input.
+  // Prints a heading before the first option below it, so that a heading without options is not printed. The options of
+  // the first table choose the input.
   const auto add_rows = [&](std::string heading, bool of_input, bool rare) {
     visit_options(command, true, [&](const Option& option) {
       const std::vector<Option>& input = command.tables.front();

@@ -1,5 +1,5 @@
-/// Help for a terminal, a manual page, and completions for shells, all made from the tables of options, so that they
-/// match the options of the program.
+/// Makes the help for a terminal, a manual page, and completions for shells. All are made from the tables of options,
+/// so that they match the program.
 #ifndef CLI_OPTIONS_HELP_H_
 #define CLI_OPTIONS_HELP_H_
 
@@ -13,21 +13,22 @@
 
 namespace chronormal::cli {
 
-/// Return the help of the program and of one command, with lines of at most this many columns if words allow it. Unless
-/// all is asked for, the help of a command has a line for each option that is not rare.
+/// Return the help of the program and of one command, with lines of at most `columns` characters if the lengths of
+/// words allow it. If `all` is false, the help of a command has one line for each option that is not rare.
 [[nodiscard]] std::string help_of_program(const std::vector<Command>& commands, std::size_t columns);
 [[nodiscard]] std::string help_of_command(const Command& command, bool all, std::size_t columns);
 
 /// Returns the manual page for man(1).
 [[nodiscard]] std::string manual_page(const std::vector<Command>& commands);
 
-/// Returns the completions for bash, zsh or fish, to be installed where that shell looks for them. Errors: kUsage for
-/// another shell.
+/// Returns the completions for bash, zsh or fish, as a file to be installed where that shell looks for completions.
+/// Errors: kUsage for another shell.
 [[nodiscard]] Result<std::string> completions(const std::vector<Command>& commands, std::string_view shell);
 
-/// Returns the names in the spelling of an option: "-o" and "--output". Empty for arguments without a name.
+/// Returns the names in the spelling of an option: "-o" and "--output". Returns no names for arguments that are not
+/// options.
 [[nodiscard]] std::vector<std::string> names_of(const Option& option);
-/// Tells whether a value follows the option.
+/// Returns true if a value follows the option.
 [[nodiscard]] bool takes_value(const Option& option);
 
 }  // namespace chronormal::cli

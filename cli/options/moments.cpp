@@ -1,4 +1,4 @@
-// Reads the values of --times and --weights.
+// Reads the values of --times, --weights and --step.
 #include "cli/options/moments.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostTimes = 1000000;
 
-// Splits a list at separators.
+// Splits a list at a separator.
 std::vector<std::string_view> split(std::string_view list, char separator) {
   std::vector<std::string_view> parts;
   for (std::size_t first = 0;;) {
@@ -45,7 +45,8 @@ Result<double> parse_number(const std::string& option, std::string_view word) {
   return value;
 }
 
-// Appends the times of a range A:STEP:B. If the steps lead to B up to rounding, the last time is exactly B.
+// Appends the times of a range FIRST:STEP:LAST. If the steps lead to LAST except for rounding errors, the last time is
+// exactly LAST.
 Status append_range(const std::vector<std::string_view>& ends, std::string_view text, std::vector<double>& times) {
   const auto wrong = [&](const char* why) { return misuse("--times", formatted("'{}': {}", text, why)); };
   if (ends.size() != 3) return wrong("a range must be FIRST:STEP:LAST");
@@ -101,7 +102,7 @@ std::optional<std::string> take_quoted(std::string_view& text) {
   return std::nullopt;
 }
 
-// Removes the text up to the next comma, and the comma, from the beginning of the text and returns the part before it.
+// Removes the text up to and including the next comma from the beginning of `text`, and returns it without the comma.
 std::string_view take_part(std::string_view& text) {
   const std::size_t comma = std::min(text.find(','), text.size());
   const std::string_view part = text.substr(0, comma);
@@ -143,7 +144,7 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
   return pose;
 }
 
-// Parses N or N:M.
+// Parses the value of --step, N or N:M.
 Result<Stepping> parse_step(const std::string& text) {
   Stepping stepping;
   const std::vector<std::string_view> parts = split(text, ':');

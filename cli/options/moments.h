@@ -1,4 +1,4 @@
-/// The moments at which the command line requests normals: --times and --weights.
+/// Reads the options that choose the moments at which normals are computed: --times, --weights and --step.
 ///
 ///     --times 0,0.5,1            times in seconds
 ///     --times 0:0.25:2,5         a range with its step, and a time
@@ -8,8 +8,8 @@
 ///     --step 100                 every segment in 100 equal steps, each computed from the previous one
 ///     --step 100:0               the same without recomputing the state in between
 ///
-/// The weight follows the last '=', so that names may contain one. A name with a comma, or with blanks at its ends, is
-/// written in double quotes, in which "" is a quote.
+/// The weight follows the last '=', so that names may contain this character. A name with a comma, or with blanks at
+/// its ends, is written in double quotes, in which "" stands for one quotation mark.
 #ifndef CLI_OPTIONS_MOMENTS_H_
 #define CLI_OPTIONS_MOMENTS_H_
 
@@ -26,16 +26,16 @@ namespace chronormal::cli {
 
 /// The arguments of --times, --weights and --step, as text.
 struct MomentArguments {
-  std::string times;                 ///< empty: none
-  std::vector<std::string> weights;  ///< a list for each pose
-  std::string step;                  ///< empty: none
+  std::string times;                 ///< empty if not given
+  std::vector<std::string> weights;  ///< one list for each pose
+  std::string step;                  ///< empty if not given
 
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// The requested moments, parsed as far as possible before the input is read.
+/// The moments that the user chose, parsed as far as this is possible before the input is read.
 struct AskedMoments {
-  /// Weights of targets, in order or by name.
+  /// The weights of targets in a pose, in the order of the targets or by their names.
   struct Pose {
     std::vector<double> numbers;
     std::vector<std::pair<std::string, double>> named;
@@ -46,15 +46,15 @@ struct AskedMoments {
   std::vector<Pose> poses;
   std::optional<Stepping> stepping;
 
-  /// Returns the number of moments, or 1 if it depends on the input.
+  /// Returns the number of moments, or 1 if the number depends on the input.
   [[nodiscard]] std::size_t count() const noexcept;
 };
 
 /// Parses the arguments. Errors: kUsage, with the option as the place.
 [[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
 
-/// Returns the moments for this input; none for a mesh at rest. Errors: those of Input::motion(); kUsage if the moments
-/// do not fit the motion, for a name that no target has, and for a name that several targets have.
+/// Returns the moments for this input, or no moments for a mesh at rest. Errors: those of Input::motion(); kUsage if
+/// the moments do not fit the motion, for a name that no target has, and for a name that several targets have.
 [[nodiscard]] Result<Moments> moments_of(Input& input, const AskedMoments& asked);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// Passes the tables of options to the parser, and the messages of the parser to the user.
+// Passes the tables of options to the parser of command lines, and the messages of the parser to the user.
 
 #include "cli/options/options.h"
 
@@ -30,7 +30,8 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, bool* targe
   return command.add_flag(names, *target, help);
 }
 
-// Adds an optional text by a function, since the parser would treat an empty text as a missing one.
+// Adds an option whose text may be empty. A function sets the text, since the parser itself would treat an empty text
+// as a missing one.
 CLI::Option* add_target(CLI::App& command, const std::string& names, std::optional<std::string>* target,
                         const std::string& help) {
   return command.add_option_function<std::string>(
@@ -71,7 +72,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // The check of the option's own table comes first, because its message says more than "a number is needed".
+  // The check in the table of the option comes first, because its message says more than "a number is needed".
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";
@@ -91,7 +92,7 @@ void say_where_help_is(std::string_view command) {
   say_raw(formatted("Try: chronormal{}{} --help\n", command.empty() ? "" : " ", command));
 }
 
-// Prints the error, and returns its exit code.
+// Prints the error, and returns the exit code of the error.
 int report(const std::string& command, const Error& error) {
   say(command, error.text(), Tone::kError);
   if (error.code == ErrorCode::kUsage) say_where_help_is(command);
@@ -109,7 +110,8 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& na
   return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);
 }
 
-// Checks the name of the command. The parser would check it too, but its message is not helpful.
+// Checks the name of the command. Returns false after printing an error. The parser would check the name too, but its
+// message is not helpful.
 bool is_known(const std::vector<Command>& commands, std::string_view first) {
   if (first.starts_with('-')) return true;
   std::vector<std::string> names;
@@ -145,8 +147,8 @@ std::vector<std::string> names_of_options(const Command& command, bool only_with
   return names;
 }
 
-// Returns advice on an unknown option: the reason that the command gives for refusing it; otherwise the commands that
-// have the option; otherwise the most similar option of the command.
+// Returns advice on an unknown option. The advice is the reason that the command gives for refusing the option, or else
+// the commands that have the option, or else the most similar option of this command.
 std::string advice_on(std::string_view name, const Command& command, const std::vector<Command>& commands) {
   for (const RefusedOption& refused : command.refused)
     if (refused.name == name) return " here; " + refused.reason;
@@ -159,8 +161,8 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// Finds the first unknown option. The parser would report a missing required option instead. A word after an option
-// that takes a value is its value, whatever the word looks like.
+// Finds the first unknown option. (The parser would first report a required option that is missing.) A word after an
+// option that takes a value is its value, whatever the word looks like.
 std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);
@@ -180,8 +182,8 @@ std::optional<Error> find_unknown_option(const Command& command, const std::vect
   return std::nullopt;
 }
 
-// Parses the command line and runs the command. `running` gets the name of the command. All messages of the parser are
-// printed before the function returns.
+// Parses the command line and runs the command. `running` gets the name of the command. When the function returns, all
+// messages of the parser have been printed.
 Result<int> understand_and_run(const std::vector<Command>& commands, std::span<char*> arguments, std::string& running) {
   CLI::App program("", "chronormal");
   const std::string version = formatted("chronormal {}{}\n", kVersion, has_mpi() ? " with MPI" : "");
@@ -220,7 +222,7 @@ Result<int> understand_and_run(const std::vector<Command>& commands, std::span<c
     return print_or_report(version);
   } catch (const CLI::CallForAllHelp&) {
     return print_help(true);
-  } catch (const CLI::Success&) {  // --help
+  } catch (const CLI::Success&) {  // thrown for --help
     return print_help(false);
   } catch (const CLI::ParseError& error) {
     const auto parsed = program.get_subcommands();
@@ -260,7 +262,8 @@ Check check_given(std::string message) {
 }
 
 int run_program(const std::vector<Command>& commands, std::span<char*> arguments) {
-  std::string name;  // name of the command, once known
+  // The name of the command, as soon as it is known.
+  std::string name;
   start_ranks([&name](const Error& error) { return report(name, error); });
   return end_ranks(understand_and_run(commands, arguments, name));
 }

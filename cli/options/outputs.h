@@ -1,5 +1,5 @@
-/// Compares the files that a command writes with each other and with the files that it reads: none may replace another,
-/// even under different names for the same file.
+/// Checks that no file that a command writes replaces another output or an input, even if the same file has different
+/// names.
 #ifndef CLI_OPTIONS_OUTPUTS_H_
 #define CLI_OPTIONS_OUTPUTS_H_
 
@@ -17,12 +17,12 @@ struct NamedFile {
   std::string path;
 };
 
-/// Lists the files of an input that can be found without opening it. Files that cannot be found are ignored here, and
-/// reported when the input is opened.
+/// Lists the files of an input that can be found without opening the input. Files that cannot be found are ignored
+/// here, and reported when the input is opened.
 [[nodiscard]] std::vector<NamedFile> input_files(const InputOptions& input);
 
 /// Checks that each output differs from all earlier outputs and from all inputs. The name "-" is the standard output,
-/// which may also be a file. Errors: kUsage, with the option of the output as the place.
+/// which may be a file as well. Errors: kUsage, with the option of the output as the place.
 [[nodiscard]] Status check_distinct(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& read);
 
 }  // namespace chronormal::cli

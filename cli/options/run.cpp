@@ -1,4 +1,5 @@
-// Describes a run by its options and its files, compares it with the journal, and finds the share of this process.
+// Describes a run by its options and its files, compares the description with the journal, and finds the share of this
+// process.
 #include "cli/options/run.h"
 
 #include <filesystem>
@@ -27,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 std::string journal_name(const std::string& output) { return output + ".journal"; }
 
-// The value of an option as text, empty if it was not given.
+// Converts the value of an option to text, which is empty if the option was not given.
 struct ValueText {
   std::string operator()(const bool* value) const { return *value ? "given" : ""; }
   std::string operator()(const std::string* value) const { return *value; }
@@ -44,7 +45,7 @@ struct ValueText {
   }
 };
 
-// Describes everything that determines the result, as names and values.
+// Returns all facts that determine the result of a run, as names and values.
 Result<Json> describe(const std::string& command, const std::vector<std::vector<Option>>& tables,
                       const InputOptions& input) {
   Json run = {{"chronormal", kVersion}, {"command", command}};
@@ -66,7 +67,7 @@ std::string quoted_value(const Json& run, const std::string& name) {
   return run.contains(name) && run[name].is_string() ? formatted("'{}'", run[name].get<std::string>()) : "not given";
 }
 
-// Returns the first difference between two runs in words, or an empty text if there is none.
+// Returns the first difference between two descriptions of runs in words, or an empty text if they are equal.
 std::string difference(const Json& old, const Json& now) {
   if (!old.is_object()) return "its first line is damaged";
   std::vector<std::string> names;
@@ -208,7 +209,7 @@ Result<std::unique_ptr<CommandRun>> RunArguments::begin(const std::string& comma
   Result<Journal> journal = Journal::open(journal_name(common.output), text);
   if (!journal) return journal.error();
   if (journal.value().run() != text && journal.value().records().empty()) {
-    // The old run has done nothing yet, so nothing is lost.
+    // The old run has recorded no result yet, so removing its journal loses nothing.
     if (const Status removed = journal.value().remove(); !removed) return removed.error();
     journal = Journal::open(journal_name(common.output), text);
     if (!journal) return journal.error();

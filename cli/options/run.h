@@ -1,6 +1,6 @@
-/// Divides the work of a command among processes, or resumes it: --shard, --resume, and the ranks that mpirun starts.
-/// Commands need not know which of these is used: a CommandRun sets up a SegmentRun (workflow/segments/segment_run.h)
-/// accordingly.
+/// Divides the work of a command among processes, or resumes it after an interruption: --shard, --resume, and the ranks
+/// that mpirun starts. Commands need not know which of these is in use. A CommandRun sets up a SegmentRun
+/// (workflow/segments/segment_run.h) accordingly.
 ///
 ///     const auto run = options.run.begin("compare", tables(options), options.input, options.common);
 ///     CompareRun segments;
@@ -9,9 +9,9 @@
 ///     run->join(compare_part(...), merge_compare_parts);         // on several ranks
 ///     run->finish(text);
 ///
-/// The file OUT.journal of --resume describes the run (version, command, options, input files with their sizes and
-/// modification times) and records the results so far. The journal stays if the run ends too early for any reason, and
-/// is removed when OUT is complete.
+/// With --resume, the file OUT.journal describes the run (version, command, options, input files with their sizes and
+/// modification times) and records the results so far. The journal stays if the run ends early for any reason, and is
+/// removed when OUT is complete.
 #ifndef CLI_OPTIONS_RUN_H_
 #define CLI_OPTIONS_RUN_H_
 
@@ -34,8 +34,9 @@
 
 namespace chronormal::cli {
 
-/// A run of a command. If a run with --resume is destroyed before finish(), it prints how to continue, or removes the
-/// journal if nothing was done. A signal that ends the program during the run has the same effect.
+/// A run of a command, with its share of the work and its journal. If a run with --resume is destroyed before finish(),
+/// the destructor prints how to continue, or removes the journal if it has no results yet. A signal that ends the
+/// program during the run has the same effect.
 class CommandRun {
  public:
   /// Creates a run. Without --resume, `journal` must be empty.
@@ -45,12 +46,13 @@ class CommandRun {
   CommandRun& operator=(const CommandRun&) = delete;
   ~CommandRun();
 
-  /// Sets up `run` for the share of this process, with the limits of the input. Progress is shown in `things`, the name
-  /// of what is counted. Errors: kUsage for --resume and an input that is not a sequence of keyframes.
+  /// Sets up `run` for the share of this process, with the limits of the input. `things` is the plural of what the
+  /// progress bar counts, such as "segments". Errors: kUsage for --resume and an input that is not a sequence of
+  /// keyframes.
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
-  /// Sets up a `run` that records a result for each segment in the journal: write(result) returns its text, and
-  /// read(text, name) reads this text in a later run. Errors: also those of read.
+  /// Sets up a `run` that records a result for each segment in the journal. write(result) returns the result as text,
+  /// and read(text, name) reads this text in a later run. Errors: those above, and those of read().
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                RecordedRun<Found>& run, std::string (*write)(const Found&), const Read& read) {
@@ -67,7 +69,7 @@ class CommandRun {
   }
 
   /// Joins the results of several ranks. On the first rank, sets `whole` to merge(parts) and returns true, so that this
-  /// rank prints. Returns false on the other ranks, whose work is done. Errors: those of merge.
+  /// rank prints the result. Returns false on the other ranks, whose work is done. Errors: those of merge().
   template <class Whole, class Merge>
   [[nodiscard]] static Result<bool> join(const std::string& part, const Merge& merge, Whole& whole) {
     if (!has_ranks()) return true;
@@ -79,19 +81,19 @@ class CommandRun {
     return true;
   }
 
-  /// Tells whether OUT is a part for `merge`.
+  /// Returns true if OUT is only a part, which `merge` will join with others.
   [[nodiscard]] bool is_part() const noexcept { return shard_.has_value(); }
-  /// Tells whether one process does all of the work without interruption, so that times are meaningful.
+  /// Returns true if one process does all of the work without interruption, so that measured times are meaningful.
   [[nodiscard]] bool is_timed() const noexcept { return !journal_ && !has_ranks(); }
 
   /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between
-  /// these two steps; then OUT is not written again. Errors: those of print_to() and the journal.
+  /// these two steps, and OUT is not written again. Errors: those of print_to() and the journal.
   [[nodiscard]] Status finish(std::string_view text);
   /// Removes the journal if OUT is already complete.
   [[nodiscard]] Status finish();
 
  private:
-  // Returns the parts of all ranks on the first rank.
+  // Returns the parts of all ranks on the first rank, and an empty list on the others.
   [[nodiscard]] static std::vector<Part> gather(const std::string& own);
 
   std::string command_;
@@ -105,25 +107,25 @@ struct RunArguments {
   std::optional<std::string> shard;
   bool resume = false;
 
-  /// Returns --shard and --resume. `of_what` ends the help of --shard: the data that is divided, and the content of
-  /// OUT.
+  /// Returns the options --shard and --resume. `of_what` ends the help of --shard: it says which data are divided, and
+  /// what OUT then contains.
   [[nodiscard]] std::vector<Option> options(const std::string& of_what);
 
-  /// Refuses options that ranks or shares do not support. Errors: kUsage if there are several ranks together with
-  /// --shard, --resume or `other` (an option with which the task cannot be divided); if several independent copies of
-  /// the program would do the same work; and for a value of --shard that is not a share I/N.
+  /// Checks that the options can be used with ranks and shares. `other` is a given option that cannot be used when the
+  /// task is divided, or empty. Errors: kUsage for several ranks together with --shard, --resume or `other`; if several
+  /// independent copies of the program would do the same work; and for a value of --shard that is not a share I/N.
   [[nodiscard]] Status check(const std::string& other = "") const;
 
-  /// Returns the share that --shard or the ranks give this process. check() must have passed.
+  /// Returns the share of the work that --shard or the ranks give this process. check() must have succeeded before.
   [[nodiscard]] std::optional<Shard> share() const;
 
-  /// Runs check_output(), but accepts an OUT that an interrupted run may have written just before its end. Errors: also
-  /// kUsage for --resume without a file.
+  /// Checks the output like check_output() of the library, but accepts an OUT that an interrupted run may have written
+  /// just before its end. Errors: also kUsage for --resume without a file.
   [[nodiscard]] Status check_output(const CommonOptions& common) const;
 
-  /// Begins a run, or resumes one with the same options as in the tables. Errors: kUsage if the journal belongs to
-  /// another run, with the difference, and for inputs that cannot be read again; errors of the journal and of finding
-  /// the files.
+  /// Begins a run, or resumes an earlier run with the same options, which are read from the tables. Errors: kUsage with
+  /// the difference if the journal belongs to another run, and for inputs that cannot be read again; errors of the
+  /// journal and of finding the files.
   [[nodiscard]] Result<std::unique_ptr<CommandRun>> begin(const std::string& command,
                                                           const std::vector<std::vector<Option>>& tables,
                                                           const InputOptions& input, const CommonOptions& common) const;
@@ -132,8 +134,8 @@ struct RunArguments {
   [[nodiscard]] Result<std::optional<Shard>> read_shard() const;
 };
 
-/// Refuses ranks and shares for a command or an input that a single process must handle. Errors: kUsage with the reason
-/// `what`, for example "it divides the segments of a sequence, and a glTF file is none".
+/// Checks that no ranks or shares are used for a command or an input that a single process must handle. Errors: kUsage
+/// with the reason `what`, for example "it divides the segments of a sequence, and a glTF file is none".
 [[nodiscard]] Status refuse_shares(const RunArguments& run, const char* what);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// Ranks in a build without MPI: this process is the only one.
+// Implements ranks in a build without MPI: this process is the only one.
 #include <cstdlib>
 #include <utility>
 

@@ -1,10 +1,10 @@
-// Ranks by MPI. A text is sent as its number of bytes, followed by the bytes in blocks that MPI can count; an error is
-// sent as one text. A rank that waits sleeps between polls, because the ranks of one machine share its cores, and
-// checks for errors meanwhile: the first rank checks for errors of the others, and the others check for the first
-// rank's message that all must end.
+// Implements ranks by MPI. A text is sent as its number of bytes, followed by the bytes in blocks whose size MPI can
+// count. An error is sent as one text. A rank that waits sleeps between polls, because the ranks of one machine share
+// its cores. While it waits, it also looks for errors: the first rank looks for errors of the others, and the others
+// look for the first rank's message that all must end.
 //
-// The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL; Open MPI is
-// meant to wait a second in between, but when a rank ends, its signal ends that waiting for all others. On a busy
+// The first rank must send this message itself. mpirun would send SIGTERM, and soon afterwards SIGKILL. Open MPI should
+// wait a second in between, but the signal that a rank has ended cuts this time short for all other ranks. On a busy
 // machine, ranks were killed before they had removed their files.
 #include <mpi.h>
 
@@ -25,10 +25,11 @@ namespace chronormal::cli {
 namespace {
 
 constexpr int kFirst = 0;
-constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // kinds of messages
+constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // kinds of messages between ranks
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 30U;
 constexpr std::chrono::milliseconds kNap{1};
-constexpr std::chrono::seconds kGrace{5};  // time for ranks that check for the first rank's message only now and then
+// The time that ranks get to notice the first rank's message, for which they look only now and then.
+constexpr std::chrono::seconds kGrace{5};
 
 struct State {
   int rank = 0, count = 1;
@@ -42,7 +43,7 @@ State& state() {
 
 bool is_first() { return state().rank == kFirst; }
 
-// Tells whether this process is a rank. Open MPI's mpirun, every PMIx (srun, Open MPI 5) and every PMI (MPICH, Intel
+// Returns true if this process is a rank. Open MPI's mpirun, every PMIx (srun, Open MPI 5) and every PMI (MPICH, Intel
 // MPI) set one of these variables for each rank.
 bool was_started_as_rank() {
   constexpr const char* kVariables[] = {"OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK"};
@@ -50,7 +51,7 @@ bool was_started_as_rank() {
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Receives a message of this kind, if one has arrived. Returns true if it received one.
+// Receives a message of this kind from the rank `from`, if one has arrived. Returns true if it received a message.
 bool take_signal(int from, int kind) {
   int is_there = 0;
   MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);
@@ -61,7 +62,8 @@ bool take_signal(int from, int kind) {
 // Tells the other ranks to end. Returns when all of them have removed their files, or after kGrace.
 void end_others() {
   for (int rank = 1; rank < state().count; ++rank) {
-    MPI_Request request{};  // never waited for, since a rank may never look for messages
+    // No one waits for this request, since the receiver may never look for messages.
+    MPI_Request request{};
     MPI_Isend(nullptr, 0, MPI_BYTE, rank, kEnd, MPI_COMM_WORLD, &request);
     MPI_Request_free(&request);
   }
@@ -74,7 +76,7 @@ void end_others() {
   }
 }
 
-// Reports an error and ends all ranks; mpirun sends signals to ranks that do not answer.
+// Reports an error and ends all ranks. mpirun sends signals to ranks that do not answer.
 [[noreturn]] void end_all(const Error& error) {
   const int code = state().report(error);
   remove_temporaries();
@@ -83,8 +85,8 @@ void end_others() {
   std::_Exit(code);
 }
 
-// Ends this rank if the first rank has told all ranks to end. Removes its files, reports that, and waits until mpirun
-// ends the process.
+// Ends this rank if the first rank has told all ranks to end. Removes the temporary files of this rank, tells the first
+// rank that they are gone, and waits until mpirun ends the process.
 void look_for_end() {
   if (!take_signal(kFirst, kEnd)) return;
   remove_temporaries();
@@ -103,7 +105,7 @@ void wait(MPI_Request& request) {
   }
 }
 
-// Passes the bytes to move(data, bytes) in blocks. Each call begins an operation, and wait() waits for its end.
+// Passes the bytes to move(data, size) in blocks. Each call begins an operation of MPI, and wait() waits for its end.
 template <class Byte, class Move>
 void move_blocks(std::span<Byte> bytes, const Move& move) {
   while (!bytes.empty()) {
@@ -149,7 +151,7 @@ Error error_of(const std::string& text) {
           text.substr(message)};
 }
 
-// Adds the number of the rank to an error, except to usage errors, which all ranks have.
+// Adds the number of the rank to an error. Usage errors get no number, because all ranks have the same ones.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
     error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);
@@ -177,7 +179,8 @@ void look_for_errors() {
   MPI_Request request{};
   MPI_Isend(text.data(), static_cast<int>(text.size()), MPI_BYTE, kFirst, kError, MPI_COMM_WORLD, &request);
   wait(request);
-  for (;;) (void)broadcast_text("");  // waits until the first rank ends all ranks
+  // Waits until the first rank ends all ranks.
+  for (;;) (void)broadcast_text("");
 }
 
 }  // namespace

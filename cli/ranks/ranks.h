@@ -1,15 +1,15 @@
-/// The processes of one task: the ranks that mpirun starts, if the program was built with MPI.
+/// Connects the processes of one task, which are the ranks that mpirun starts, if the program was built with MPI.
 ///
 ///     mpirun -n 4 chronormal compare body.obj walk.pc2 --json
 ///
 /// Every rank runs the same command on the share of the segments or times that own_shard() returns. The results come
-/// together on the first rank, which alone prints. An error on any rank goes to the first, which prints it with the
-/// number of the rank and ends all ranks; usage errors, which all ranks have, are printed without a number.
+/// together on the first rank, which alone prints. An error on any rank goes to the first rank, which prints it with
+/// the number of the rank and ends all ranks. Usage errors are the same on all ranks, and are printed without a number.
 ///
-/// A process that was not started as a rank never starts MPI: it is the first of one rank, and these functions cost it
-/// nothing. alone.cpp is for builds without MPI, mpi.cpp for builds with MPI.
+/// A process that was not started as a rank never starts MPI. It counts as the only rank, and these functions do
+/// nothing. alone.cpp is for builds without MPI, and mpi.cpp for builds with MPI.
 ///
-/// Threads    everything here belongs to the main thread.
+/// Threads    all functions must be called from the main thread.
 #ifndef CLI_RANKS_RANKS_H_
 #define CLI_RANKS_RANKS_H_
 
@@ -24,23 +24,23 @@
 
 namespace chronormal::cli {
 
-/// Tells whether the program was built with MPI.
+/// Returns true if the program was built with MPI.
 [[nodiscard]] bool has_mpi() noexcept;
 
-/// Returns the number of independent copies of this program that mpirun has started. It is above 1 only in a build
-/// without MPI.
+/// Returns the number of independent copies of this program that mpirun has started. The number can be above 1 only in
+/// a build without MPI.
 [[nodiscard]] std::size_t count_of_copies() noexcept;
 
 /// Connects with the other ranks, if there are any. `report` prints an error and returns its exit code. Must be called
 /// once, before the other functions.
 void start_ranks(std::function<int(const Error&)> report);
 
-/// Returns the share of this rank.
+/// Returns the share of the work of this rank.
 [[nodiscard]] Shard own_shard() noexcept;
 [[nodiscard]] inline bool has_ranks() noexcept { return !own_shard().is_all(); }
 
 /// Returns the texts of all ranks, in order, on the first rank, which waits until all ranks have called this function.
-/// The other ranks do not wait, and get an empty result.
+/// On the other ranks, returns an empty list without waiting.
 [[nodiscard]] std::vector<std::string> gather_texts(const std::string& own);
 
 /// Returns the text of the first rank on every rank. Waits until the first rank has called this function.
@@ -56,12 +56,13 @@ void maximize_numbers(std::span<double> numbers);
   return has_ranks() ? &peers : nullptr;
 }
 
-/// Returns a callback that reports progress to `progress`, and also checks whether another rank has failed.
+/// Returns a callback that passes progress on to `progress`, and also looks for errors of other ranks. It may end the
+/// process.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 
-/// Ends a task on all ranks, with the exit code of the first rank or with the error of any rank. No other function here
-/// may be called afterwards. Returns the exit code.
+/// Ends a task on all ranks. If all succeeded, the exit code is that of the first rank; otherwise the error is
+/// reported. No other function of this file may be called afterwards. Returns the exit code.
 [[nodiscard]] int end_ranks(const Result<int>& result);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-// Prints the result of `bake` as tables and lists.
+// Formats the result of `bake` as tables and lists.
 #include "cli/reports/bake_report.h"
 
 #include <algorithm>
@@ -23,12 +23,12 @@ std::string mesh_name(const BakedMesh& mesh) {
   return mesh.name.empty() ? formatted("mesh {}", mesh.mesh) : printable(mesh.name, kLongestName);
 }
 
-// Returns the largest error of the deltas against the normals that they encode, which the bake computes for its targets
-// and its resampled animations. An audit, in contrast, judges everything that is rendered.
+// Returns the largest error, in degrees, of the deltas against the normals that they encode. The bake computes this
+// error for its targets and its resampled animations. An audit, in contrast, judges everything that is rendered.
 double fit_error(const BakedMesh& mesh) { return mesh.largest_error + mesh.resampling_error; }
 
-// Returns the cells for the worst error of a mesh before and after the bake, or a cell for the error of its deltas if
-// there was no audit.
+// Returns the cells of a table row for a mesh: its worst errors before and after the bake. If there was no audit,
+// returns one cell with the error of the deltas.
 std::vector<std::string> error_cells(const BakedMesh& mesh, const BakeReport& report) {
   if (!report.audit) return {mesh.elements == 0 ? "" : four_decimals(fit_error(mesh))};
   const MotionError before = error_of_mesh(report.audit->before, mesh.mesh),
@@ -51,8 +51,8 @@ void add_row(const BakedMesh& mesh, const BakeReport& report, Table& table) {
 
 std::string change(double before, double after) { return four_decimals(before) + " -> " + four_decimals(after); }
 
-// Returns the errors before and after in words, "on average 3.2000 -> 0.0001, at worst 12.3000 -> 0.0010 degrees", and
-// the number of normals that cannot be lit.
+// Returns the errors before and after the bake in words, "on average 3.2000 -> 0.0001, at worst 12.3000 -> 0.0010
+// degrees", and the number of normals that a viewer cannot light.
 std::string change_words(const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text = formatted("on average {}, at worst {} degrees", change(before.mean(), after.mean()),
@@ -63,7 +63,7 @@ std::string change_words(const BeforeAndAfter& audit) {
   return text;
 }
 
-// Lists the meshes that were baked for normals with a weighting other than area.
+// Returns lines that list the meshes whose baked normals have a weighting other than area.
 std::string weighting_lines(const GltfBake& bake) {
   std::string text;
   for (const WeightingInfo& info : kAllWeightings) {
@@ -93,13 +93,13 @@ void add_errors(const ShownErrors& of_mesh, ShownErrors& all) {
   all.poses += of_mesh.poses;
 }
 
-// Tells whether the chosen candidate of a mesh has deltas that are fitted to the animations.
+// Returns true if the chosen candidate of a mesh has deltas that are fitted to the animations.
 bool is_of_animations(const BakedMesh& mesh) {
   return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
                      [](const BakedCandidate& choice) { return choice.chosen && choice.animations_only; });
 }
 
-// The errors that one viewer shows, over all samples.
+// The errors that one viewer shows, over all samples: average and largest error in degrees, and torn edges.
 struct Shown {
   double mean = 0, worst = 0, torn_edges = 0;
 };
@@ -108,16 +108,16 @@ Shown shown_of(const MotionError& error) { return {error.mean(), error.worst, er
 
 Shown shown_of(const ShownErrors& errors) { return {errors.mean, errors.worst, errors.torn_edges()}; }
 
-// Errors of one viewer before and after.
+// The errors of one viewer before and after the bake.
 struct ViewerRow {
   const Viewer* viewer = nullptr;
   Shown before, after;
   bool is_named = true, is_better = false;
 };
 
-// Returns the errors that bake itself measured, as sums over all poses of some meshes: if of_animations, the meshes
-// whose deltas are fitted to the animations, otherwise all other meshes. The averages cover fewer samples than those of
-// an audit.
+// Returns the errors that bake itself measured for each viewer, as sums over all poses. If of_animations is true, the
+// sums are over the meshes whose deltas are fitted to the animations, otherwise over all other meshes. The averages
+// cover fewer samples than those of an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {
@@ -142,8 +142,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// Returns the errors that decide about a file: those of the audits, if there are audits and no deltas are fitted to the
-// animations alone; otherwise the errors that bake measured.
+// Returns the errors by which a file is judged. They are those of the audits, if there are audits and no deltas are
+// fitted to the animations alone. Otherwise they are the errors that bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;
@@ -192,7 +192,7 @@ std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
   return viewers_table(bake, report, false) + viewers_table(bake, report, true);
 }
 
-// Returns the titles: "three.js, Babylon.js".
+// Returns the titles of the viewers in some rows: "three.js, Babylon.js".
 std::string titles_of(const std::vector<ViewerRow>& rows) {
   std::string text;
   for (const ViewerRow& row : rows) text.append(text.empty() ? "" : ", ").append(row.viewer->title);
@@ -207,7 +207,7 @@ const ViewerRow& worst_of(const std::vector<ViewerRow>& rows) {
 
 std::string rounded_change(double before, double after) { return formatted("{:.3g} -> {:.3g}", before, after); }
 
-// Returns the first lines of the report: how much better the file is, in which viewers, and how much larger.
+// Returns the first lines of the report: how much better the file is and in which viewers, and how much larger.
 std::string verdict(const GltfBake& bake, const BakeReport& report) {
   std::vector<ViewerRow> better, left_out, others;
   for (const bool of_animations : {false, true})
@@ -237,7 +237,7 @@ std::string verdict(const GltfBake& bake, const BakeReport& report) {
   return text;
 }
 
-// Returns a text about the errors that remain in the viewers that the file is made for, with a remedy.
+// Returns a text about the errors that remain in the viewers for which the file is made, with a remedy.
 std::string left_over(const GltfBake& bake) {
   double worst = 0;
   for (const BakedMesh& mesh : bake.meshes)
@@ -263,7 +263,7 @@ std::string left_text(const GltfBake& bake) {
   return text;
 }
 
-// Returns true if every mesh got a candidate within the tolerance.
+// Returns true if bake found a candidate within the tolerance for every mesh.
 bool are_all_within(const GltfBake& bake) {
   return std::all_of(bake.meshes.begin(), bake.meshes.end(), [](const BakedMesh& mesh) {
     return std::any_of(mesh.candidates.begin(), mesh.candidates.end(),
@@ -281,8 +281,8 @@ std::string name_of(const BakedCandidate& choice) {
   return std::string(choice.name) + (choice.animations_only ? ", animations only" : "");
 }
 
-// Prints a row for each viewer and each candidate: either the candidates whose deltas are fitted to the animations, or
-// all others.
+// Returns a table with a row for each viewer and each candidate. If of_animations is true, the candidates are those
+// whose deltas are fitted to the animations, otherwise all others.
 std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);
@@ -306,7 +306,8 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\nerrors {}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// Lists with figures in which respects a result is worse or better: "on average (0.6400 degrees, before 3.3200)".
+// Returns the respects in which a result is worse or better, with figures: "on average (0.6400 degrees, before
+// 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;
@@ -339,8 +340,8 @@ std::string lines_after(const BakeReport& report) {
   return text;
 }
 
-// Returns words that limit a claim about true normals: these are the normals of the straight pieces, which differ from
-// those of the original curves by up to the tolerance of the cut.
+// Returns words that limit a claim about true normals. The claim is about the normals of the straight pieces, which
+// differ from those of the original curves by up to the tolerance of the cut.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
   return formatted(" of the straight pieces, which are within {:g} degrees of the curves", bake.cut->path.tolerance);

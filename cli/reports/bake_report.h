@@ -1,4 +1,4 @@
-/// The result of `bake` for people.
+/// Formats the result of `bake` for people.
 #ifndef CLI_REPORTS_BAKE_REPORT_H_
 #define CLI_REPORTS_BAKE_REPORT_H_
 
@@ -8,17 +8,17 @@
 
 namespace chronormal::cli {
 
-/// Returns a text that lists in which respects the result is worse than the input, and in which it is better, with
+/// Returns a text that says in which respects the result is worse than the input, and in which it is better, with
 /// figures. If of_animations is true, some deltas are fitted to the animations and are meaningless for a target alone.
 [[nodiscard]] std::string worse_text(const BeforeAndAfter& audit, bool of_animations);
-/// Tells whether some deltas of a result are fitted to the animations.
+/// Returns true if some deltas of a result are fitted to the animations.
 [[nodiscard]] bool any_of_animations(const GltfBake& bake);
 
-/// Returns a table of what the bake added, with a line for each mesh.
+/// Return a table of what the bake added, with a line for each mesh.
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Lists the targets, bytes and errors of each candidate for each mesh, as the bake compares them.
+/// Returns tables of the targets, bytes and errors of each candidate for each mesh, as the bake compares them.
 [[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal::cli

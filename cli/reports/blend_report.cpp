@@ -50,7 +50,7 @@ std::string target_name(const BlendSubject& subject, std::size_t target) {
   return name.empty() ? formatted("{}", target) : name;
 }
 
-// Lists the targets with the largest weights first.
+// Returns the targets of the worst sample and their weights, the largest weights first.
 std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
   std::vector<BlendError::Weight> weights = error.worst_weights;
   if (weights.empty()) return "-";
@@ -91,7 +91,7 @@ std::string table_of(const BlendSubject& subject) {
   return table.text();
 }
 
-// Returns a line for each part that was left out.
+// Returns a line for each part of the comparison that was left out.
 std::string notes(const BlendSubject& subject) {
   std::string text;
   for (const BlendErrors& errors : subject.errors) {

@@ -1,4 +1,4 @@
-/// The result of `compare --blend` as a table and as CSV.
+/// Formats the result of `compare --blend` as a table and as CSV.
 #ifndef CLI_REPORTS_BLEND_REPORT_H_
 #define CLI_REPORTS_BLEND_REPORT_H_
 

@@ -1,4 +1,4 @@
-// Prints the result of `compare` as a table and as CSV.
+// Formats the result of `compare` as a table and as CSV.
 #include "cli/reports/compare_report.h"
 
 #include <array>
@@ -39,11 +39,11 @@ std::string headline(const NamedComparison& input) {
 
 const char* access_name(const SchemeComparison& row) { return row.sequential ? "sequential" : "random"; }
 
-// Rounds the digits of a bound outwards, so that the printed number is a bound as well.
+// Round a bound away from the bounded value to four decimals, so that the printed number is a bound as well.
 std::string rounded_up(double value) { return four_decimals(std::ceil(value * 1e4) / 1e4); }
 std::string rounded_down(double value) { return four_decimals(std::floor(value * 1e4) / 1e4); }
 
-// Returns facts that the table does not show, one line each: elements that were treated differently or left out.
+// Returns lines about facts that the table does not show: elements that were treated differently or left out.
 std::string notes(const Comparison& comparison, const std::string& prefix) {
   const std::size_t pairs = comparison.elements * comparison.segments;
   const std::string of = std::string(pairs == 1 ? one_element(comparison.kind) : element_kind_name(comparison.kind)) +
@@ -90,10 +90,10 @@ std::string segment_cell(const NamedComparison& input, std::size_t segment) {
   return segment < input.targets.size() ? printable(target_label(input.targets, segment), kLongest) : grouped(segment);
 }
 
-// The columns of Table 2.
+// A column of the paper's Table 2, which counts operations.
 struct OperationColumn {
   int OperationCounts::*count;
-  const char* short_name;  // the name in the table for people
+  const char* short_name;  // name in the table for people
   const char* latex;
 };
 
@@ -105,19 +105,20 @@ constexpr std::array<OperationColumn, 5> kOperations = {{
     {&OperationCounts::trigonometric, "trig", "trig"},
 }};
 
-// Writes a text in LaTeX with only characters that need no package.
+// Writes a text in LaTeX with only characters that need no LaTeX package.
 std::string latex_text(const std::string& text) {
   std::string result;
   for (const char c : printable(text)) {
     const auto code = static_cast<unsigned char>(c);
     if (code >= 0xC0 || code == '?') {
-      result += '?';  // the first byte of a multi-byte character
+      // This byte is the first of a character of several bytes.
+      result += '?';
     } else if (code >= 0x80 || code < 0x20) {
       continue;
     } else if (std::string_view("{}$&#%_").find(c) != std::string_view::npos) {
       result += {'\\', c};
     } else if (std::string_view("\\^~<>|\"").find(c) != std::string_view::npos) {
-      // The braces end the number, so a digit after it does not become a part of it.
+      // Without the braces, a digit that follows would become a part of the number.
       result += formatted("{{\\ttfamily\\char{}}}", code);
     } else {
       result += c;
@@ -126,7 +127,7 @@ std::string latex_text(const std::string& text) {
   return result;
 }
 
-// Returns the name that the paper's tables use for a scheme, or the scheme's own name if it is not in the paper.
+// Returns the name of a scheme in the tables of the paper, or the scheme's own name if it is not in the paper.
 std::string latex_scheme(const std::string& scheme) {
   struct Row {
     std::string_view scheme, name;
@@ -143,7 +144,7 @@ std::string latex_scheme(const std::string& scheme) {
   return "\\texttt{" + latex_text(scheme) + "}";
 }
 
-// Returns a table with its caption. `columns` is the preamble of the tabular, and rows end with \\\\.
+// Returns a LaTeX table with its caption. `columns` is the preamble of the tabular, and rows end with \\\\.
 std::string latex_table(const std::string& columns, const std::string& rows, const std::string& caption,
                         const char* label) {
   return formatted(

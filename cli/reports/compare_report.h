@@ -1,4 +1,4 @@
-/// The result of `compare` as a table and as CSV.
+/// Formats the result of `compare` as a table, as CSV and as LaTeX.
 #ifndef CLI_REPORTS_COMPARE_REPORT_H_
 #define CLI_REPORTS_COMPARE_REPORT_H_
 
@@ -11,23 +11,24 @@ namespace chronormal::cli {
 
 /// Columns that a table may have besides the errors.
 struct TableColumns {
-  bool times = true;  ///< the table without times is the same in every run
+  bool times = true;  ///< false to get the same table in every run
   bool operations = false;
 };
 
 /// Returns one aligned table with a line for each scheme.
 [[nodiscard]] std::string compare_table(const NamedComparison& input, TableColumns columns);
 
-/// Returns the paper's table: a line for each scheme, and for each input the sum and its ratio to linear.
+/// Returns the table of the paper. It has a line for each scheme, and for each input the sum of the errors and the
+/// ratio of this sum to that of linear.
 [[nodiscard]] std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs);
 
-/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes: the sums with their
-/// ratios to linear, and the operations at random and in sequence. The tables need no LaTeX package; in names,
-/// characters outside of ASCII become question marks.
+/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes. One has the sums with
+/// their ratios to linear, the other the operations at random times and in sequence. The tables need no LaTeX package;
+/// in names, characters outside of ASCII become question marks.
 [[nodiscard]] std::string compare_latex(const std::vector<NamedComparison>& inputs);
 
-/// Returns a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted (RFC
-/// 4180).
+/// Returns CSV: a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted
+/// (RFC 4180).
 [[nodiscard]] std::string compare_csv(const std::vector<NamedComparison>& inputs, bool with_times);
 
 /// Returns a field of a CSV line, in quotes if necessary.

@@ -20,7 +20,7 @@ std::string shortest(const std::vector<double>& lengths) {
   return lengths.empty() ? "1" : formatted("{:.4g}", *std::min_element(lengths.begin(), lengths.end()));
 }
 
-// Formats the tangent, binormal and normal of a scheme at one sample as columns.
+// Formats the tangent, binormal and normal of a scheme at one sample as the columns of a matrix.
 std::string frame_text(const char* name, const SchemeFigure& scheme, std::size_t sample) {
   const Vec3d n = scheme.normals[sample], t = scheme.tangents[sample], b = cross(n, t);
   const double rows[3][3] = {{t.x, b.x, n.x}, {t.y, b.y, n.y}, {t.z, b.z, n.z}};

@@ -1,4 +1,4 @@
-/// Writes the paper's figures for one face as a table (`compare --face`).
+/// Formats the figures of the paper for one face as a table (`compare --face`).
 #ifndef CLI_REPORTS_FIGURE_REPORT_H_
 #define CLI_REPORTS_FIGURE_REPORT_H_
 
@@ -8,8 +8,8 @@
 
 namespace chronormal::cli {
 
-/// Returns a line for each scheme, and below it the matrix of the paper and the frames at both ends. `input` is the
-/// name of the input.
+/// Returns a line for each scheme, and below the lines the matrix of the paper and the frames at both ends. `input` is
+/// the name of the input.
 [[nodiscard]] std::string figure_table(const std::string& input, const FaceFigure& figure);
 
 }  // namespace chronormal::cli

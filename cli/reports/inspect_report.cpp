@@ -20,9 +20,9 @@ using Align = Table::Align;
 
 constexpr std::size_t kLongestCell = 32;
 
-// The smallest turn of a face that is reported. Faces that do not turn at all seem to turn a little, because their
-// positions are rounded.
-constexpr double kRoundedTurn = 1e-4;  // radians
+// The smallest turn of a face that is reported, in radians. Faces that do not turn at all seem to turn a little,
+// because their positions are rounded.
+constexpr double kRoundedTurn = 1e-4;
 
 std::string size_in_bytes(std::size_t bytes) {
   const auto value = static_cast<double>(bytes);
@@ -138,7 +138,7 @@ const char* mode_name(int mode) {
   return mode >= 0 && mode <= 6 ? kNames[mode] : "unknown";
 }
 
-// Returns the share of the moving targets that also change an attribute, "12 of 20", or "-" if no target moves.
+// Formats the number of moving targets that also change an attribute: "12 of 20", or "-" if no target moves.
 std::string share_of(std::size_t count, std::size_t all) { return all == 0 ? "-" : formatted("{} of {}", count, all); }
 
 std::string primitive_table(const InspectedGltf& gltf) {
@@ -207,7 +207,7 @@ std::string track_table(const InspectedGltf& gltf) {
   table.add_column("highest", "weight", Align::kRight);
   std::size_t rows = 0;
   for (std::size_t first = 0, next = 0; first < tracks.size(); first = next) {
-    // Tracks of one animation with the same description share a row.
+    // Tracks of one animation that have the same description share a row.
     GltfTrackInspection all = tracks[first];
     const auto described = [&document](const GltfTrackInspection& each) -> const GltfTrack& {
       return document.animations()[each.animation].tracks[each.track];
@@ -242,7 +242,7 @@ std::string gltf_contents(const InspectedGltf& gltf) {
                    counted(document.animations().size(), "animation", "animations"));
 }
 
-// Counts the primitives that are left out of the inspection.
+// Returns the number of primitives that are left out of the inspection.
 std::size_t count_left_out(const InspectedGltf& gltf) {
   std::set<std::pair<std::size_t, std::size_t>> parts;
   for (const GltfPart& part : gltf.parts) parts.emplace(part.mesh, part.primitive);

@@ -1,4 +1,4 @@
-/// The result of `inspect` for people.
+/// Formats the result of `inspect` for people.
 #ifndef CLI_REPORTS_INSPECT_REPORT_H_
 #define CLI_REPORTS_INSPECT_REPORT_H_
 
@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// Returns facts, tables of targets, primitives and tracks, and two lines for each problem. Long tables are cut.
+/// Returns facts, tables of targets, primitives and tracks, and two lines for each problem. Long tables are cut off.
 [[nodiscard]] std::string inspect_text(const Inspected& input);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-/// The answer of `query` for people.
+/// Formats the answer of `query` for people.
 #ifndef CLI_REPORTS_QUERY_REPORT_H_
 #define CLI_REPORTS_QUERY_REPORT_H_
 

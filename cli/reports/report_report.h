@@ -1,4 +1,4 @@
-/// The result of `report` for people.
+/// Formats the result of `report` for people.
 #ifndef CLI_REPORTS_REPORT_REPORT_H_
 #define CLI_REPORTS_REPORT_REPORT_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::cli {
 
-/// Returns the text that the command prints: it names the written file and its size, and has a table of the parts, the
+/// Returns the text that the command prints. It names the written file and its size, and has a table of the parts, the
 /// worst places, and sentences about what was left out.
 [[nodiscard]] std::string report_text(const Report& report, const std::string& output, std::size_t bytes);
 

@@ -1,4 +1,4 @@
-/// Limits that the tables of all reports share for names and rows, and angles in degrees.
+/// Defines the largest lengths of names and tables that all reports share, and converts angles to degrees.
 #ifndef CLI_REPORTS_ROWS_H_
 #define CLI_REPORTS_ROWS_H_
 
@@ -8,10 +8,10 @@
 
 namespace chronormal::cli {
 
-/// The most characters that a table shows of a name from a file.
+/// The largest number of characters of a name from a file that a table shows.
 inline constexpr std::size_t kLongestName = 32;
 
-/// The most rows of a table for people; --json has all rows.
+/// The largest number of rows in a table for people; --json has all rows.
 inline constexpr std::size_t kMostRows = 16;
 
 [[nodiscard]] constexpr double in_degrees(double radians) noexcept { return radians * kDegreesPerRadian; }

@@ -1,4 +1,4 @@
-/// The result of `compare --truth` as a table and as CSV.
+/// Formats the result of `compare --truth` as a table and as CSV.
 #ifndef CLI_REPORTS_TRUTH_REPORT_H_
 #define CLI_REPORTS_TRUTH_REPORT_H_
 
@@ -11,7 +11,7 @@ namespace chronormal::cli {
 /// Returns one aligned table with a line for each path and scheme, followed by sentences that explain the figures.
 [[nodiscard]] std::string truth_table(const NamedTruthComparison& input);
 
-/// Returns a header line, and a line for each path and scheme.
+/// Returns CSV: a header line, and a line for each path and scheme.
 [[nodiscard]] std::string truth_csv(const NamedTruthComparison& input);
 
 }  // namespace chronormal::cli

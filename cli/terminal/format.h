@@ -1,4 +1,4 @@
-/// Formats text with numbers. No other part of the program does this.
+/// Formats text with numbers. All other files of the program use these functions.
 ///
 /// A number may be infinite or NaN, for example if a file has weights of 3e38 or no sample was judged. Readers of
 /// tables, CSV and messages have no use for "nan" or "-nan", so such a number is written as "-". (In JSON it becomes
@@ -18,12 +18,13 @@
 
 namespace chronormal::cli {
 
-/// A number to be formatted.
+/// A number that a fmt::formatter below formats.
 struct Number {
   double value = 0;
 };
 
-/// Returns the form of an argument of formatted(): a Number for floating point, otherwise the argument itself.
+/// Returns an argument of formatted() in the form in which it is formatted: a Number for floating-point types, and the
+/// argument itself for other types.
 template <class T>
 [[nodiscard]] const T& as_argument(const T& value) noexcept {
   return value;
@@ -35,14 +36,14 @@ template <std::floating_point T>
 template <class T>
 using Argument = decltype(as_argument(std::declval<const T&>()));
 
-/// Does what fmt::format() does, but prints numbers that are not finite as "-".
+/// Formats text like fmt::format(), but prints numbers that are not finite as "-".
 template <class... Args>
 [[nodiscard]] std::string formatted(fmt::format_string<Argument<Args>...> text, const Args&... args) {
   return fmt::format(text, as_argument(args)...);
 }
 
 /// Rounds a share of 0 or more up to hundredths, so that a share slightly above a limit is not printed as the limit
-/// itself. An excess of a millionth or less counts as a rounding error and is not rounded up.
+/// itself. An excess of a millionth or less counts as a rounding error and is dropped.
 [[nodiscard]] inline double up_to_hundredths(double share) noexcept {
   return std::max(std::ceil(100 * share - 1e-4), 0.0) / 100;
 }
@@ -53,7 +54,8 @@ template <>
 struct fmt::formatter<chronormal::cli::Number> {
   template <class Context>
   constexpr auto parse(Context& context) {
-    if (std::is_constant_evaluated()) return fmt::formatter<double>().parse(context);  // which checks the text
+    // At compile time, this checks the format.
+    if (std::is_constant_evaluated()) return fmt::formatter<double>().parse(context);
     const auto end = std::find(context.begin(), context.end(), '}');
     form_ = std::string_view(context.begin(), static_cast<std::size_t>(end - context.begin()));
     return end;
@@ -66,7 +68,7 @@ struct fmt::formatter<chronormal::cli::Number> {
   }
 
  private:
-  std::string_view form_;  // the form in the text, such as ".2f"
+  std::string_view form_;  // the format of the number, such as ".2f"
 };
 
 #endif  // CLI_TERMINAL_FORMAT_H_

@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kLongestEnding = 256;
 std::string who_ends = "chronormal: ";
 bool is_rank = false, is_silent = false;
-thread_local volatile std::sig_atomic_t writes_to_stderr = 0;  // the handler of SIGPIPE runs in the writing thread
+// The handler of SIGPIPE runs in the thread that writes.
+thread_local volatile std::sig_atomic_t writes_to_stderr = 0;
 
 void write_to_stderr(std::string_view text) noexcept {
   const int system_error = errno;
@@ -48,7 +49,7 @@ void say_raw(std::string_view text) noexcept {
   if (!is_silent) write_to_stderr(text);
 }
 
-// Writes the whole line in one system call, so that lines of several ranks do not mix.
+// Writes the whole line in one call of the system, so that lines of several ranks do not mix.
 void say_ending(std::string_view message) noexcept {
   std::array<char, kLongestEnding> line{};
   auto end = line.begin();

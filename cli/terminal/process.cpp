@@ -28,15 +28,15 @@ void end_line_and_say(const char* message) {
   if (const char* const text = last_words; text != nullptr) say_raw(text);
 }
 
-// Removes temporary files. A rank prints no message, because mpirun reports which rank a signal has ended, and then
-// sends SIGTERM to all others.
+// Removes temporary files, and prints why the program ends. A rank prints no message, because mpirun reports which rank
+// a signal has ended, and then sends SIGTERM to all others.
 void end_by_request(const char* message) {
   remove_temporaries();
   if (!speaks_as_rank()) end_line_and_say(message);
 }
 
-// Handles a pipe whose reader has ended. A message may get lost: writing it fails, and the program goes on. If results
-// get lost, the program ends, as usual for a program in front of `head`.
+// Handles a pipe whose reader has ended. If messages get lost, the write fails and the program goes on. If results get
+// lost, the program ends, as programs usually do in front of `head`. Returns true if the program must end.
 bool end_by_lost_reader() {
   if (is_saying()) return false;
   remove_temporaries();
@@ -49,8 +49,8 @@ void end_by_lost_input() {
   end_now(kExitFailed);
 }
 
-// Ends the program if memory runs out, without calling destructors: unwinding is not safe in all libraries for JSON and
-// threads.
+// Ends the program when memory runs out, without calling destructors. Unwinding would not be safe in all libraries for
+// JSON and threads.
 void end_for_want_of_memory() {
   remove_temporaries();
   end_line_and_say("out of memory; close other programs, or choose a smaller part of the input");
@@ -63,8 +63,8 @@ void end_by_error() {
   end_now(kExitFailed);
 }
 
-// The C library calls abort() if it gets no memory for a thread, so the program ends in an orderly way. In other builds
-// an abort is a failed assertion, whose signal is left alone.
+// The C library calls abort() if it gets no memory for a thread, so release builds end the program in an orderly way
+// then. In other builds, an abort is a failed assertion, and its signal keeps the default action.
 #ifdef NDEBUG
 constexpr auto end_by_abort = end_by_error;
 #else
@@ -74,8 +74,8 @@ constexpr void (*end_by_abort)() = nullptr;
 }  // namespace
 
 void prepare_process() noexcept {
-  // Resets the floating point unit: a library that was loaded earlier may have set another rounding mode, or that
-  // subnormal numbers become zero.
+  // A library that was loaded earlier may have set another rounding mode of the floating-point unit, or have turned
+  // subnormal numbers into zero. This call resets the unit.
   (void)std::fesetenv(FE_DFL_ENV);
   prepare_standard_streams();
   stderr_is_terminal = is_terminal(kStandardError) ? 1 : 0;

@@ -1,4 +1,4 @@
-/// Starts and ends the program: handles its standard streams, and the signals that it gets.
+/// Starts and ends the program: prepares its standard streams, and handles the signals that it gets.
 ///
 ///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   removes temporary files and prints a line, then the signal ends the
 ///                                                 program (128 + n to a shell); ignored signals stay ignored
@@ -10,19 +10,19 @@
 ///
 /// If results get lost because nobody reads them, as in front of `head`, SIGPIPE ends the program, as usual. If nobody
 /// reads stderr, messages get lost, and the program goes on. If SIGPIPE was ignored when the program started, it stays
-/// ignored: writing results is an error then.
+/// ignored, and writing results that nobody reads is then an error.
 #ifndef CLI_TERMINAL_PROCESS_H_
 #define CLI_TERMINAL_PROCESS_H_
 
 namespace chronormal::cli {
 
-/// Opens closed standard streams, so that no other file gets their numbers and receives their text; reading and writing
-/// there stays an error. Installs the handlers. Makes the floating point unit of this thread, and of threads that it
-/// starts, round to nearest. Must be called before everything else.
+/// Opens closed standard streams, so that no other file gets their numbers and receives their text. Reading and writing
+/// these streams still fails. Installs the signal handlers. Makes the floating-point unit of this thread, and of
+/// threads that it starts, round to nearest. Must be called before everything else.
 void prepare_process() noexcept;
 
-/// Sets the text to print after the line about a signal or lack of memory, with its line feed; nullptr for no text. The
-/// text must live as long as it may be printed.
+/// Sets a text that is printed after the line about a signal or lack of memory. The text includes its line feed;
+/// nullptr means no text. It must live as long as it may be printed.
 void say_at_end(const char* text) noexcept;
 
 }  // namespace chronormal::cli

@@ -14,7 +14,7 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{300}, kLeastForPace{1000}, kRedrawn{1000};
 constexpr int kWidth = 24;
 
-// Returns at most two units: "45 s", "3 min 20 s", "2 h 5 min".
+// Returns a duration in at most two units: "45 s", "3 min 20 s", "2 h 5 min".
 std::string duration_text(double seconds) {
   constexpr double kMost = 1e7;
   const auto whole = static_cast<std::size_t>(std::fmin(std::ceil(seconds), kMost));

@@ -1,4 +1,5 @@
-/// A progress bar on stderr: only on a terminal, only after a moment, and removed when the work is done.
+/// Shows a progress bar on stderr. It appears only on a terminal and only after a moment, and is removed when the work
+/// is done.
 ///
 ///     comparing [=========               ]  38 %, 12.5 segments/s, 3 min 20 s left
 ///
@@ -14,15 +15,15 @@
 
 namespace chronormal::cli {
 
-/// Returns the rate and the time left, "12.5 segments/s, 3 min 20 s left". The shares are fractions of `count` things:
-/// share_done took this many seconds, and share_left is left. If `things`, the name of the things, is empty, returns
-/// only the time.
+/// Returns the rate and the time left: "12.5 segments/s, 3 min 20 s left". The task has `count` things, whose plural is
+/// `things`. The fraction share_done of them took `seconds`, and the fraction share_left is left. If `things` is empty,
+/// returns only the time.
 [[nodiscard]] std::string pace_text(double share_done, double seconds, double share_left, std::size_t count,
                                     const std::string& things);
 
 class Progress {
  public:
-  /// Creates a bar that shows nothing if quiet, or if stderr is not a terminal.
+  /// Creates a bar. It shows nothing if `quiet` is true or stderr is not a terminal.
   explicit Progress(bool quiet);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -31,9 +32,9 @@ class Progress {
   /// Returns true if only warnings are printed.
   [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
 
-  /// Returns a function by which the library reports progress. The Progress must outlive it. The bar shows a rate in
-  /// `things`, of which there are `count` in the whole task; if `count` is 0, the steps that the library reports are
-  /// the things. Without a name of things, the bar shows no rate.
+  /// Returns a function by which the library reports progress. This object must outlive the function. The bar shows a
+  /// rate in `things`, of which the whole task has `count`. If `count` is 0, the steps that the library reports are
+  /// counted instead. If `things` is empty, the bar shows no rate.
   [[nodiscard]] std::function<void(std::size_t done, std::size_t total)> callback(std::string label,
                                                                                   std::string things = {},
                                                                                   std::size_t count = 0);
@@ -46,7 +47,8 @@ class Progress {
   struct Work {
     std::string label, things;
     std::size_t count = 0;
-    Clock::time_point start = {};  // time and progress at the first report
+    // The time and the progress at the first report.
+    Clock::time_point start = {};
     double done_at_start = -1;
   };
 

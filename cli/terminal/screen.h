@@ -1,8 +1,8 @@
-/// Properties of a terminal: its columns, and emphasis in colour.
+/// Finds the number of columns of the terminal, and marks text for emphasis by colour.
 ///
-/// Text for people is marked where it is made, by the control sequences of terminals, which printable() removes from
-/// names (cli/terminal/text.h). The code that writes the text removes the marks, unless it goes to a terminal that
-/// shows them. JSON and CSV have none.
+/// The functions that make text for people mark emphasis by the control sequences of terminals. (printable() removes
+/// such sequences from names; see cli/terminal/text.h.) The functions that write the text remove the marks, unless the
+/// text goes to a terminal that shows them. JSON and CSV have no marks.
 #ifndef CLI_TERMINAL_SCREEN_H_
 #define CLI_TERMINAL_SCREEN_H_
 
@@ -12,11 +12,12 @@
 
 namespace chronormal::cli {
 
-/// Returns the width of lines: COLUMNS if it is set, else the width of the terminal on stdout, else 80; at least 40.
+/// Returns the width of lines in columns, at least 40: COLUMNS if it is set, else the width of the terminal on stdout,
+/// else 80.
 [[nodiscard]] std::size_t columns_of_output();
 
-/// Tells whether a stream (kStandardOutput) shows colours: it is a terminal that has them, or CLICOLOR_FORCE is set and
-/// not 0. NO_COLOR turns colours off in any case.
+/// Returns true if a stream, such as kStandardOutput, shows colours. This is so if the stream is a terminal with
+/// colours, or if CLICOLOR_FORCE is set and not 0. NO_COLOR turns colours off in any case.
 [[nodiscard]] bool shows_colour(int stream);
 
 /// Return the text with emphasis, for titles, errors and warnings. An empty text stays empty.

@@ -13,10 +13,11 @@
 namespace chronormal::cli {
 namespace {
 
-constexpr std::size_t kGap = 2;           // between columns
-constexpr std::size_t kLongestShare = 2;  // of a line: longer names get a line of their own
+constexpr std::size_t kGap = 2;  // number of blanks between columns
+// A name that is longer than 1 / kLongestShare of a line gets a line of its own.
+constexpr std::size_t kLongestShare = 2;
 
-// Breaks a text, which starts at a column, between words. A line takes at least one word.
+// Breaks a text between words. The first line starts at column `from`, and a line takes at least one word.
 std::string broken(const std::string& text, std::size_t from, std::size_t columns) {
   std::string result;
   std::size_t column = from;
@@ -58,7 +59,7 @@ std::string Table::text_of(const std::vector<std::size_t>& chosen, const std::ve
       column += gap;
       text.append(gap, ' ');
       const std::string blanks(widths[c] - std::min(width, widths[c]), ' ');
-      if (width > widths[c])  // long names have their own line
+      if (width > widths[c])  // names that are longer have their own line
         text.append(cell).append("\n").append(column + widths[c], ' ');
       else if (c == chosen.back() && columns_[c].align == Align::kLeft)
         text.append(broken(cell, column, columns));

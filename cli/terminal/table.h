@@ -1,4 +1,4 @@
-/// Tables for people: aligned columns with a title and a unit.
+/// Formats tables for people: aligned columns with a title and a unit.
 ///
 /// The columns up to the first one that is aligned to the left identify a row. If a table is wider than the output, the
 /// columns that do not fit follow below, in another table with the same rows:
@@ -29,14 +29,14 @@ class Table {
  public:
   enum class Align { kLeft, kRight };
 
-  /// Adds a column; all columns must be added before the first row. The unit is below the title. A column without a
-  /// title belongs to the previous column, and stays beside it.
+  /// Adds a column. All columns must be added before the first row. The unit is printed below the title. A column
+  /// without a title belongs to the previous column, and stays beside it.
   void add_column(std::string title, std::string unit, Align align);
-  /// Adds a row, one cell per column.
+  /// Adds a row, with one cell for each column.
   void add_row(std::vector<std::string> cells);
 
-  /// Returns the whole table. Its lines have at most this many columns of the terminal, unless not even two columns of
-  /// the table fit beside each other. Every line has an end and no trailing blanks.
+  /// Returns the whole table. Its lines have at most `columns` characters, unless not even two columns of the table fit
+  /// beside each other. Every line has an end and no trailing blanks.
   [[nodiscard]] std::string text(std::size_t columns = columns_of_output()) const;
 
  private:
@@ -45,9 +45,10 @@ class Table {
     Align align;
   };
 
-  // Returns the width of the title and of all cells that are at most this wide.
+  // Returns the width in characters that a column needs for its title, its unit, and those cells that are at most
+  // `most` characters wide.
   [[nodiscard]] std::size_t width_of_column(std::size_t column, std::size_t most) const;
-  // Returns the table of the chosen columns with these widths, in lines of at most `columns`.
+  // Returns the table of the chosen columns with these widths, in lines of at most `columns` characters.
   [[nodiscard]] std::string text_of(const std::vector<std::size_t>& chosen, const std::vector<std::size_t>& widths,
                                     std::size_t columns) const;
 
@@ -55,13 +56,14 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Returns the indices of the `most` largest values, ascending. Of equal values, the first ones are chosen.
+/// Returns the indices of the `most` largest values, ascending. If values are equal, the first ones are chosen.
 [[nodiscard]] std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most);
 
-/// Formats an angle or a ratio with four decimals, or with an exponent if four decimals lose it: 12.3457, 2.1e-06, 0.
+/// Formats an angle or a ratio with four decimals, or with an exponent if four decimals would lose all its digits:
+/// 12.3457, 2.1e-06, 0.
 [[nodiscard]] std::string four_decimals(double value);
 
-/// Formats a sum with one decimal and groups of three, or with an exponent below 0.1: 18,916.3, 3.4e-03, 0.
+/// Formats a sum with one decimal and groups of three digits, or with an exponent below 0.1: 18,916.3, 3.4e-03, 0.
 [[nodiscard]] std::string grouped_sum(double value);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-/// Measures text on a terminal.
+/// Measures the width of text on a terminal.
 #ifndef CLI_TERMINAL_TEXT_H_
 #define CLI_TERMINAL_TEXT_H_
 
@@ -9,8 +9,8 @@
 
 namespace chronormal::cli {
 
-/// Returns the columns of a terminal that a text takes: one for each character of UTF-8, and none for the marks of
-/// emphasis (cli/terminal/screen.h).
+/// Returns the number of columns that a text takes on a terminal: one for each character of UTF-8, and none for the
+/// marks of emphasis (cli/terminal/screen.h).
 [[nodiscard]] std::size_t width_of(std::string_view text) noexcept;
 
 }  // namespace chronormal::cli

@@ -12,14 +12,16 @@
 namespace chronormal::cli {
 namespace {
 
-// The remedy for the errors that an audit found, which the last line of the report recommends.
+// The remedies for the errors that an audit finds. The last line of the report recommends one of them.
 enum class Remedy {
-  kNone,      // no normal is wrong
-  kUnknown,   // no judged normal is wrong, but others could not be judged, or there were none
-  kTangents,  // normals are right; bake writes no tangents
+  kNone,  // no normal is wrong
+  // No judged normal is wrong, but others could not be judged, or none was judged.
+  kUnknown,
+  // The normals are right but tangents are wrong; bake writes no tangents.
+  kTangents,
   kViewers,   // normals are right by the specification, but wrong in viewers that differ from it
   kRule,      // the requested rule is not the one that viewers use for glTF files
-  kOriginal,  // the wrong meshes were baked before, and bake does not bake them twice
+  kOriginal,  // the wrong meshes were baked before; bake does not bake a mesh twice
   kTargets,   // bake does not accept targets over a base
   kBake,
 };
@@ -34,7 +36,7 @@ bool was_baked(const Audited& input, const AuditSubject& subject) {
   return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
 }
 
-// Tells whether an animation drives the weight of this subject.
+// Returns true if an animation drives the weight of a target. Subjects that are not targets count as driven.
 bool is_driven(const Audited& input, const AuditSubject& subject) {
   if (subject.kind != AuditSubject::Kind::kTarget) return true;
   const auto drives = [&](const AuditSubject& other) {
@@ -44,7 +46,8 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
   return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
-// Lists the subjects with errors: if `baked`, only those of meshes that were baked before, otherwise only all others.
+// Lists the subjects with errors. If `baked` is true, lists only those of meshes that were baked before, otherwise only
+// all others.
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)
@@ -52,7 +55,7 @@ std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked
   return result;
 }
 
-// Lists the titles of the viewers in which some normal is wrong.
+// Returns the titles of the viewers in which some normal is wrong, between commas.
 std::string wrong_viewers(const Audited& input) {
   std::string titles;
   for (const ViewerAudit& viewer : input.audit.viewers) {
@@ -87,7 +90,7 @@ std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   return text + "-weighted";
 }
 
-// Predicts the result of `chronormal bake` on this file, as far as the audit can know it.
+// Returns words for what `chronormal bake` will do to this file, as far as the audit can predict that.
 std::string outcome(const Audited& input) {
   if (input.document() == nullptr) return "makes a glTF file with true normals at every instant";
   const std::vector<const AuditSubject*> wrong = wrong_subjects(input, false);

@@ -1,4 +1,4 @@
-/// Recommends what to do about an audited file: a command for this very file, but never one that was already run or
+/// Recommends a remedy for an audited file: a command for this very file, but never a command that was already run or
 /// that cannot help.
 #ifndef CLI_REPORTS_AUDIT_ADVICE_H_
 #define CLI_REPORTS_AUDIT_ADVICE_H_
@@ -9,10 +9,11 @@
 
 namespace chronormal::cli {
 
-/// Returns the last line of the report, after an empty line; nothing if nothing was judged.
+/// Returns the recommendation, which is the last line of the report, after an empty line. Returns an empty text if
+/// nothing was judged.
 [[nodiscard]] std::string advice(const Audited& input);
 
-/// Returns a few words for a table: "right", "within 2", "bake it", ...
+/// Returns the verdict on a file in a few words for a table: "right", "within 2", "bake it", ...
 [[nodiscard]] std::string verdict(const Audited& input);
 
 }  // namespace chronormal::cli

@@ -1,4 +1,4 @@
-/// The result of `audit` for several files: a row for each.
+/// Formats the result of `audit` for several files, as a table with a row for each file.
 #ifndef CLI_REPORTS_AUDIT_FILES_H_
 #define CLI_REPORTS_AUDIT_FILES_H_
 
@@ -13,7 +13,7 @@
 
 namespace chronormal::cli {
 
-/// The data kept for one file: only its row and its JSON, since a folder may have thousands of files.
+/// The data that are kept for one file: only its row and its JSON, since a folder may have thousands of files.
 struct AuditedFile {
   explicit AuditedFile(const Audited& audited);
   AuditedFile(std::string file, const Error& why);
@@ -21,11 +21,11 @@ struct AuditedFile {
   std::string name;
   std::optional<MotionError> error;  ///< empty if the file could not be judged
   std::size_t faults = 0;            ///< number of fault lines in the report of this file alone
-  std::string verdict;               ///< a word or two
-  Json json;                         ///< result of audit_object(), or "input" and "error"
+  std::string verdict;               ///< the last column of the row
+  Json json;                         ///< result of audit_object(), or the members "input" and "error"
 };
 
-/// Returns the table of all files, after their worst error.
+/// Returns the table of all files, sorted by their worst error.
 [[nodiscard]] std::string audit_files_text(const std::vector<AuditedFile>& files);
 
 /// Returns one JSON object: "files" has an entry for each file, and "passed" says whether all files passed.

@@ -1,5 +1,5 @@
-// Groups findings into lines. A face has dozens of targets with the same fault, so one line covers all of them, and
-// names the worst.
+// Groups findings into lines. A face may have dozens of targets with the same fault, so one line covers all of them,
+// and names the worst one.
 #include "cli/reports/audit/audit_findings.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using Kind = AuditFinding::Kind;
 
-// Findings with the same cause in one mesh.
+// The findings with the same cause in one mesh.
 struct Group {
   const AuditFinding* worst = nullptr;
   std::size_t targets = 0, animations = 0, expressions = 0;
@@ -24,7 +24,8 @@ struct Group {
   [[nodiscard]] std::size_t size() const noexcept { return targets + animations + expressions; }
 };
 
-// Returns the groups of faults, the worst first, or the groups of notes in the order of the file.
+// Returns the groups of faults, the worst first, if `faults` is true. Otherwise returns the groups of notes in the
+// order of the file.
 std::vector<Group> groups_of(const Audit& audit, bool faults) {
   std::vector<Group> groups;
   for (const AuditFinding& finding : audit.findings) {
@@ -58,7 +59,7 @@ std::string one_subject(const Audited& input, const AuditFinding& found) {
   return found.mesh ? mesh : "sequence";
 }
 
-// Returns the subjects of a group in words: "57 targets of Head" or "2 targets and 1 animation of Head".
+// Names the targets and animations of a group: "57 targets of Head" or "2 targets and 1 animation of Head".
 std::string subject_of(const Audited& input, const Group& group) {
   if (group.size() == 1) return one_subject(input, *group.worst);
   std::string text;
@@ -70,7 +71,7 @@ std::string subject_of(const Audited& input, const Group& group) {
   return text + (group.worst->mesh ? " of " + of_mesh(input, *group.worst) : "");
 }
 
-// Returns the worst error of a single target of the mesh.
+// Returns the worst error, in degrees, of any single target of the mesh of a finding.
 double worst_alone(const Audit& audit, const AuditFinding& found) {
   double worst = 0;
   for (const AuditSubject& subject : audit.subjects)

@@ -9,11 +9,11 @@
 
 namespace chronormal::cli {
 
-/// Counts the lines of faults, including lines that are cut.
+/// Returns the number of lines of faults, including lines that the report cuts off.
 [[nodiscard]] std::size_t count_fault_lines(const Audit& audit);
 
-/// Return the lines of faults (the worst first) or of notes, with a title, or an empty text if there are none. Long
-/// lists are cut.
+/// Return the lines of faults (the worst first) or of notes below a title, or an empty text if there are none. Long
+/// lists are cut off.
 [[nodiscard]] std::string fault_lines(const Audited& input);
 [[nodiscard]] std::string note_lines(const Audited& input);
 

@@ -24,11 +24,12 @@ using Align = Table::Align;
 
 constexpr std::size_t kLongestBar = 40;
 constexpr double kSeen = 0.005;                     // the smallest number of degrees that two decimals show
-constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples
-constexpr double kDisplaced = 1e-5;                 // smallest share of the size that is reported
+constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples for the columns of percentiles
+// smallest displacement that is reported, as a share of the size of the mesh
+constexpr double kDisplaced = 1e-5;
 
-// Says whether the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges in 2 of 3
-// viewers".
+// Returns words that say if the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges
+// in 2 of 3 viewers".
 std::string limits_words(const Audited& input) {
   std::string limits;
   if (input.limits.degrees)
@@ -50,7 +51,7 @@ std::string torn(const MotionError& error) {
   return formatted("{:.2g}", edges);
 }
 
-// Explains the definition of true normals if it is not the usual one.
+// Returns a line that explains by which weighting true normals are defined, unless it is the usual one, by area.
 std::string weighting_words(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.weighting == Weighting::kArea) return "";
@@ -143,7 +144,8 @@ std::string subject_table(const Audited& input) {
   return text;
 }
 
-// Prints a row of errors for each viewer. The first row is for the specification, to which all later tables refer.
+// Returns a table with a row of errors for each viewer. The first row is for the specification, to which all later
+// tables refer.
 std::string viewer_table(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.viewers.empty()) return "";
@@ -227,7 +229,7 @@ std::string offset_lines(const Audited& input) {
                    text;
 }
 
-// Names the place of the first sample of a count.
+// Names the place of the first sample that `count` counts. `place` is the member of MotionError that has this place.
 std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =

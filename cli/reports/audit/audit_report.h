@@ -1,4 +1,4 @@
-/// The result of `audit` of one input, for people.
+/// Formats the result of `audit` of one input for people.
 #ifndef CLI_REPORTS_AUDIT_REPORT_H_
 #define CLI_REPORTS_AUDIT_REPORT_H_
 
@@ -15,31 +15,31 @@ struct Audited {
   Input opened;
   Audit audit;
   AuditLimits limits;
-  std::string bake;  ///< the inputs as words of a command line; empty if bake cannot take them
+  std::string bake;  ///< the inputs as words of a command line; empty if bake cannot read them
 
   [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
-  /// Returns the glTF file, or nullptr.
+  /// Returns the document of a glTF file, or nullptr for other inputs.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const ViewerAudit& viewer) const { return limits.allow(viewer); }
-  /// Returns true if the limits are met in every named viewer, or by the rule if none is named. A file in which nothing
-  /// moves meets them.
+  /// Returns true if the limits are met in every viewer that the user named, or by the rule if the user named none. A
+  /// file in which nothing moves meets all limits.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 
-/// Returns the verdict, tables of the motions and of the errors, the findings, and a recommendation. Long tables are
-/// cut.
+/// Returns the whole report: the verdict, tables of the motions and of the errors, the findings, and a recommendation.
+/// Long tables are cut off.
 [[nodiscard]] std::string audit_text(const Audited& input);
 
-/// Names the place of the worst error of all: "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55".
+/// Names the place of the largest error: "vertex 17 of Head, primitive 1, target 0 (smile) at weight 0.55".
 [[nodiscard]] std::string worst_label(const Audited& input);
 
-/// Names the place of the worst error in one viewer.
+/// Names the place of the largest error in one viewer.
 [[nodiscard]] std::string worst_label(const Audited& input, const ViewerAudit& viewer);
 
-/// Names the place of the first sample that cannot be lit.
+/// Names the place of the first sample whose normal is zero, infinite or NaN, so that a viewer cannot light it.
 [[nodiscard]] std::string unlit_label(const Audited& input);
 
-/// Names the place of the worst sample among those whose true normal nearly vanishes.
+/// Names the place of the largest error among the samples whose true normal nearly vanishes.
 [[nodiscard]] std::string faint_label(const Audited& input);
 
 /// Names the place of the first sample around which the normals of faces cancel.
