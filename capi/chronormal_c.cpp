@@ -1,5 +1,5 @@
-// Implements the C interface: each function checks what C cannot express, calls its counterpart of the library, and
-// turns errors and exceptions into a status with a message.
+// Implements the C interface. Each function checks what the types of C cannot express, calls its counterpart in the
+// library, and turns errors and exceptions into a status with a message.
 #include "chronormal_c.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ chronormal_status misuse(const char* place, const char* message) noexcept {
   }
 }
 
-// Calls a body that may throw, and turns its exception into a status.
+// Calls body(), which may throw, and turns an exception into a status.
 template <class Body>
 chronormal_status guarded(const Body& body) noexcept {
   try {
@@ -62,8 +62,8 @@ double angle_in_degrees(const Vec3d& right, const Vec3d& shown) noexcept {
 
 constexpr std::size_t kPacked = 3 * sizeof(float);
 
-// Makes a view of vectors. Errors: kUsage for a null pointer, or for a stride that is not a multiple of 4 or that makes
-// vectors overlap.
+// Makes a view of vectors that lie `stride` bytes apart. Errors: kUsage for a null pointer, and for a stride that is
+// not a multiple of 4 or with which vectors overlap.
 template <class T>
 Result<VectorView<T>> view_of(T* data, std::size_t stride, std::size_t count, const char* place) {
   if (count == 0) return VectorView<T>{};
@@ -97,8 +97,8 @@ Result<Topology> topology_of(const chronormal_mesh* mesh) {
                             {mesh->corners, mesh->corners + offsets.back()});
 }
 
-// Checks a structure that begins with its size. A structure from a newer header may have further fields, which this
-// library does not know. Their bytes must be 0.
+// Checks a structure that begins with its size. A structure from a newer header may have further fields that this
+// library does not know. The bytes of these fields must be 0.
 template <class Struct>
 Status check_size(const Struct& given, const char* name) {
   const std::string place = std::string(name) + ".size";
@@ -118,7 +118,7 @@ Status check_size(const Struct& given, const char* name) {
   return Success{};
 }
 
-// Converts the options. Errors: kUsage with the name of the field.
+// Converts the options of C to those of the library. Errors: kUsage with the name of the field.
 Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   MeshNormalsOptions options;
   if (given == nullptr) return options;
@@ -140,8 +140,8 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   return options;
 }
 
-// Calls write(result, range) with the view that an output describes: vectors, or spans of four bytes each. Returns the
-// number of zero normals. Errors: kUsage.
+// Calls write(result, range), where `result` is the view of memory that an output describes: vectors, or spans of four
+// bytes each. Returns the number of zero normals. Errors: kUsage.
 template <class Write>
 Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, const Write& write) {
   if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
@@ -170,7 +170,7 @@ Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, c
 struct chronormal_curves {
   MeshNormals curves;
   Threads threads;
-  std::vector<float> exact;  // (size, 3), for chronormal_curves_errors()
+  std::vector<float> exact;  // exact normals (size, 3), against which chronormal_curves_errors() measures
 };
 
 struct chronormal_blend {
@@ -262,7 +262,7 @@ chronormal_status chronormal_curves_write(const chronormal_curves* curves, const
         return is_real ? normals.unit_normals(times[k], result, range) : 0;
       });
     };
-    // Checks all arguments before any output is written.
+    // All arguments are checked before any output is written.
     for (std::size_t k = 0; k < count; ++k) {
       if (!(times[k] >= 0 && times[k] <= 1)) return misuse("times", "t must be from 0 to 1");
       if (const auto checked = write(k, false); !checked) return fail(checked.error());

@@ -1,10 +1,10 @@
-"""Builds the Python package by the project's CMake.
+"""Builds the Python package with the CMake files of the project.
 
     pip install --no-build-isolation ./python     # in a venv with --system-site-packages, or where NumPy and pybind11 are
 
 CHRONORMAL_BUILD names a build folder of the project, configured with CHRONORMAL_PYTHON=ON, whose libraries are used.
-Without it, the library is compiled in the folder of setuptools. The licences of libraries that are compiled in are
-packed from THIRD_PARTY in that build folder.
+Without CHRONORMAL_BUILD, the library is compiled in the folder of setuptools. The licences of libraries that are
+compiled in are packed from THIRD_PARTY in the build folder.
 """
 
 import os

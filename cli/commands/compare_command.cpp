@@ -249,7 +249,7 @@ Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& opti
     if (!comparison.value()) break;
     comparisons.push_back(std::move(*comparison.value()));
     if (options.each && !wanted.base.empty())
-      // With --each, all inputs have the same base, so the name of the target tells them apart.
+      // All inputs of --each have the same base, so the name of the target tells them apart.
       comparisons.back().name = wanted.files.front();
   }
   return comparisons;

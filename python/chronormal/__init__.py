@@ -41,20 +41,21 @@ _Weighting = Literal["area", "angle", "uniform", "area-angle", "max"]
 
 
 def _vectors(array, place):
-    """Return the array itself if it is C-contiguous float32, or else one copy that is."""
+    """Return the array itself if it is C-contiguous float32, or else one such copy."""
     array = _np.asarray(array)
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{place}: the array must hold real numbers, best as float32, but its type is {array.dtype}")
-    with _np.errstate(over="ignore"):  # too large numbers become infinite, which the library refuses with the place
+    # numbers that are too large become infinite, and the library refuses them with their place
+    with _np.errstate(over="ignore"):
         return _np.ascontiguousarray(array, dtype=_np.float32)
 
 
 def _indices(array, place):
     """Return a flat array of uint32."""
     array = _np.asarray(array)
-    if array.size == 0 and array.dtype.kind == "f":  # numpy makes floats of an empty list
+    if array.size == 0 and array.dtype.kind == "f":  # numpy makes an empty list an array of floats
         array = array.astype(_np.uint32)
     if array.dtype.kind not in "iu":
         raise ValueError(f"{place}: the type must be int32, int64 or uint32, but is {array.dtype}")
@@ -66,10 +67,10 @@ def _indices(array, place):
 
 
 def _are_offsets(faces):
-    """Tell whether a tuple is (offsets, corners) and not two faces.
+    """Return True if a tuple is (offsets, corners), and False if it is two faces.
 
-    Offsets begin with 0, end with the number of corners, and rise by at least 3 each time; two faces of equal size
-    never do.
+    Offsets begin with 0, end with the number of corners, and rise by at least 3 each time. Two faces of equal size
+    never do so.
     """
     if not isinstance(faces, tuple) or len(faces) != 2 or not all(_np.ndim(part) == 1 for part in faces):
         return False
@@ -108,7 +109,7 @@ def _polygons(faces):
 
 
 def _text(value, place):
-    """Return a string that can be passed to the library."""
+    """Return a string that can be passed to the library, or raise an error for other values."""
     if not isinstance(value, str):
         raise TypeError(f"{place}: the value must be a string, not {type(value).__name__}")
     try:
@@ -150,7 +151,7 @@ def _floats(array, place):
 
 def _source(source, sample=None, base=None, fps=1.0, animation=None, world=False, path="linear", velocities=False,
             loop=False, strict=False):
-    """Return the arguments that describe an input, in the form that the extension expects."""
+    """Return the arguments that describe an input as a dict, as the extension module expects them."""
     if (source is None) == (sample is None):
         raise ValueError("source: give files, bytes or a Motion, or the name of a built-in sample")
     data, files, motion = None, [], None
@@ -202,7 +203,7 @@ def curves(p0: ArrayLike, p1: ArrayLike, faces: _Faces, elements: _Elements = "v
 
 def cut(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, path: str = "catmull-rom",
         velocities: ArrayLike | None = None) -> tuple[NDArray[_np.float32], NDArray[_np.float64]]:
-    """Cut curves through keyframes into straight pieces; return positions (P, V, 3) and times (P,) of these keyframes.
+    """Cut curves through keyframes into straight pieces; return the positions (P, V, 3) and times (P,) of their ends.
 
     positions   (T, V, 3), the keyframes
     faces       as for curves()
@@ -245,6 +246,8 @@ def certify(p0: ArrayLike, p1: ArrayLike, faces: _Faces, scheme: str = "linear",
 
     p0, p1, faces, threads  as for curves()
     scheme   a name that compare() knows
+
+    The arrays of the result are:
     lower    degrees; the error reaches this value at the local time `at`
     upper    degrees; the error is never larger at any time from 0 to 1, rounding included; 180 if a normal
              vanishes on the way
@@ -288,20 +291,21 @@ def _motion_of_state(state):
     return made
 
 
-# The protocols 0 and 1 of pickle would make an object of the base class, and the extension would end the process.
+# Protocols 0 and 1 of pickle would make an object of the base class, and the extension module would then end the
+# process.
 Motion.__reduce_ex__ = lambda self, protocol: (_motion_of_state, (self.__getstate__(),))
 Motion.__reduce__ = lambda self: self.__reduce_ex__(0)
 
 
 def schemes() -> dict[str, str]:
-    """Return the ways to interpolate that interpolate(), compare() and certify() know: names, and a line about each."""
+    """Return the names of the schemes that interpolate(), compare() and certify() know, with a line about each."""
     return _chronormal.schemes()
 
 
 def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: float | ArrayLike,
                 elements: _Elements = "faces", crease: float = 180.0, weld: bool = True) -> NDArray[_np.float32]:
-    """Return the unit normals of a scheme that interpolates between the exact normals at t = 0 and t = 1: (n, 3), or
-    (T, n, 3) for T t.
+    """Return the unit normals of a scheme that interpolates between the exact normals at t = 0 and t = 1. The result is
+    (n, 3) for one t, or (T, n, 3) for T values of t.
 
     scheme  a name of schemes()
     p0, p1, faces, elements, crease, weld  as for curves(); some schemes need faces
@@ -315,7 +319,7 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
 
 def inspect(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
             animation: str | int | None = None, world: bool = False, loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return the content of a file and possible causes of wrong normals: the dict of `chronormal inspect --json`."""
+    """Return the dict of `chronormal inspect --json`: what a file contains, and possible causes of wrong normals."""
     return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world, loop=loop, strict=strict)))
 
 
@@ -323,7 +327,7 @@ def audit(source: _Source = None, *, rule: str | None = None, weighting: _Weight
           viewers: str | Iterable[str] | None = None, samples: int | None = None, tolerance: float | None = None,
           weld: bool = True, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
           animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return the errors of the normals that viewers render from a file: the dict of `chronormal audit --json`.
+    """Return the dict of `chronormal audit --json`: the errors of the normals that viewers render from a file.
 
     rule, weighting, viewers, samples, tolerance  as the options of the program; viewers may be a list
     source  as for read(); or a Motion, which has no stored normals: viewers compute them at keyframes
@@ -383,16 +387,16 @@ def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exa
 
 @_dataclasses.dataclass(frozen=True, repr=False)
 class ErrorTable:
-    """The errors of one mesh: a row for each sample, a column for each vertex (or face, or corner)."""
+    """The errors of one mesh, with a row for each sample and a column for each vertex (or face, or corner)."""
 
     name: str  #: "mesh0" of a glTF file, else ""
-    errors: _np.ndarray  #: (rows, columns) float32, degrees; NaN where nothing was judged
+    errors: _np.ndarray  # : (rows, columns) float32, degrees; NaN for samples that were not judged
     subjects: _np.ndarray  #: (rows,) int64: the subject of the audit, or the segment of the motion
-    times: _np.ndarray  #: (rows,) float64, seconds; NaN in rows of targets
-    weights: _np.ndarray  #: (rows,) float64; NaN in rows of animations and sequences
-    positions: _np.ndarray  #: (V, 3) float32, at the first keyframe or of the base
-    primitives: _np.ndarray = None  #: (V,) int64 of a glTF mesh
-    vertices: _np.ndarray = None  #: (V,) int64: the vertex of the primitive
+    times: _np.ndarray  # : (rows,) float64, seconds; NaN in rows that belong to targets
+    weights: _np.ndarray  # : (rows,) float64; NaN in rows that belong to animations and sequences
+    positions: _np.ndarray  # : (V, 3) float32, at the first keyframe or in the base
+    primitives: _np.ndarray = None  # : (V,) int64, the primitive of each vertex of a glTF mesh
+    vertices: _np.ndarray = None  # : (V,) int64, the number of each vertex in its primitive
 
     def __repr__(self):
         rows, columns = self.errors.shape
@@ -423,7 +427,7 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
 
 
 def _keyframes(positions, faces, times):
-    """Return the arrays about which the extension answers a query: positions (T, V, 3), offsets and corners, times."""
+    """Return what the extension module needs for a query: positions (T, V, 3), offsets and corners, times (T,)."""
     positions = _vectors(positions, "positions")
     if positions.ndim != 3 or positions.shape[2] != 3:
         raise ValueError(f"positions: the shape must be (T, V, 3), but is {positions.shape}")
@@ -433,14 +437,17 @@ def _keyframes(positions, faces, times):
 
 def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
              end: float | None = None) -> dict[str, NDArray[Any]]:
-    """Return when faces have no area, decided exactly: a dict of arrays with a row for each collapse.
+    """Return when faces have no area, decided exactly, as a dict of arrays with a row for each collapse.
 
     positions   (T, V, 3) keyframes; between two of them vertices move on straight lines
     faces       as for curves()
     times       (T,) of the keyframes; None: 0, 1, 2 ...
     start, end  the interval of time to search; None: the whole motion
 
-    segment, face   the place; lower, upper: bounds of t in the segment, in [0, 1]; time: the time in the motion
+    The arrays of the result are:
+    segment, face   the place of the collapse
+    lower, upper    bounds of its t in the segment, in [0, 1]
+    time            its time in the motion
     turns_over      True if the normal after the collapse is opposite to the normal before
     before, after   (rows, 3) the limits of the unit normal on both sides
     always_segment, always_face   faces that have no area in a whole segment
@@ -452,7 +459,7 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
            eye: ArrayLike | None = None, eye_to: ArrayLike | None = None, silhouettes: bool = False,
            start: float | None = None, end: float | None = None, elements: _Elements = "faces", crease: float | None = None,
            weld: bool = True) -> dict[str, NDArray[Any]]:
-    """Return when faces show their front to somebody who looks: a dict of arrays with a row for each interval.
+    """Return when faces show their front to a camera, as a dict of arrays with a row for each interval.
 
     positions, faces, times, start, end   as for collapse()
     direction    (3,) the camera is infinitely far away in this direction; or
@@ -460,9 +467,10 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     silhouettes  True: also list edges between a front and a back
     elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, seen from their places
 
+    The arrays of the result are:
     segment, face             the place; vertex or corner in place of face for these elements
-    from, from_upper          the interval begins between these t of the segment
-    to_lower, to              and ends between these t
+    from, from_upper          bounds of t in the segment at the beginning of the interval
+    to_lower, to              bounds of t in the segment at the end of the interval
     silhouette_vertices, silhouette_faces   (rows, 2), with silhouette_segment, silhouette_from, ... as above
     """
     if (direction is None) == (eye is None):
@@ -479,13 +487,14 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
 
 def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: ArrayLike | None = None, *,
             start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
-    """Return which points are inside a closed mesh that deforms, and when each crosses its surface: a dict of arrays.
+    """Return which points are inside a closed mesh that deforms, and when each crosses its surface, as a dict of arrays.
 
     positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
     points   (P, 3) points that rest, or (P, 2, 3): each point moves straight from its first
              position to its second, over all times
 
-    inside           (P,) at the first instant
+    The arrays of the result are:
+    inside           (P,) True for points that are inside at the first instant
     crossing_point   the index of the point; crossings are ordered by point and time
     crossing_time, crossing_segment, crossing_face, crossing_normal (rows, 3)   the time and place of the crossing
     crossing_inward  True if the winding number rises, False if it falls
@@ -495,11 +504,12 @@ def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: Array
 
 def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, meshlets: int | None = None,
           start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
-    """Return cones that contain every normal of a face: a dict of arrays with a row for each segment and face.
+    """Return cones that contain every normal of a face, as a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()
-    meshlets   None, or build meshlets of up to so many triangles (a multiple of 4)
+    meshlets   the largest number of triangles in a meshlet (a multiple of 4); None: make no meshlets
 
+    The arrays of the result are:
     segment, face     the place
     axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
                       length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
@@ -514,14 +524,16 @@ def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *
 
 def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *, start: float | None = None,
             end: float | None = None, elements: _Elements = "faces", crease: float | None = None, weld: bool = True) -> dict[str, NDArray[Any]]:
-    """Return average normals while a shutter is open: a dict of arrays with a row for each segment and face.
+    """Return average normals while a shutter is open, as a dict of arrays with a row for each segment and face.
 
     positions, faces, times, start, end   as for collapse()
     elements, crease, weld   as for curves()
 
+    The arrays of the result are:
     segment, face   the place; vertex or corner in place of face for these elements
     mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
-    mean_unit       (rows, 3) mean of the unit normal; error: the largest distance to the exact mean
+    mean_unit       (rows, 3) mean of the unit normal
+    error           the largest distance of mean_unit to the exact mean
     length          the length of mean_unit: 1 where normals stay the same, 0 where they cancel
     half_angle      degrees, the half-angle of a cone that contains all normals
     ends, ends_off  (rows, 3) the mean direction of interpolation between the end normals, and its error in degrees

@@ -1,4 +1,4 @@
-# The types of the classes of the extension module. Their docstrings are in the module itself.
+# Declares the types of the classes of the extension module. Their docstrings are in the module itself.
 from typing import Literal
 
 import numpy as np

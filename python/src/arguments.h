@@ -1,4 +1,4 @@
-// Reads the arguments that all functions for single frames have in common: times, and the elements whose normals are
+// Reads the arguments that curves and blends have in common: times or weights, and the elements whose normals are
 // requested.
 #ifndef CHRONORMAL_PYTHON_ARGUMENTS_H_
 #define CHRONORMAL_PYTHON_ARGUMENTS_H_
@@ -28,7 +28,7 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   return options;
 }
 
-// The numbers of a Python float or of an array. is_one tells which of the two was given.
+// The numbers of a Python float or of an array. is_one is true if a single number was given.
 struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {
@@ -51,7 +51,7 @@ struct Numbers {
     if (many->ndim() != 1) refuse(place, "the shape must be (T,), but is " + shape_text(*many));
   }
 
-  // Copies the numbers if they share memory with an array `out` that will be written.
+  // Copies the numbers if they share memory with the array `out`, which will be written.
   void keep_from(const py::object& out) {
     if (many) *many = kept_from(std::move(*many), out);
   }
@@ -73,7 +73,8 @@ struct Numbers {
 
   bool is_one = false;
   double one = 0;
-  std::optional<Array<double>> many;  // optional, since making an empty array would cost time
+  // Optional, because making an empty array would cost time.
+  std::optional<Array<double>> many;
 };
 
 }  // namespace chronormal::python

@@ -1,5 +1,5 @@
-// Gives the library views of NumPy arrays. python/chronormal has already checked the type of an array; this file checks
-// its shape.
+// Converts NumPy arrays to views for the library, and results of the library to arrays. python/chronormal has already
+// checked the type of an array; the functions here check its shape.
 #ifndef CHRONORMAL_PYTHON_ARRAYS_H_
 #define CHRONORMAL_PYTHON_ARRAYS_H_
 
@@ -22,15 +22,15 @@ namespace chronormal::python {
 
 namespace py = pybind11;
 
-// A C-contiguous array. Pass only arrays that python/chronormal has converted: pybind11 would silently copy an array of
-// another layout or of a narrower type.
+// A C-contiguous array. Pass only arrays that python/chronormal has converted, because pybind11 would silently copy an
+// array of another layout or of a narrower type.
 template <class T>
 using Array = py::array_t<T, py::array::c_style>;
 // A C-contiguous array of T, into which pybind11 converts numbers of any type.
 template <class T>
 using AnyArray = py::array_t<T, py::array::c_style | py::array::forcecast>;
 
-// Converts a text from outside, which may have any bytes, into a Python string, like os.fsdecode() for the name of a
+// Converts a text from outside, which may have any bytes, to a Python string, as os.fsdecode() does for the name of a
 // file.
 inline py::str string_of(std::string_view text) {
   PyObject* const made = PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
@@ -38,7 +38,8 @@ inline py::str string_of(std::string_view text) {
   return py::reinterpret_steal<py::str>(made);
 }
 
-// Raises the exception for an error, with or without the GIL: OSError for files, ValueError for wrong arguments.
+// Raises the exception for an error: OSError for files, ValueError for wrong arguments. The caller may or may not hold
+// the GIL.
 [[noreturn]] inline void raise(const Error& error) {
   const py::gil_scoped_acquire held;
   PyObject* const kind = error.code == ErrorCode::kFailed ? PyExc_OSError : PyExc_ValueError;
@@ -56,8 +57,8 @@ T value_or_raise(Result<T> result) {
   raise(Error{ErrorCode::kUsage, place, message});
 }
 
-// Raises an error if a condition does not hold. Makes no string otherwise, since the whole call may take less than a
-// microsecond.
+// Raises an error if a condition does not hold. If it holds, no string is made, since the whole call may take less than
+// a microsecond.
 inline void require(bool condition, const char* place, const char* message) {
   if (!condition) refuse(place, message);
 }
@@ -92,15 +93,16 @@ py::array_t<T> array_of(std::vector<T> values, std::vector<py::ssize_t> shape) {
 // Makes the topology of a mesh from two arrays of uint32.
 Topology topology_of(std::size_t vertices, const Array<std::uint32_t>& offsets, const Array<std::uint32_t>& corners);
 
-// Makes a motion from keyframes (T, V, 3) at some times.
+// Makes a motion from keyframes (T, V, 3) at `times`, in seconds.
 Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offsets,
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
-// Returns the array into which (rows, size, 3) normals are written, or (size, 3) for no rows: `out` itself if it fits,
-// or a new array if `out` is None.
+// Returns the array into which normals (rows, size, 3) are written, or (size, 3) if `rows` has no value. The array is
+// `out` itself if it has this shape, or a new array if `out` is None. Raises an error for other values of `out`.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
-// Returns the array itself, or a copy if it shares memory with an array `out` that is written while the array is read.
+// Returns the array `numbers` itself, or a copy if it shares memory with the array `out`, which is written while
+// `numbers` is read.
 inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   if (!py::isinstance<py::array>(out) || numbers.size() == 0) return numbers;
   const auto other = py::reinterpret_borrow<py::array>(out);
@@ -110,8 +112,8 @@ inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   return Array<double>(numbers.size(), numbers.data());
 }
 
-// Makes pickle and copy refuse objects of a class, since they cannot copy its memory. Otherwise the protocols 0 and 1
-// of pickle would make an object of the base class, and pybind11 would end the process.
+// Makes pickle and copy refuse objects of a class, since they cannot copy the memory of such an object. Otherwise the
+// protocols 0 and 1 of pickle would make an object of the base class, and pybind11 would end the process.
 template <class Class>
 void refuse_to_be_pickled(Class& made) {
   const auto refuse = [](const py::object& self, const py::args&) -> py::object {
@@ -135,9 +137,9 @@ class ChosenThreads {
   std::optional<ThreadLimit> limit_;
 };
 
-// Gives objects of Python memory of zeros. `Curves.__new__(Curves)` makes an object without calling its constructor,
-// and pybind11 then passes this memory to a method. The method recognises from its zero members that the constructor
-// did not run.
+// Fills the memory of new objects of Python with zeros. `Curves.__new__(Curves)` makes an object without calling its
+// constructor, and pybind11 then passes this memory to a method. From the zero members, the method recognises that the
+// constructor did not run.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);

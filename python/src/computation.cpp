@@ -6,7 +6,7 @@
 namespace chronormal::python {
 namespace {
 
-// The numbers of turns (computation.h) in progress, over all objects, and of forks that wait until these turns end.
+// Counts the turns (computation.h) in progress, over all objects, and the forks that wait until these turns end.
 class ForkGate {
  public:
   void begin_turn() {
@@ -21,7 +21,7 @@ class ForkGate {
     --own_turns;
     change_.notify_all();
   }
-  // Waits until only this thread, which forks, has turns. Its turns continue in the child.
+  // Waits until no other thread has a turn. The turns of this thread, which forks, continue in the child.
   void begin_fork() {
     std::unique_lock lock(mutex_);
     ++forks_;
@@ -32,7 +32,7 @@ class ForkGate {
     --forks_;
     change_.notify_all();
   }
-  // Starts again in the child, where the mutex may be locked by a thread that does not exist there.
+  // Makes a new gate in the child, because a thread that does not exist there may have locked the mutex.
   void begin_anew() {
     new (this) ForkGate;
     turns_ = own_turns;

@@ -11,13 +11,13 @@
 
 namespace chronormal::python {
 
-// Hands out turns: an object has scratch memory for one computation, so only one thread may compute with it. A fork
-// waits until nobody has a turn, and no turn begins meanwhile: a turn of another thread would never end in the child,
-// since that thread does not exist there.
+// Lets one thread at a time compute with an object, which has scratch memory for only one computation. Such a
+// permission is called a turn. A fork waits until no other thread has a turn, and no turn begins meanwhile. Otherwise
+// the turn of another thread would never end in the child, because that thread does not exist there.
 class Turns {
  public:
-  // Raises an exception in a signal handler that runs during a computation of the same thread, since waiting for the
-  // thread's own turn would never end.
+  // Returns this object. Raises an exception if the calling thread has the turn already. This happens in a signal
+  // handler that runs during a computation of the same thread, where waiting for the turn would never end.
   Turns& required_of_others() {
     require(owner_ != std::this_thread::get_id(), "self",
             "the object is in use by the computation that this signal handler interrupts");
@@ -32,8 +32,8 @@ class Turns {
 };
 
 // A computation that runs without the GIL. If it is made with the Turns of an object, it has a turn of this object. If
-// the handler of a signal raises, as for Ctrl-C, the computation throws Interrupted, and the exception of Python is
-// set.
+// a signal handler raises an exception, as for Ctrl-C, the computation throws Interrupted, and the exception of Python
+// is set.
 class Computation {
  public:
   Computation() = default;
@@ -51,7 +51,7 @@ class Computation {
   Interruption interruption_{has_heard_a_signal};
 };
 
-// Runs long work as a Computation, and raises its error with the GIL.
+// Runs long work as a Computation, and returns its result. If the result is an error, raises it while holding the GIL.
 template <class Work>
 auto without_gil(const Work& work) {
   auto result = [&] {

@@ -9,7 +9,7 @@
 namespace chronormal::python {
 namespace {
 
-// Writes the angles in degrees between two lists of vectors; NaN if a vector has no direction.
+// Writes the angles in degrees between two lists of vectors. Writes NaN if a vector has no direction.
 void write_errors(VectorView<const float> exact, VectorView<const float> shown, float* degrees) {
   for (std::size_t i = 0; i < exact.count; ++i) {
     const Vec3d right = to_double(exact[i]), is = to_double(shown[i]);
@@ -48,7 +48,8 @@ class Curves : public ZeroedObject {
     Turns& turns = turns_.required_of_others();
     Status status = Success{};
     {
-      const py::gil_scoped_release released;  // no Interruption here: half of a segment would be left
+      // A signal must not interrupt this call, because a half-written segment would be left.
+      const py::gil_scoped_release released;
       const std::lock_guard turn(turns);
       status = curves_->set_segment(first, last);
     }
@@ -92,7 +93,8 @@ class Curves : public ZeroedObject {
     return times.is_one ? array_of(std::move(degrees), {n}) : array_of(std::move(degrees), {rows, n});
   }
 
-  // n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1, before it is normalised.
+  // Returns the control normals n0, m, n1 of n(t) = (1-t)^2 n0 + 2t(1-t) m + t^2 n1, which is the normal before it is
+  // normalised, as an array (size, 3, 3).
   [[nodiscard]] py::array control_normals() const {
     const std::size_t count = size();
     std::vector<float> values(9 * count);

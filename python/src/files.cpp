@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kBytes = "<bytes>";  // the name of a file that was given as bytes
 
-// Reads the dict that python/chronormal makes from its arguments. Its keys are the names of InputOptions.
+// Reads the dict that python/chronormal makes from its arguments. Its keys are the names of members of InputOptions.
 InputOptions options_of(const py::dict& source) {
   InputOptions options;
   options.files = source["files"].cast<std::vector<std::string>>();
@@ -27,7 +27,7 @@ InputOptions options_of(const py::dict& source) {
   options.loop = source["loop"].cast<bool>();
   options.strict = source["strict"].cast<bool>();
   if (const py::object bytes = source["bytes"]; !bytes.is_none()) {
-    const std::string_view view = bytes.cast<std::string_view>();  // the object outlives the input
+    const std::string_view view = bytes.cast<std::string_view>();  // the bytes object outlives the input
     options.files = {kBytes};
     options.resolve = [view](const std::string& name) -> Result<std::string_view> {
       if (name == kBytes) return view;
@@ -40,7 +40,7 @@ InputOptions options_of(const py::dict& source) {
   return options;
 }
 
-// Opens files. Raises an error if the requested path of vertices is not possible for them.
+// Opens files. Raises an error if the chosen path of vertices is not possible for these files.
 Input open_files(const py::dict& source, bool allow_mesh, KeepShading shading) {
   InputOptions options = options_of(source);
   options.allow_mesh = allow_mesh;
@@ -60,7 +60,7 @@ std::string bytes_of_text(const py::handle& text) {
   return py::reinterpret_steal<py::bytes>(made);
 }
 
-// A motion that was read or made from arrays, with its arrays, and its normals at chosen moments.
+// A motion that was read or made from arrays. It also gives its arrays, and its normals at chosen moments, to Python.
 class ReadMotion : public ZeroedObject {
  public:
   explicit ReadMotion(const py::dict& source) : bytes_(source["bytes"]) {
@@ -83,7 +83,7 @@ class ReadMotion : public ZeroedObject {
   }
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
 
-  // Makes the array of all keyframes once.
+  // Returns the array of all keyframes, which is made at the first call.
   py::array positions() {
     require_made(motion_ != nullptr);
     if (!positions_) {
@@ -108,7 +108,7 @@ class ReadMotion : public ZeroedObject {
 
   [[nodiscard]] std::array<double, 3> origin() const { return motion().origin; }
 
-  // Returns (F, k) if all faces have equally many corners, or else (offsets, corners).
+  // Returns an array (F, k) if all faces have equally many corners, or else the tuple (offsets, corners).
   [[nodiscard]] py::object faces() const {
     const Topology& topology = motion().topology;
     std::vector<std::uint32_t> corners(topology.corners().begin(), topology.corners().end()), offsets = {0};
@@ -205,7 +205,7 @@ class ReadMotion : public ZeroedObject {
   }
 
  private:
-  py::object bytes_;  // the bytes that the input refers to
+  py::object bytes_;  // owns the bytes to which the input refers
   std::optional<Input> input_;
   std::unique_ptr<Motion> own_;
   const Motion* motion_ = nullptr;  // the motion of the input or of the arrays
@@ -213,7 +213,7 @@ class ReadMotion : public ZeroedObject {
   std::optional<py::array> positions_;
 };
 
-// Returns the state for a pickle: everything except the source of the motion.
+// Returns the state of a motion for a pickle: everything except the files that it was read from.
 py::tuple ReadMotion::state() const {
   const Motion& m = motion();
   py::list keyframes;
@@ -273,7 +273,7 @@ ReadMotion::ReadMotion(const py::tuple& state) {
   motion_ = own_.get();
 }
 
-// The subject of a call: files that were opened, or a Motion of Python, and the object that owns the bytes.
+// The input of a call: files that were opened, or a Motion of Python. `kept` owns the bytes of the input.
 struct Opened {
   std::optional<Input> input;
   const ReadMotion* made = nullptr;

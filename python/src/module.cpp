@@ -1,4 +1,4 @@
-// The extension module behind python/chronormal, which is what users import.
+// Defines the extension module behind python/chronormal, the package that users import.
 #include "computation.h"
 
 namespace py = pybind11;

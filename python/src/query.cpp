@@ -1,4 +1,4 @@
-// Answers queries about whole intervals of time: takes keyframes, returns arrays.
+// Answers queries about whole intervals of time. They take keyframes, and return dicts of arrays.
 #include <cmath>
 #include <type_traits>
 #include <variant>
@@ -26,8 +26,8 @@ py::array array_of_column(QueryColumn column) {
       column.values);
 }
 
-// Returns a dict of the arrays of an answer, by the names that the program gives them in files. Calls `ask` without the
-// GIL.
+// Returns a dict of the arrays of an answer. The keys are the names that the program uses in files. Calls `ask` without
+// the GIL.
 template <class Ask>
 py::dict answer_of(const Ask& ask) {
   QueryAnswer found = without_gil(ask);

@@ -1,4 +1,4 @@
-"""Meshes for tests, and normals by cross products in float64, which share no code with the library."""
+"""Makes meshes for tests, and normals by cross products in float64, which share no code with the library."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
-"""Arrays in place of files: motions that are made, pickled, judged and baked; schemes; control normals; and invalid
-arguments."""
+"""Tests arrays in place of files: motions that are made, pickled, judged and baked; schemes; control normals; and
+invalid arguments."""
 
 import base64
 import copy

@@ -1,4 +1,5 @@
-"""libchronormal_c as an engine calls it, through ctypes: interleaved vertex buffers, its own memory, codes and messages.
+"""Tests libchronormal_c as an engine calls it, through ctypes: interleaved vertex buffers, memory of the caller, codes and
+messages.
 
 CHRONORMAL_C names the library; without it these tests are skipped.
 """

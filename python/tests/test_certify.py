@@ -1,4 +1,5 @@
-"""Certificates: no sampled error is above an upper bound, and at the named time the error reaches the lower bound."""
+"""Tests that no sampled error is above the upper bound of a certificate, and that the error reaches the lower bound at
+the named time."""
 
 import unittest
 

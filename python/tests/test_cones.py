@@ -1,4 +1,4 @@
-"""Cones, bounds of meshlets and means over a shutter, against samples in float64."""
+"""Tests cones, bounds of meshlets and means over a shutter against samples in float64."""
 
 import unittest
 

@@ -1,4 +1,4 @@
-"""Containment: which points are inside a mesh that deforms, and when they cross its surface."""
+"""Tests which points are inside a mesh that deforms, and when they cross its surface."""
 
 import unittest
 
@@ -6,7 +6,7 @@ import numpy as np
 
 import chronormal as cn
 
-# A cube of quads that becomes twice as large.
+# A cube of quads (KEYFRAMES[0]), and the cube with edges of twice the length (KEYFRAMES[1]).
 CUBE = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float32)
 QUADS = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
 KEYFRAMES = np.array([CUBE, 2 * CUBE])

@@ -1,4 +1,4 @@
-"""Curves and blends: true normals, the memory that is read and written, and messages about invalid arguments."""
+"""Tests curves and blends: true normals, the memory that is read and written, and messages about invalid arguments."""
 
 import gc
 import threading
@@ -134,7 +134,7 @@ class CurvesTest(unittest.TestCase):
         curves = cn.curves(np.tile(p0, (5000, 1)), np.tile(p1, (5000, 1)),
                            (faces + 12 * np.arange(5000)[:, None, None]).reshape(-1, 3), weld=False)
         out = np.empty((100, 60000, 3), dtype=np.float32)
-        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # allocates the memory in advance
+        curves.unit_normals(np.linspace(0, 1, 100), out=out)  # allocates the scratch memory before the measurement
         working = threading.Thread(target=curves.unit_normals, args=(np.linspace(0, 1, 100), out))
         rounds = 0
         working.start()

@@ -1,4 +1,4 @@
-"""The page docs/python.md and the README: their code runs, and prints the output that they show."""
+"""Tests that the code of docs/python.md and the README runs, and prints the output that these pages show."""
 
 import doctest
 import inspect

@@ -1,4 +1,4 @@
-"""Files: motions as arrays, reports as dicts, bakes as bytes, compared with the output of the program.
+"""Tests motions as arrays, reports as dicts, and bakes as bytes, and compares them with the output of the program.
 
 CHRONORMAL_PROGRAM names the program; without it, tests that need it are skipped.
 """
@@ -105,7 +105,7 @@ class ReportTest(unittest.TestCase):
         curves = cn.curves(motion.positions[0], motion.positions[1], motion.faces)
         (table,) = cn.errors(sample="twist", scheme="slerp", samples=3)
         ends = curves.unit_normals([0, 1]).astype(np.float64)
-        middle = ends[0] + ends[1]  # equals slerp at 1/2, up to its length
+        middle = ends[0] + ends[1]  # the direction of slerp at 1/2; only its length differs
         np.testing.assert_allclose(table.errors[1], curves.errors(0.5, middle), atol=1e-3)
         self.assertLess(table.errors[[0, 2]].max(), 1e-3)
 

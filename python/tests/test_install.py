@@ -1,4 +1,4 @@
-"""The package as users install it: a wheel, made by CMake, in a virtual environment.
+"""Tests the package as users install it: a wheel, made by CMake, in a virtual environment.
 
 CHRONORMAL_BUILD names a build folder with the libraries; without it this test is skipped, since it would compile
 all of them.

@@ -1,5 +1,5 @@
-"""Curved paths: normals of their pieces, compared with cross products on the curves, and reports, compared with the
-program's.
+"""Tests curved paths: normals of their pieces against cross products on the curves, and reports against those of the
+program.
 
 CHRONORMAL_PROGRAM names the program; without it, tests that need it are skipped.
 """
@@ -31,8 +31,8 @@ def turning_sheet():
 
 
 def slopes(keys):
-    """Return the velocity at each keyframe: the slope of the polynomial through it and its neighbours, or at both ends
-    through the nearest four keyframes."""
+    """Return the velocity at each keyframe, per second: the slope of the polynomial through the keyframe and its two
+    neighbours, or, at both ends, through the nearest four keyframes."""
     result = []
     for k in range(len(keys)):
         nearest = slice(0, 4) if k in (0, len(keys) - 1) else slice(k - 1, k + 2)
@@ -43,7 +43,7 @@ def slopes(keys):
 
 
 def on_cubic(keys, velocities, time):
-    """Return the positions at a time on the cubic with these velocities."""
+    """Return the positions at a time on the cubic Hermite spline through the keyframes with these velocities."""
     k = min(np.searchsorted(TIMES, time, side="right") - 1, len(TIMES) - 2)
     h = TIMES[k + 1] - TIMES[k]
     t = (time - TIMES[k]) / h

@@ -1,5 +1,5 @@
-"""Events that may crash a process or make it hang: signals, forks, pickles, names, numbers too large, and memory that
-is both read and written.
+"""Tests events that may crash a process or make it hang: signals, forks, pickles, names, numbers that are too large, and
+memory that is both read and written.
 
 All random numbers follow from SEED.
 """
@@ -26,7 +26,7 @@ PATIENCE = 60  # seconds, enough for a busy machine
 
 
 def objects():
-    """Return one object of each class, by its name."""
+    """Return one object of each class, in a dict by the name of the class."""
     p0, p1, faces = sheet()
     deltas = np.stack([p1 - p0, p0])
     return {"Curves": cn.curves(p0, p1, faces), "Blend": cn.blend(p0, deltas, faces), "Motion": cn.read(sample="twist")}
@@ -41,7 +41,7 @@ def raise_enough(*_):
 
 
 def wavy(frames, size, seed=SEED):
-    """Return a sheet of size x size vertices that moves: positions (frames, V, 3), faces."""
+    """Return a sheet of size x size vertices that moves: positions (frames, V, 3) and faces."""
     random = np.random.default_rng(seed)
     x, y = np.meshgrid(np.arange(size), np.arange(size))
     grid = np.stack([x, y, 0 * x], axis=-1).reshape(1, -1, 3).astype(np.float32)
@@ -59,7 +59,7 @@ class SignalTest(unittest.TestCase):
         signal.signal(signal.SIGALRM, self.before)
 
     def is_ended(self, call, after):
-        """Tell whether a signal arrives before the end of the call and ends it."""
+        """Return True if a signal arrives before the end of the call and ends the call."""
         try:
             signal.setitimer(signal.ITIMER_REAL, after)
             call()
@@ -74,7 +74,7 @@ class SignalTest(unittest.TestCase):
         deltas = positions[1:] - positions[:1]
         glb, _ = cn.bake(sample="twist", encode="endpoint")
         many = np.linspace(0, 1, 2 * 10**5)
-        out = np.empty((len(many), len(curves), 3), np.float32)  # touches the memory row by row
+        out = np.empty((len(many), len(curves), 3), np.float32)  # writes to the memory row by row
         for name, call in {
                 "audit": lambda: cn.audit(glb, samples=10**6, viewers="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),
@@ -137,8 +137,8 @@ class SignalTest(unittest.TestCase):
             said.clear()
             signal.setitimer(signal.ITIMER_REAL, 0.001)
             rows = curves.unit_normals(times, threads=1)
-            # On a fast machine the call ends before the signal arrives, and the handler runs between two calls.
-            # Therefore the work is doubled each time.
+            # On a fast machine the call ends before the signal arrives, and the handler runs between two calls. The
+            # work is therefore doubled each time.
             times = np.full(min(2 * len(times), 10_000), 0.5)
         np.testing.assert_array_equal(said[0], rows[0])
         self.assertIn("the object is in use by the computation that this signal handler interrupts", said[1])
@@ -194,7 +194,7 @@ class ForkTest(unittest.TestCase):
                 thread.join()
 
     def test_a_child_may_end_as_programs_do(self):
-        # This audit starts threads if there are several cores, so the fork below happens in a process with threads.
+        # This audit starts threads if there are several cores, so the process below forks while it has threads.
         self.assertEqual(cn.audit(sample="twist")["command"], "audit")
         child = multiprocessing.get_context("fork").Process(target=cn.audit, kwargs={"sample": "twist"})
         child.start()
@@ -206,7 +206,7 @@ class PickleTest(unittest.TestCase):
     def test_what_keeps_no_positions_is_neither_pickled_nor_copied_and_says_so(self):
         for name, made in objects().items():
             if name == "Motion":
-                continue  # tests/test_arrays.py pickles motions
+                continue  # python/tests/test_arrays.py pickles motions
             ways = [lambda made=made, p=p: pickle.dumps(made, p) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
             ways += [lambda: copy.copy(made), lambda: copy.deepcopy(made), lambda: made.__reduce__(), lambda: made.__reduce_ex__(0)]
             for way in ways:

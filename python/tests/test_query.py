@@ -1,4 +1,4 @@
-"""Queries about whole intervals: answers on arrays equal the program's, and are checked by hand."""
+"""Tests queries about whole intervals: answers on arrays equal those of the program, and are checked by hand."""
 
 import unittest
 
@@ -6,7 +6,7 @@ import numpy as np
 
 import chronormal as cn
 
-# Two triangles of a square. The last vertex crosses the diagonal and goes back.
+# A square of two triangles. Its last vertex crosses the diagonal and goes back.
 SQUARE = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], np.float32)
 FOLDED = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0]], np.float32)
 KEYFRAMES, FACES = np.array([SQUARE, FOLDED, SQUARE]), [[0, 1, 2], [1, 3, 2]]
