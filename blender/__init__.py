@@ -27,13 +27,15 @@ bl_info = {
     "category": "Import-Export",
 }
 
-# The exporter and the importer of glTF look for these names in the module of every enabled add-on.
+# The exporter and the importer of glTF look for names like these in the module of every enabled add-on, and call what
+# they find.
 glTF2_pre_export_callback = export.before_export
 glTF2_post_export_callback = export.before_writing
 glTF2ImportUserExtension = baked.RecogniseBakedFiles
 
 if bpy.app.version >= (4, 2, 0):
-    # Since version 4.2, the exporter calls draw_export() of add-ons that extend it; earlier versions show a panel.
+    # Since version 4.2, the exporter calls draw_export() of add-ons that define a class glTF2ExportUserExtension.
+    # Earlier versions of Blender show a panel.
     glTF2ExportUserExtension = export.NoFurtherHooks
     draw_export = export.draw_in_exporter
 

@@ -20,7 +20,7 @@ IDLE = "idle correction"
 
 
 def mark_of(thing: bpy.types.ID) -> dict[str, Any] | None:
-    """Returns the mark that a bake left on a mesh or an object."""
+    """Returns the mark that a bake left on a mesh or an object, or None without a mark."""
     value = thing.get(MARK)
     if hasattr(value, "to_dict"):
         value = value.to_dict()
@@ -77,8 +77,8 @@ def make_idle(mesh: bpy.types.Mesh, names: list[str | None] | None = None) -> in
 
 
 def _names_of_keys(gltf: Any, node: Any) -> list[str | None] | None:
-    """Returns the names of the keys that were made from the targets of a node's mesh, or None if this importer does
-    not tell them."""
+    """Returns the names of the keys that the importer made from the targets of a node's mesh. Returns None if this
+    version of the importer does not record the names."""
     index = getattr(node, "mesh_node_idx", None)
     if index is None:
         return None
@@ -86,8 +86,8 @@ def _names_of_keys(gltf: Any, node: Any) -> list[str | None] | None:
 
 
 class RecogniseBakedFiles:
-    """The class whose hooks Blender's importer of glTF calls. The importer swallows exceptions, so a file is imported
-    even if a hook fails."""
+    """The class whose hooks Blender's importer of glTF calls. The importer ignores exceptions of hooks, so a file is
+    imported even if a hook fails."""
 
     def gather_import_scene_after_animation_hook(self, _gltf_scene: Any, _blender_scene: Any, gltf: Any) -> None:
         meshes = count = 0
@@ -96,7 +96,7 @@ class RecogniseBakedFiles:
             if o is not None and o.type == "MESH" and mark_of(o.data) is not None:
                 meshes += 1
                 count += make_idle(o.data, _names_of_keys(gltf, node))
-        # gltfpack moves a mesh into a new node, so the mark may be on a node above.
+        # gltfpack moves a mesh into a new node below the old one, so the mark may be on an object above the mesh.
         for _, o in objects:
             if o is not None and mark_of(o) is not None:
                 del o[MARK]

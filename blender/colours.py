@@ -1,4 +1,4 @@
-"""The error of each corner of a mesh, as attributes: a colour to look at, and a number of degrees."""
+"""Shows the error of each corner of a mesh, as attributes: a colour to look at, and a number of degrees."""
 # SPDX-License-Identifier: MIT
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ import numpy
 COLOUR = "Normal error"
 DEGREES = "Normal error in degrees"
 
-# Colours from no error to the largest one of the scale, as they look on the screen (sRGB).
+# The colours of the scale, from no error to the largest one, as they look on the screen (sRGB).
 RAMP = ((0.80, 0.82, 0.84), (0.97, 0.87, 0.35), (0.96, 0.55, 0.16), (0.84, 0.15, 0.12), (0.45, 0.02, 0.25))
 
-# The attributes that hide() has removed and show() restores: the name of each mesh, and the errors of its corners in
-# degrees.
+# The attributes that hide() has removed and show() restores, as pairs of the name of a mesh and the errors of its
+# corners in degrees.
 _hidden: list[tuple[str, numpy.ndarray]] = []
 
 # The number of degrees at the end of the colour scale.
@@ -24,7 +24,7 @@ _active_before: dict[str, str] = {}
 
 
 def ramp(shares: numpy.ndarray) -> numpy.ndarray:
-    """Returns a colour for each position on the scale from 0 to 1, as (n, 4)."""
+    """Returns the colour for each of n positions on the scale, which runs from 0 to 1, as an array (n, 4)."""
     knots = numpy.linspace(0, 1, len(RAMP))
     channels = [numpy.interp(shares, knots, [colour[c] for colour in RAMP]) for c in range(3)]
     return numpy.stack([*channels, numpy.ones_like(shares)], axis=1).astype(numpy.float32)
@@ -45,7 +45,7 @@ def paint(mesh: bpy.types.Mesh, degrees: numpy.ndarray, top: float) -> None:
 
 
 def clear(mesh: bpy.types.Mesh) -> bool:
-    """Removes the attributes that paint() added. Returns whether there were any."""
+    """Removes the attributes that paint() added. Returns True if there were any."""
     names = [name for name in (COLOUR, DEGREES) if name in mesh.attributes]
     for name in names:
         mesh.attributes.remove(mesh.attributes[name])

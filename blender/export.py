@@ -1,9 +1,9 @@
 """Bakes true normals into a glTF file as soon as Blender's exporter has written it.
 
-The exporter calls glTF2_post_export_callback before it writes the file, so there is no hook after the file is
-written. Therefore before_export() replaces the exporter's function that writes, for one export and only if baking
-is switched on; the replacement first puts the original function back. While baking is off, the exporter is not
-touched at all.
+The exporter calls glTF2_post_export_callback before it writes the file, and calls no hook after it has written the
+file. Therefore before_export() replaces the exporter's function that writes, for one export and only if baking is
+switched on; the replacement first puts the original function back. While baking is off, the exporter is not touched
+at all.
 """
 # SPDX-License-Identifier: MIT
 
@@ -20,7 +20,8 @@ import bpy
 from . import colours, program, settings
 from .say import say
 
-# The modules that may contain the function that writes: the name in Blender 3.4, and the later name.
+# The modules of the exporter that may contain the function that writes: first the name in Blender 3.4, then the later
+# name.
 _WRITERS = ("io_scene_gltf2.io.exp.gltf2_io_export", "io_scene_gltf2.io.exp.export")
 _WRITE = "save_gltf"
 _PARAMETERS = ["gltf", "export_settings", "encoder", "glb_buffer"]
@@ -28,12 +29,12 @@ _PARAMETERS = ["gltf", "export_settings", "encoder", "glb_buffer"]
 # The module whose function is replaced at the moment, its original function, and the replacement.
 _replaced: tuple[ModuleType, Callable[..., Any], Callable[..., Any]] | None = None
 
-# True while the add-on itself exports, to look at the result.
+# True while the add-on itself exports an object in order to check it. Such a file is not baked.
 is_paused = False
 
 
 def writer() -> ModuleType | None:
-    """Returns the exporter's module that writes files, or None if its function does not look as this add-on expects."""
+    """Returns the exporter's module that writes files, or None if its function does not have the expected parameters."""
     for name in _WRITERS:
         try:
             module = importlib.import_module(name)
@@ -57,7 +58,7 @@ def _put_back() -> None:
 
 
 def before_export(export_settings: dict[str, Any]) -> None:
-    """Prepares one export. The exporter calls this before anything else."""
+    """Prepares one export. The exporter calls this function before it does anything else."""
     global _replaced
     _put_back()  # An earlier export may have failed before it wrote.
     colours.hide()
@@ -82,12 +83,12 @@ def before_export(export_settings: dict[str, Any]) -> None:
 
 
 def before_writing(_export_settings: dict[str, Any]) -> None:
-    """Restores the scene after before_export(). The exporter calls this when it has read the scene."""
+    """Restores the scene after before_export(). The exporter calls this function when it has read the scene."""
     colours.show()
 
 
 def _bake_or_say_why(path: Path) -> tuple[str, str]:
-    """Bakes a file that has been written. Exceptions must not reach the exporter, whose file is complete by now."""
+    """Bakes a file that has been written. Exceptions must not reach the exporter, because its file is complete by now."""
     try:
         return bake_in_place(path)
     except Exception as error:  # pylint: disable=broad-except
@@ -188,7 +189,7 @@ class CHRONORMAL_PT_export(bpy.types.Panel):
 
 
 def draw_in_exporter(_context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-    """Draws the settings where exporters since 4.2 have room for them."""
+    """Draws the settings in the export dialog, for exporters since 4.2."""
     header, body = layout.panel("CHRONORMAL_export", default_closed=False)
     header.prop(settings.get(), "use")
     if body is not None:

@@ -23,27 +23,27 @@ MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
 # The smallest distance between listed places, as a share of the object's size.
 APART = 0.1
-# Errors below this many degrees are not listed.
+# The errors below this number of degrees are not listed.
 VISIBLE = 0.1
 
 
 @dataclass
 class Pose:
-    """The values of the keys in one pose to check, and the name of the pose."""
+    """A pose to check: the values of the keys, and the name of the pose."""
 
     kind: str  # one of the kinds of Finding.kind
     name: str
     weights: numpy.ndarray
     frame: int | None = None
-    time: float | None = None  # time in the exported file
+    time: float | None = None  # seconds in the exported file
     mean: float = 0
     worst: float = 0
 
 
 @dataclass
 class Found:
-    """The checked poses with their errors in degrees, and for every corner its worst error and the pose in which it
-    occurs."""
+    """The checked poses with their errors in degrees. For every corner, `worst` is its largest error, and `which` is the
+    index of the pose in which this error occurs."""
 
     poses: list[Pose]
     worst: numpy.ndarray
@@ -55,7 +55,7 @@ class Found:
 
 
 class Judge:
-    """Compares a file with Blender's normals."""
+    """Compares the normals of a file with those of Blender."""
 
     def __init__(self, subject: truth.Subject, is_baked: bool, frames: list[int], values: numpy.ndarray) -> None:
         self.subject, self.frames = subject, frames
@@ -87,7 +87,7 @@ class Judge:
         return found
 
     def time_of(self, frame: int) -> float | None:
-        """Returns the time of a frame in the file."""
+        """Returns the time of a frame in the file, in seconds, or None if the file has no animation at this frame."""
         if not self.is_animated or self.plain.track is None or frame not in self.frames:
             return None
         return float(self.plain.track.times[self.frames.index(frame)])
@@ -103,7 +103,8 @@ def _baked(path: Path) -> Path:
 
 
 def frames_of(scene: bpy.types.Scene) -> list[int]:
-    """Returns the frames of the timeline, evenly thinned out if they are very many, and the current frame."""
+    """Returns the frames of the timeline and the current frame. If there are very many, some are left out at even
+    distances."""
     step = max(1, -(-(scene.frame_end - scene.frame_start + 1) // MOST_FRAMES))
     frames = set(range(scene.frame_start, scene.frame_end + 1, step)) | {scene.frame_end, scene.frame_current}
     return sorted(frames)
@@ -125,8 +126,8 @@ def play(scene: bpy.types.Scene, o: bpy.types.Object, frames: list[int]) -> nump
 
 
 def poses_now(judge: Judge, scene: bpy.types.Scene, now: numpy.ndarray) -> Iterator[Pose]:
-    """Returns the pose that the sliders have now. Its time is that of the current frame if the file's animation gives
-    these values at that frame."""
+    """Returns the pose that the sliders have now. The pose gets the time of the current frame if the animation of the
+    file gives the same values at that frame."""
     time = judge.time_of(scene.frame_current)
     if time is not None and not numpy.allclose(judge.plain.track.at(time), now, atol=1e-4):
         time = None
@@ -139,7 +140,7 @@ def poses_over_time(judge: Judge, values: numpy.ndarray) -> Iterator[Pose]:
 
 
 def poses_of_keys(judge: Judge) -> Iterator[Pose]:
-    """Returns the poses with one key alone, and with pairs of keys that change the same normals."""
+    """Returns the poses with one key alone, and with two keys that change the same normals."""
     keys = judge.subject.keys
     for k, key in enumerate(keys):
         for weight in (0.25, 0.5, 0.75, 1.0):
@@ -161,7 +162,7 @@ class Finding(bpy.types.PropertyGroup):
     kind: bpy.props.EnumProperty(items=[(name, name, "") for name in ("NOW", "FRAME", "KEY", "PAIR", "PLACE")])
     label: bpy.props.StringProperty()
     degrees: bpy.props.FloatProperty()
-    weights: bpy.props.StringProperty()  # JSON; empty if the pose cannot be set by weights
+    weights: bpy.props.StringProperty()  # JSON; empty if weights cannot set the pose
     frame: bpy.props.IntProperty(default=-(1 << 30))
     vertex: bpy.props.IntProperty(default=-1)
 
@@ -200,7 +201,7 @@ class State(bpy.types.PropertyGroup):
     average: bpy.props.StringProperty()
     worst: bpy.props.StringProperty()
     object: bpy.props.StringProperty()
-    shading: bpy.props.StringProperty()  # JSON: how the viewport was shaded before
+    shading: bpy.props.StringProperty()  # JSON: the shading of the viewport before the check
     colour_0: bpy.props.FloatVectorProperty(subtype="COLOR_GAMMA", get=lambda _: colours.RAMP[0], set=_keep)
     colour_1: bpy.props.FloatVectorProperty(subtype="COLOR_GAMMA", get=lambda _: colours.RAMP[1], set=_keep)
     colour_2: bpy.props.FloatVectorProperty(subtype="COLOR_GAMMA", get=lambda _: colours.RAMP[2], set=_keep)
@@ -217,8 +218,8 @@ def _add(state: State, kind: str, label: str, degrees: float, weights: numpy.nda
 
 
 def _list_poses(state: State, poses: list[Pose]) -> None:
-    """Lists the worst frames that are not close to each other, and the worst keys and pairs, each key with its worst
-    weight."""
+    """Chooses the poses to list: the worst frames that are not close to each other, and the worst keys and pairs, each
+    with its worst weight."""
     near = APART * sum(pose.kind == "FRAME" for pose in poses)
     for kind, most in (("FRAME", LISTED_FRAMES), ("KEY", LISTED_KEYS), ("PAIR", LISTED_PAIRS)):
         seen: set[tuple[int, ...]] = set()
@@ -233,7 +234,7 @@ def _list_poses(state: State, poses: list[Pose]) -> None:
 
 
 def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
-    """Lists the vertices with the largest errors that are not close to each other."""
+    """Chooses the places to list: the vertices with the largest errors that are not close to each other."""
     vertices = numpy.empty(len(mesh.loops), numpy.int32)
     mesh.loops.foreach_get("vertex_index", vertices)
     places = truth.places(mesh.vertices)
@@ -253,8 +254,8 @@ def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
 
 
 def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> Found:
-    """Judges the poses that `over` selects: NOW the current one, TIME those of all frames, and KEYS each key alone and
-    pairs of keys."""
+    """Judges the poses that `over` selects. NOW selects the current pose, TIME the poses of all frames, and KEYS each key
+    alone and pairs of keys."""
     state, scene = context.window_manager.chronormal, context.scene
     is_baked = state.judged == "BAKED"
     frames = frames_of(scene) if is_baked or over == "TIME" else []
@@ -279,7 +280,7 @@ def paint(context: bpy.types.Context, o: bpy.types.Object, found: Found) -> None
 
 
 class _Looking:
-    """The code that the operators of the panel share."""
+    """Holds the code that the operators of the panel share."""
 
     bl_options = {"REGISTER", "UNDO"}
 

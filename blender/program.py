@@ -20,12 +20,12 @@ SYSTEMS = {
     ("Windows", "AMD64"): "windows-x64",
 }
 
-# The exit code for "written, but not within the tolerance" (docs/cli.md).
+# The program's exit code if it wrote a file that exceeds the tolerance (docs/cli.md).
 BEYOND_TOLERANCE = 4
 
 
 class Unavailable(Exception):
-    """An error: there is no program that can be run. The text says what the user can do."""
+    """The error that is raised if there is no program that can be run. The text says what the user can do."""
 
 
 @dataclass
@@ -42,12 +42,12 @@ class Outcome:
 
 
 def system_name() -> str | None:
-    """Returns the name of this system's folder in bin/, or None if no program ships for it."""
+    """Returns the name of the folder in bin/ for this system, or None if the add-on has no program for it."""
     return SYSTEMS.get((platform.system(), platform.machine()))
 
 
 def shipped(folder: Path = Path(__file__).parent) -> Path | None:
-    """Returns the program that came with the add-on for this system, if there is one."""
+    """Returns the program that came with the add-on for this system, or None."""
     system = system_name()
     if system is None:
         return None
@@ -56,7 +56,7 @@ def shipped(folder: Path = Path(__file__).parent) -> Path | None:
 
 
 def make_executable(path: Path) -> None:
-    """Allows a file to be run. Blender unpacks add-ons without the permissions of their files."""
+    """Makes a file executable. Blender unpacks add-ons without the permissions of their files."""
     if os.access(path, os.X_OK):
         return
     try:
@@ -66,7 +66,8 @@ def make_executable(path: Path) -> None:
 
 
 def find(preferred: str) -> Path:
-    """Returns the program that the preferences name, or else the one in bin/, or else one on PATH."""
+    """Returns the program that the preferences name, or else the one in bin/, or else one on PATH. Raises Unavailable if
+    there is none."""
     if preferred:
         path = Path(preferred)
         if not path.is_file():
@@ -85,7 +86,7 @@ def find(preferred: str) -> Path:
                       f"{platform.machine()}. Name one in Edit > Preferences > Add-ons > Right normals for shape keys.")
 
 
-# The panel's labels for the options that the program's messages may mention.
+# The labels in the panel for the options that messages of the program may mention.
 _OPTIONS = {"--tolerance": "Tolerance", "--max-targets": "Most targets", "--max-bytes": "Most KB", "--for": "Viewers"}
 
 
@@ -103,7 +104,7 @@ def sentences(text: str) -> list[str]:
 
 
 def bake(path: Path, source: Path, result: Path, options: list[str]) -> Outcome:
-    """Bakes a glTF file. The result may be the same file as the source; replacing it is all or nothing."""
+    """Bakes a glTF file. The result may replace the source; if anything fails, the source is unchanged."""
     command = [str(path), "bake", str(source), "-o", str(result), "--force", "--json", "--quiet", *options]
     without_console = getattr(subprocess, "CREATE_NO_WINDOW", 0)
     try:

@@ -1,4 +1,4 @@
-"""Tells the user the result, in the report of the operator that is running."""
+"""Tells the user the result of an operation, in the report of the operator that is running."""
 # SPDX-License-Identifier: MIT
 
 from __future__ import annotations
@@ -7,12 +7,12 @@ import sys
 
 import bpy
 
-# The last sentence and its level, which scripts can read.
+# The level and the text of the last sentence, for scripts and tests.
 last: tuple[str, str] = ("", "")
 
 
 def _running_operator() -> bpy.types.Operator | None:
-    """Finds the operator that is running, since the exporter does not pass it to its hooks."""
+    """Returns the operator that is running. The exporter does not pass it to its hooks, so the callers are searched."""
     frame = sys._getframe(1)  # pylint: disable=protected-access
     while frame is not None:
         owner = frame.f_locals.get("self")
@@ -23,7 +23,7 @@ def _running_operator() -> bpy.types.Operator | None:
 
 
 def say(level: str, text: str) -> None:
-    """Reports a sentence. The level is INFO or WARNING: an ERROR would make scripts believe that no file was written."""
+    """Reports a sentence. The level is INFO or WARNING. An ERROR would make scripts believe that no file was written."""
     global last
     last = (level, text)
     operator = _running_operator()

@@ -1,7 +1,7 @@
-"""The preferences of the add-on, which also hold the settings of the export.
+"""Defines the preferences of the add-on, which also hold the settings of the export.
 
 Properties of a scene would be written into glTF files as custom properties, even while the add-on is off.
-Preferences never are.
+Preferences are never written into a file.
 """
 # SPDX-License-Identifier: MIT
 

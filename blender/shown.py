@@ -21,7 +21,7 @@ _JSON_CHUNK, _BINARY_CHUNK = 0x4E4F534A, 0x004E4942
 
 
 class Unreadable(Exception):
-    """An error: the file has no morph targets, or uses a feature that this reader does not know."""
+    """The error that is raised if the file has no morph targets, or uses a feature that this reader does not know."""
 
 
 def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
@@ -35,7 +35,7 @@ def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
 
 
 class _Arrays:
-    """The arrays of a document, keyed by the index of the accessor."""
+    """Reads the arrays of a document. The key of an array is the index of its accessor."""
 
     def __init__(self, document: dict[str, Any], binary: bytes) -> None:
         self.document, self.binary = document, binary
@@ -65,7 +65,8 @@ class _Arrays:
 
 @dataclass
 class Track:
-    """The weights of all targets over time: keys (n), values (n, targets), or (n, 3, targets) for a cubic spline."""
+    """The weights of all targets over time. The values are (n, targets) for n times, or (n, 3, targets) for a cubic
+    spline."""
 
     times: numpy.ndarray
     values: numpy.ndarray
@@ -92,7 +93,8 @@ class Track:
 
 @dataclass
 class Shown:
-    """One mesh of a file: positions and normals, their deltas for each target, and the animation of the weights."""
+    """The data of one mesh of a file: positions and normals, their deltas for each target, and the animation of the
+    weights."""
 
     positions: numpy.ndarray        # (vertices, 3)
     normals: numpy.ndarray          # (vertices, 3)
@@ -102,10 +104,10 @@ class Shown:
     track: Track | None
 
     def weights(self, own: numpy.ndarray, time: float | None = None) -> numpy.ndarray:
-        """Returns the weights of all targets for the weights `own` of the author's keys.
+        """Returns the weights of all targets if the author's keys have the weights `own`.
 
-        At a time, the file's animation gives the weights of correction targets; without a time, the formulas in the
-        mark do.
+        The weights of correction targets come from the animation of the file if `time` is given, in seconds. Otherwise
+        they come from the formulas in the mark.
         """
         result = numpy.zeros(len(self.normal_deltas))
         if time is not None and self.track is not None:
@@ -132,7 +134,7 @@ def unit(vectors: numpy.ndarray) -> numpy.ndarray:
 
 
 def degrees_between(a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
-    """Returns the angles between unit vectors in degrees; tiny angles have full precision, too."""
+    """Returns the angles between unit vectors in degrees. Tiny angles have full precision, too."""
     return numpy.degrees(2 * numpy.arctan2(numpy.linalg.norm(a - b, axis=-1), numpy.linalg.norm(a + b, axis=-1)))
 
 

@@ -18,7 +18,7 @@ from . import export, shown
 
 NAME = "chronormal look"
 
-# The axes of glTF are Blender's x, z and -y.
+# The axes of glTF are Blender's x, z and -y, which these indices and signs express.
 _AXES, _SIGNS = [0, 2, 1], numpy.float32([1, 1, -1])
 
 _EXPORT = {
@@ -31,7 +31,7 @@ _EXPORT = {
 
 
 class Refused(Exception):
-    """An error: the object cannot be checked. The text says why."""
+    """The error that is raised if an object cannot be checked. The text says why."""
 
 
 def exported_keys(mesh: bpy.types.Mesh) -> list[bpy.types.ShapeKey]:
@@ -46,7 +46,7 @@ def values_now(o: bpy.types.Object) -> numpy.ndarray:
 
 
 class Subject:
-    """A copy of an object whose keys can be set by weights. Use it in a `with` statement, which removes the copy in
+    """A copy of an object whose keys can be set by weights. Use it in a `with` statement, which removes the copy at
     the end."""
 
     def __init__(self, o: bpy.types.Object) -> None:
@@ -100,7 +100,7 @@ class Subject:
         return result.reshape(-1, 3)[:, _AXES] * _SIGNS
 
     def animate(self, frames: list[int], values: numpy.ndarray) -> None:
-        """Animates the copy with linear keyframes; `values` is (frames, keys)."""
+        """Animates the copy with linear keyframes; `values` has the values of the keys, (frames, keys)."""
         self.mesh.shape_keys.animation_data_create().action = bpy.data.actions.new(NAME)
         curves = self.mesh.shape_keys.animation_data.action.fcurves
         for key, column in zip(self.keys, values.T):
@@ -119,7 +119,7 @@ class Subject:
             bpy.data.actions.remove(action)
 
     def export(self) -> Path:
-        """Exports the copy by Blender's own exporter, and returns the path of the GLB."""
+        """Exports the copy with Blender's own exporter, and returns the path of the GLB."""
         path = Path(self.folder.name) / "plain.glb"
         known = bpy.ops.export_scene.gltf.get_rna_type().properties.keys()
         options = {name: value for name, value in _EXPORT.items() if name in known}
@@ -134,10 +134,10 @@ class Subject:
         return path
 
     def corners_to_vertices(self, plain: shown.Shown) -> numpy.ndarray:
-        """Finds for each corner of the mesh the vertex of an exported file that it became.
+        """Finds for each corner of the mesh the vertex of the exported file that the corner became.
 
         The vertex is at the same position as the corner, in the base and in every key. If there are several such
-        vertices, it is the one whose normals are nearest, in the base and in every key.
+        vertices, the one whose normals are nearest, in the base and in every key, is chosen.
         """
         mesh = self.mesh
         base = places(mesh.shape_keys.reference_key.data)
@@ -150,7 +150,8 @@ class Subject:
         mesh.loops.foreach_get("vertex_index", vertices)
         of_corners, of_file = groups[vertices], groups[len(in_blender):]
 
-        # Lists pairs of a corner and a vertex at the same place: the pairs of corner c are first[c] ... first[c + 1].
+        # These lists contain pairs of a corner and a vertex at the same place. The pairs of corner c are first[c] ...
+        # first[c + 1].
         order = numpy.argsort(of_file, kind="stable")
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")
         counts = numpy.searchsorted(of_file[order], of_corners, side="right") - begins
@@ -162,10 +163,10 @@ class Subject:
         apart = numpy.zeros(len(corner), numpy.float32)
         for n in range(len(self.keys) + 1):
             weights = numpy.zeros(len(self.keys))
-            weights[n - 1:n] = 1  # the base comes first and has all weights 0
+            weights[n - 1:n] = 1  # the first row is the base, with all weights 0
             here, there = self.normals(weights), plain.normals_at(plain.weights(weights))
             apart += ((here[corner] - there[vertex]) ** 2).sum(axis=1)
-        # Sorts the pairs so that the nearest vertex of each corner comes first.
+        # After sorting, the nearest vertex of each corner comes first.
         best = numpy.lexsort((apart, corner))
         return vertex[best[first[:-1]]]
 
@@ -181,6 +182,6 @@ def _as_gltf(vectors: numpy.ndarray) -> numpy.ndarray:
 
 
 def _rows(table: numpy.ndarray) -> numpy.ndarray:
-    """Returns one comparable value for each row of a table. Adding 0 turns -0 into 0."""
+    """Returns one value for each row of a table. Values are equal if the rows are equal. Adding 0 turns -0 into 0."""
     table = numpy.ascontiguousarray(table + numpy.float32(0))
     return table.view(numpy.dtype((numpy.void, table.dtype.itemsize * table.shape[1]))).ravel()

@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 // Runs the program on any system with Node.js: the same commands, messages and exit codes, on the files of this
-// machine. An older Node.js parses this file too and reports the version that it needs, so import and await occur only
-// inside functions.
-const LEAST = 18; // the least version in "engines" of package.json
+// machine. An older version of Node.js must be able to parse this file and report the version that it needs, so import
+// and await occur only inside functions.
+const LEAST = 18; // the smallest version in "engines" of package.json
 
 if (parseInt(process.versions.node, 10) < LEAST) {
   console.error(`chronormal: this program needs Node.js ${LEAST} or later, and this is ${process.versions.node}; install a newer version`);

@@ -1,12 +1,12 @@
-// chronormal in JavaScript: true normals for meshes that deform. Bytes go in; bytes and reports come out. Nothing
-// touches a file system or the network. index.d.ts has the types.
+// Defines the functions of the package, which write true normals for meshes that deform. They take bytes, and return
+// bytes and reports. They touch neither a file system nor the network. index.d.ts has the types.
 import { ChronormalError } from './error.js';
 import { readNpy } from './npy.js';
 import { flagsOf } from './options.js';
 import { compile } from './run.js';
 import { perform } from './task.js';
 
-// The exit codes for success, and for a result that exceeds the tolerance.
+// The exit codes of the program for success, and for a result that exceeds the tolerance.
 const DONE = 0, BEYOND = 4;
 
 const bytesOf = (data) => {
@@ -16,11 +16,11 @@ const bytesOf = (data) => {
   throw new TypeError('the input must be a Uint8Array, an ArrayBuffer or a view of one');
 };
 
-// A GLB identifies itself by its first bytes; everything else is JSON.
+// Returns a name for the input. A GLB is recognised by its first bytes, and everything else is taken for JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Performs a task in a worker that ends with the task, so that its memory is freed and the task can be stopped in the
-// middle. The memory of the files moves to the worker and is not copied.
+// Performs a task in a worker, which ends with the task. Its memory is then freed, and the task can be stopped at any
+// time. The memory of the files moves to the worker and is not copied.
 async function inWorker(platform, task, { signal, onProgress }) {
   const module = await compile(platform); // compiled once for all workers
   signal?.throwIfAborted();
@@ -31,7 +31,7 @@ async function inWorker(platform, task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
-    // Reports errors thrown by `work` to the caller: in an event handler, nobody else would catch them.
+    // Passes errors that `work` throws to the caller. In an event handler, no one else would catch them.
     const guarded = (work) => {
       try {
         work();
@@ -62,8 +62,8 @@ async function execute(platform, task, options) {
   return done;
 }
 
-// Returns the task of a command. The inputs are copied, so the caller may change them during the call. `more` gets the
-// name of the folder for outputs, and returns the arguments that request outputs.
+// Returns the task of a command. The inputs are copied, so the caller may change them during the call. more(folder)
+// returns the arguments that ask for outputs in this folder.
 function taskOf(command, input, options, more = () => ['--json']) {
   const flags = flagsOf(command, options);
   const copyOf = (data) => new Uint8Array(bytesOf(data));
@@ -74,7 +74,7 @@ function taskOf(command, input, options, more = () => ['--json']) {
   let outputs = 'out';
   while (folders.has(outputs)) outputs += '_';
   return {
-    // The program would read "-" as standard input, and a name in brackets as a list, if ./ were not in front.
+    // Without ./ in front, the program would take "-" for the standard input, and a name in brackets for a list.
     args: [command, ...more(outputs), ...flags, '--', /^(-|\[.*\])$/s.test(name) ? `./${name}` : name],
     files,
     outputs,
@@ -86,15 +86,16 @@ const warningsOf = (stderr) => (stderr === '' ? [] : stderr.split('\n'));
 
 const resultOf = ({ stdout, stderr, code }) => ({ report: JSON.parse(stdout), warnings: warningsOf(stderr), within: code === DONE });
 
-// Returns the name of a baked file: the input's, or a GLB if the input is a sequence in another format.
+// Returns the name of a baked file: the name of the input, with .glb added if the input is a sequence in another
+// format.
 const bakedName = (name) => {
   const base = name.split('/').pop();
   return /\.(glb|gltf)$/i.test(base) ? base : `${base}.glb`;
 };
 
 /**
- * Returns the functions of the package on a platform, which is platform.browser.js or platform.node.js. index.js and
- * index.node.js each import their own, so that neither loads code of the other, and no module has a side effect.
+ * Returns the functions of the package for a platform, which is platform.browser.js or platform.node.js. index.js and
+ * index.node.js each import their own platform, so that neither loads code of the other, and no module has a side effect.
  */
 export function apiOf(platform) {
   const report = (command) => async (input, options = {}) => resultOf(await execute(platform, taskOf(command, input, options), options));

@@ -1,9 +1,10 @@
-// Drives baked files in Babylon.js: before a scene is drawn, correction targets get the weights that follow from the
-// weights that the application or an animation has set for the mesh's own targets. Babylon.js passes on the extras of
-// nodes, but not of meshes.
+// Drives baked files in Babylon.js. Before a scene is drawn, the weights of correction targets are computed from the
+// weights that the application or an animation has set for the mesh's own targets. Babylon.js gives access to the
+// extras of nodes, but not of meshes.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-const attached = new WeakMap(); // for each scene: {observer, driven}
+// The key is a scene, and the value is {observer, driven}.
+const attached = new WeakMap();
 
 // Returns an entry for each MorphTargetManager to drive, with the meshes that use the manager. The weights belong to
 // the manager, which a mesh and its clones share.
@@ -23,8 +24,8 @@ function drivenOf(scene) {
 }
 
 /**
- * Drives all meshes of baked files that are in a scene, until detach(). Meshes that come later need another attach().
- * Costs a few operations for each target and frame, and allocates nothing.
+ * Drives all meshes of baked files that are in a scene, until detach(). For meshes that are added later, call attach()
+ * again. Costs a few operations for each target and frame, and allocates nothing.
  * @param {import('@babylonjs/core').Scene} scene
  * @returns {import('@babylonjs/core').AbstractMesh[]} the meshes that have correction targets with formulas
  */
@@ -36,7 +37,7 @@ export function attach(scene) {
       const { manager, formulas, w } = driven[d];
       for (let i = 0; i < w.length; ++i) w[i] = manager.getTarget(i).influence;
       for (let k = 0; k < formulas.length; ++k) {
-        // Babylon.js does nothing if the weight is unchanged.
+        // Babylon.js does no work if the weight is the same as before.
         manager.getTarget(formulas[k].target).influence = weightOf(formulas[k], w);
       }
     }

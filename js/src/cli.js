@@ -10,7 +10,7 @@ import { run } from './run.js';
 const isWindows = process.platform === 'win32';
 const inside = (path) => (isWindows ? fromWindows(path, process.cwd()) : path);
 
-// Mounts the entries of the machine's root under the same names.
+// Makes the top-level folders of this machine visible to the program under the same names.
 function mount(FS, NODEFS) {
   const roots = isWindows
     ? [...'ABCDEFGHIJKLMNOPQRSTUVWXYZ'].map((letter) => `${letter}:`).filter((drive) => existsSync(`${drive}\\`))
@@ -21,10 +21,10 @@ function mount(FS, NODEFS) {
       if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
       FS.mount(NODEFS, { root: isWindows ? `${name}\\` : folder }, folder);
     } catch {
-      // The entry is not a folder: a file, or a dangling link.
+      // The entry is not a folder, but a file or a dangling link.
     }
   }
-  // The program looks for share/chronormal/report.html beside itself, and finds itself by this link.
+  // The program looks for share/chronormal/report.html beside its own file, which it finds through this link.
   FS.symlink(inside(fileURLToPath(new URL('../bin/chronormal.js', import.meta.url))), '/proc/self/exe');
   FS.chdir(inside(process.cwd()));
 }
@@ -40,7 +40,7 @@ const writeAll = (stream) => (bytes) => {
   }
 };
 
-// Reads standard input to its end, if the command line asks for it.
+// Returns the content of the standard input, if the command line refers to it, and undefined otherwise.
 function standardInput(args) {
   if (!args.some((word) => word === '-' || word === '/dev/stdin')) return undefined;
   const pieces = [], piece = Buffer.alloc(65536);

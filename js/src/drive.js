@@ -1,13 +1,14 @@
 // Computes the weights of correction targets from the weights of a mesh's own targets (docs/formats.md), for three.js,
 // babylon.js and playcanvas.js.
 
-// The version of the formulas that this file knows. Files of another version are left as they are.
+// The version of the formulas that this file knows. Files with another version are left as they are.
 const VERSION = 2;
 
 /**
- * Returns the formulas of a mark, extras.chronormal of a mesh with this many targets, in arrays that can be evaluated
- * without allocating. Targets without a formula are driven by the animations of the file alone, and not touched.
- * Correction targets are the last ones of a mesh: if the number of targets has changed since the bake, none is touched.
+ * Returns the formulas of a mark (extras.chronormal of a mesh with this many targets) in arrays that can be evaluated
+ * without allocating. A correction target without a formula is driven only by the animations of the file, and is left
+ * out. Correction targets are the last ones of a mesh. If the number of targets has changed since the bake, the result
+ * is empty.
  */
 export function formulasOf(mark, count) {
   if (mark?.version !== VERSION || !Array.isArray(mark.extras) || mark.extras.at(-1)?.target !== count - 1) return [];
@@ -21,7 +22,7 @@ export function formulasOf(mark, count) {
     }));
 }
 
-/** Returns the weight of a correction target, from the weights w of all targets. */
+/** Returns the weight of a correction target. `w` has the weights of all targets. */
 export function weightOf({ first, second, factor }, w) {
   let sum = 0;
   for (let n = 0; n < factor.length; ++n) {
@@ -30,14 +31,14 @@ export function weightOf({ first, second, factor }, w) {
   return sum;
 }
 
-/** Writes the weights of correction targets into w. */
+/** Computes the weights of correction targets, and writes them into `w`, which has the weights of all targets. */
 export function drive(formulas, w) {
   for (let k = 0; k < formulas.length; ++k) w[formulas[k].target] = weightOf(formulas[k], w);
 }
 
 /**
- * Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with
- * a child for each, and gltfpack puts a mesh into a new node below the node with the extras.
+ * Returns the mark of a mesh, or else the mark of the nearest object above it. A mesh of several primitives becomes an
+ * object with a child for each primitive, and gltfpack puts a mesh into a new node below the node with the extras.
  */
 export function markOf(object, extrasOf) {
   for (; object; object = object.parent) {

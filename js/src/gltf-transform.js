@@ -1,10 +1,10 @@
-// A transform of glTF-Transform that bakes: await document.transform(chronormal({ for: ['three', 'godot'] })).
+// Defines a transform of glTF-Transform that bakes: await document.transform(chronormal({ for: ['three', 'godot'] })).
 import { WebIO } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { bake } from 'chronormal';
 
-// The extensions whose compression is removed before a bake, since writing it would need encoders. Reading a file has
-// already decompressed the data, so the result is not compressed.
+// The extensions for compression that are removed from a document before a bake, since writing them would need
+// encoders. Reading the file has already decompressed the data, so the result is not compressed.
 const COMPRESSIONS = new Set(['KHR_draco_mesh_compression', 'EXT_meshopt_compression']);
 
 async function bytesOf(document) {
@@ -16,8 +16,8 @@ async function bytesOf(document) {
   return { io, bytes: await io.writeBinary(plain) };
 }
 
-// Copies the changes of a bake from one document into another, which is otherwise equal: normals, correction targets,
-// weights, their tracks, and extras. All other objects stay the same.
+// Copies the changes of a bake from one document into another document that is otherwise equal. The changes are
+// normals, correction targets, weights, their tracks, and extras. All other objects stay the same.
 class Transfer {
   constructor(document) {
     this.document = document;
@@ -93,8 +93,8 @@ function same(a, b) {
 }
 
 /**
- * Returns a transform that bakes a document in place. Options are as in bake(); the report goes to
- * options.onReport, and warnings to the document's logger.
+ * Returns a transform that bakes a document in place. The options are those of bake(). The report is passed to
+ * options.onReport, and warnings to the logger of the document.
  */
 export function chronormal({ onReport, ...options } = {}) {
   for (const name of ['name', 'resources', 'plan']) {
@@ -110,8 +110,8 @@ export function chronormal({ onReport, ...options } = {}) {
   return Object.defineProperty(transform, 'name', { value: 'chronormal' });
 }
 
-// The options of the program that the command below has. Each entry gives the name, its spelling, its help, and a
-// function that turns its text into a value.
+// The options of the program that command() below offers. Each entry has the name, the spelling, the help, and a
+// function that converts the text to a value.
 const OPTIONS = [
   ['for', '--for <VIEWERS>', 'the viewers that the result is made for, such as three,godot, or all'],
   ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed', Number],
@@ -123,8 +123,8 @@ const OPTIONS = [
 ];
 
 /**
- * Adds the command `gltf-transform chronormal IN OUT` to the command line of glTF-Transform, as onProgramReady in a
- * gltf-transform.config.mjs.
+ * Adds the command `gltf-transform chronormal IN OUT` to the command line of glTF-Transform. Use this function as
+ * onProgramReady in a gltf-transform.config.mjs.
  */
 export function command({ program, io, Session }) {
   const made = program

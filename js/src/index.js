@@ -1,4 +1,4 @@
-// The entry point for browsers.
+// Exports the functions of the package for browsers.
 import { apiOf } from './api.js';
 import * as browser from './platform.browser.js';
 

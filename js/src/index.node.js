@@ -1,4 +1,4 @@
-// The entry point for Node.js.
+// Exports the functions of the package for Node.js.
 import { apiOf } from './api.js';
 import * as node from './platform.node.js';
 

@@ -1,2 +1,3 @@
-// This code is put inside the function that makes a module. It defines the names of CommonJS, which an ES module lacks.
+// The build puts this code inside the function that makes a module. The code defines the names of CommonJS, which an ES
+// module lacks.
 var require = Module['require'], __dirname = '/';

@@ -1,7 +1,10 @@
-// Reads the arrays that the program writes: .npy files of version 1 with float32 in the order of C.
+// Reads the arrays that the program writes: .npy files of version 1 with float32 in C order.
 const HEADER_SIZE_AT = 8, HEADER_AT = 10;
 
-/** Returns the numbers of an array, which share the memory of the file where it is aligned, and the shape of the array. */
+/**
+ * Returns the numbers of an array, and the shape of the array. The numbers share the memory of the file if they are
+ * aligned there, and are copied otherwise.
+ */
 export function readNpy(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), end = HEADER_AT + view.getUint16(HEADER_SIZE_AT, true);
   const header = new TextDecoder().decode(bytes.subarray(HEADER_AT, end));

@@ -1,10 +1,11 @@
-// The options of each function: their names, their JavaScript types, and the words of the command line that they
-// become. The program checks whether it knows a word or a number. types/index.d.ts has the same for compilers.
+// Lists the options of each function: their names, their JavaScript types, and the words of the command line that they
+// become. The program itself checks the words and the ranges of numbers. types/index.d.ts has the same list for
+// compilers.
 import { ChronormalError } from './error.js';
 
 const USAGE = 2; // the exit code of the program for a wrong call
 
-// The kinds of values: a test for the kind, and its description.
+// Each kind of value has a test for the kind, and its description.
 const isText = (value) => typeof value === 'string';
 const NUMBER = [(value) => typeof value === 'number' && Number.isFinite(value), 'a finite number'];
 const FLAG = [(value) => typeof value === 'boolean', 'true or false'];
@@ -20,7 +21,7 @@ const TIMES = [(value) => isText(value) || NUMBER[0](value) || isNumbers(value),
 const isPoses = (value) => Array.isArray(value) && value.length > 0 && value.every(isNumbers);
 const WEIGHTS = [(value) => isText(value) || isNumbers(value) || isPoses(value), 'an array of numbers, an array of such arrays, or a string'];
 
-// The options of the JavaScript functions themselves, which are not passed to the program.
+// The options of the JavaScript functions themselves. They are not passed to the program.
 const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {
@@ -32,7 +33,7 @@ const CALL = {
   memoryLimit: NUMBER,
 };
 
-// Options for reading the input.
+// The options for reading the input.
 const READ = { allowExternal: FLAG, maxExpansion: NUMBER, fps: NUMBER, from: NUMBER, to: NUMBER, every: NUMBER, loop: FLAG, strict: FLAG, path: TEXT };
 const MESHES = { base: TEXT, animation: NAME };
 
@@ -58,7 +59,7 @@ const OPTIONS = {
 
 const flagOf = (name) => `--${name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`)}`;
 
-// Counts the letters that have to be changed, added or removed to turn one name into the other.
+// Returns the number of letters that have to be changed, added or removed to turn one name into the other.
 function distance(a, b) {
   let row = Array.from({ length: b.length + 1 }, (_, j) => j);
   for (let i = 1; i <= a.length; ++i) {
@@ -89,7 +90,7 @@ export function flagsOf(command, options) {
     const [isRight, what] = known[name];
     if (!isRight(value)) throw new TypeError(`${name}: the value must be ${what}`);
     if (Object.hasOwn(CALL, name) || value === false) continue;
-    // Each array in an array repeats the option, as --weights for several poses.
+    // An array of arrays repeats the option, for example --weights for several poses.
     for (const each of isPoses(value) ? value : [value]) {
       flags.push(flagOf(name));
       if (each !== true) flags.push(Array.isArray(each) ? each.join(',') : String(each));

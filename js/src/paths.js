@@ -1,4 +1,4 @@
-// Maps paths of Windows to the file system of the program, which has a single root: drives become folders in the root.
+// Maps paths of Windows to the file system of the program, which has a single root. Drives become folders in this root.
 
 const ROOT = /^[A-Za-z]:(?=\\|\/|$)/;
 

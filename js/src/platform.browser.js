@@ -1,4 +1,4 @@
-// Functions that only browsers need.
+// Implements for browsers the functions that depend on the platform.
 export const require = undefined;
 
 export async function read(url) {
@@ -7,7 +7,7 @@ export async function read(url) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-/** Starts worker.js; onMessage gets its messages, onError the error that ends it. */
+/** Starts worker.js. Its messages are passed to onMessage, and the error that ends it to onError. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);
@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** Serves messages in a worker. Calls answer(message, say) for each message; say(reply) sends a message back. */
+/** Serves messages in a worker. Calls answer(message, say) for each message; say(reply) sends a reply to the caller. */
 export async function serve(answer) {
   self.onmessage = ({ data }) => answer(data, (reply, transfer = []) => self.postMessage(reply, transfer));
 }

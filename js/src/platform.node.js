@@ -1,4 +1,4 @@
-// Functions that only Node.js needs.
+// Implements for Node.js the functions that depend on the platform.
 import { readFile } from 'node:fs/promises';
 import { createRequire } from 'node:module';
 import { Worker } from 'node:worker_threads';
@@ -7,7 +7,7 @@ export const require = createRequire(import.meta.url);
 
 export const read = (url) => readFile(url);
 
-/** Starts worker.node.js; onMessage gets its messages, onError the error that ends it. */
+/** Starts worker.node.js. Its messages are passed to onMessage, and the error that ends it to onError. */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.node.js', import.meta.url));
   worker.on('message', onMessage);
@@ -15,7 +15,7 @@ export function startWorker(onMessage, onError) {
   return worker;
 }
 
-/** Serves messages in a worker. Calls answer(message, say) for each message; say(reply) sends a message back. */
+/** Serves messages in a worker. Calls answer(message, say) for each message; say(reply) sends a reply to the caller. */
 export async function serve(answer) {
   const { parentPort } = await import('node:worker_threads');
   parentPort.on('message', (message) => answer(message, (reply, transfer) => parentPort.postMessage(reply, transfer)));

@@ -1,9 +1,10 @@
-// Drives baked files in PlayCanvas: before a frame is drawn, correction targets get the weights that follow from the
-// weights that the application or an animation has set for the mesh's own targets. PlayCanvas passes on no extras, but
-// the resource of a container keeps the JSON of its file.
+// Drives baked files in PlayCanvas. Before a frame is drawn, the weights of correction targets are computed from the
+// weights that the application or an animation has set for the mesh's own targets. PlayCanvas gives no access to
+// extras, but the resource of a container keeps the JSON of its file.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-const attached = new WeakMap(); // for each application: {update, driven}
+// The key is an application, and the value is {update, driven}.
+const attached = new WeakMap();
 
 // Returns the mark of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the file.
 function marksOf({ gltf, renders }) {
@@ -19,8 +20,8 @@ function marksOf({ gltf, renders }) {
 }
 
 /**
- * Drives all meshes of a baked file that an application shows, until detach(). Entities that come later need another
- * attach(). Costs a few operations for each target and frame, and allocates nothing.
+ * Drives all meshes of a baked file that an application shows, until detach(). For entities that are added later, call
+ * attach() again. Costs a few operations for each target and frame, and allocates nothing.
  * @param {import('playcanvas').AppBase} app
  * @param {...import('playcanvas').Asset} assets containers, loaded
  * @returns {import('playcanvas').MeshInstance[]} the meshes that have correction targets with formulas
@@ -40,7 +41,7 @@ export function attach(app, ...assets) {
   const update = () => {
     for (let d = 0; d < driven.length; ++d) {
       const { meshInstance: { morphInstance }, formulas, w } = driven[d];
-      if (!morphInstance) continue; // the instance was destroyed in the meantime
+      if (!morphInstance) continue; // the instance was destroyed after attach()
       for (let i = 0; i < w.length; ++i) w[i] = morphInstance.getWeight(i);
       for (let k = 0; k < formulas.length; ++k) {
         const { target } = formulas[k], weight = weightOf(formulas[k], w);

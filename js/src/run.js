@@ -1,14 +1,14 @@
-// Runs the program once: makes a fresh module with files in memory, or with the files of this machine, so that a run
-// never sees the state of an earlier one, even if that one crashed.
+// Runs the program once. Each run makes a fresh module, with files in memory or with the files of this machine. A run
+// therefore never sees the state of an earlier run, even if that run crashed.
 import createProgram from './program.js';
 
-// The smallest WebAssembly module that uses vectors and exceptions, which the program needs. A runtime without them
-// calls it invalid.
+// The smallest WebAssembly module that uses vectors and exceptions, both of which the program needs. A runtime that
+// lacks one of them says that this module is invalid.
 const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 13, 1, 11, 0, 6, 64, 65, 0, 253, 17, 26, 25, 11, 11];
 const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is not there: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
 Node.js 18, or later, on a processor that has vectors';
 
-let compiled; // the compiled module, for all runs
+let compiled; // promise of the compiled module, which all runs share
 
 /** Uses a module that another thread has compiled. */
 export function useCompiled(module) {
@@ -36,7 +36,8 @@ export function compile(platform) {
   return compiled;
 }
 
-// The number of bytes after which output is passed on. Output to a terminal is also passed on at the end of each line.
+// The number of bytes after which output is passed on. Output to a terminal is also passed on at the end of each line
+// and of each progress bar.
 const PIECE = 65536;
 
 class Sink {
@@ -48,7 +49,7 @@ class Sink {
   }
   put(byte) {
     this.bytes[this.count++] = byte;
-    // byte 37 is "%", which ends a progress bar
+    // 37 is "%", which ends a progress bar
     if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush();
   }
   flush() {
@@ -59,24 +60,24 @@ class Sink {
 
 /**
  * Runs the program.
- * @param {typeof import('./platform.browser.js')} platform the platform on which this runs
+ * @param {typeof import('./platform.browser.js')} platform the platform on which this code runs
  * @param {string[]} args the command line, without the name of the program
  * @param {object} world the environment of the program:
- *   prepare(FS, NODEFS)   puts files into its file system before it starts
- *   finish(FS)            takes its files out again; the return value becomes `result`
- *   stdout, stderr        get bytes (Uint8Array) as they come
- *   terminals             {stdout, stderr}: tell which of them is a terminal
+ *   prepare(FS, NODEFS)   puts files into the program's file system before it starts
+ *   finish(FS)            takes files out of it after the end; the return value becomes `result`
+ *   stdout, stderr        functions that get the output as pieces of bytes (Uint8Array)
+ *   terminals             {stdout, stderr}: true for each of them that is a terminal
  *   stdin                 the content of standard input (Uint8Array)
  *   env                   variables of the environment
- *   memoryLimit           the limit of its memory in bytes, at least 16 MiB
+ *   memoryLimit           the limit of the program's memory in bytes, at least 16 MiB
  * @returns {Promise<{code: number, result: any}>} the exit code, and the value that finish() returned
  */
 export async function run(platform, args, { prepare, finish, stdout, stderr, terminals = {}, stdin, env = {}, memoryLimit }) {
   const module = await compile(platform);
   const out = new Sink(stdout, terminals.stdout), err = new Sink(stderr, terminals.stderr);
   let code = 1;
-  // The promise of a module that cannot start never settles, so every error before the start rejects this promise,
-  // including an error of prepare().
+  // The promise of a module that cannot start never settles. Every error before the start, including an error of
+  // prepare(), therefore rejects this outer promise.
   const program = await new Promise((resolve, reject) => createProgram({
     require: platform.require,
     thisProgram: 'chronormal',
@@ -91,8 +92,8 @@ export async function run(platform, args, { prepare, finish, stdout, stderr, ter
         Object.assign(ENV, env);
         FS.init(() => null, (byte) => out.put(byte), (byte) => err.put(byte));
         if (stdin) {
-          // The program would read a device until it ends, which may never happen. Therefore standard input becomes a
-          // file, whose end is known.
+          // The program would read a device until its end, which may never come. The content of standard input is
+          // therefore put into a file, whose end is known.
           FS.close(FS.getStream(0));
           FS.writeFile('/.stdin', stdin);
           FS.open('/.stdin', 'r');

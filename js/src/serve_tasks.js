@@ -1,8 +1,8 @@
-// Does long work in a separate thread: takes tasks one by one, and reports the progress and the result of each.
+// Does long work in a separate thread. It takes tasks one by one, and reports the progress and the result of each task.
 import { useCompiled } from './run.js';
 import { perform } from './task.js';
 
-/** Serves tasks on a platform. Messages are {task, wantsProgress}, and the compiled module if the caller has it. */
+/** Serves tasks on a platform. A message is {task, wantsProgress}, with the compiled module if the caller has it. */
 export const serveTasks = (platform) => platform.serve(async ({ task, wantsProgress, module }, say) => {
   try {
     if (module) useCompiled(module);

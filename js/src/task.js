@@ -1,4 +1,5 @@
-// Runs a command on files in memory, as api.js describes it, in worker.js or in the caller's own thread.
+// Runs a command on files in memory, for the functions of api.js. The code runs in worker.js or in the caller's own
+// thread.
 import { run } from './run.js';
 
 const FOLDER = '/work';
@@ -20,8 +21,8 @@ function write(FS, name, bytes) {
     if (!(error instanceof FS.ErrnoError)) throw error;
     throw new UnusableName(name);
   }
-  // A name is unusable if it cannot be written in UTF-8, contains the zero that ends names in the program, or names a
-  // device.
+  // A name cannot be used if it cannot be written in UTF-8, contains the zero character that ends names in the program,
+  // or names a device.
   const known = new TextDecoder().decode(new TextEncoder().encode(name));
   if (known !== name || name.includes('\0') || !FS.isFile(FS.stat(name).mode)) throw new UnusableName(name);
 }

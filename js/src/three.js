@@ -1,8 +1,9 @@
-// Drives baked files in three.js: before a mesh is drawn, its correction targets get the weights that follow from the
+// Drives baked files in three.js. Before a mesh is drawn, the weights of its correction targets are computed from the
 // weights that the application or a mixer has set for the mesh's own targets.
 import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
-const attached = new WeakMap(); // for each mesh: {formulas, before, now}
+// The key is a mesh, and the value is {formulas, before, now}.
+const attached = new WeakMap();
 
 function formulasOfMesh(mesh) {
   const w = mesh.morphTargetInfluences;
@@ -10,8 +11,8 @@ function formulasOfMesh(mesh) {
 }
 
 /**
- * Drives all meshes of a baked file below an object, until detach(). A clone has to be attached itself: three.js does not
- * copy functions that run before drawing. Costs a few operations for each correction target and drawing, and
+ * Drives all meshes of a baked file below an object, until detach(). Call attach() for a clone as well, because three.js
+ * does not copy functions that run before drawing. Costs a few operations for each correction target and drawing, and
  * allocates nothing.
  * @param {import('three').Object3D} root
  * @returns {import('three').Mesh[]} the meshes that have correction targets with formulas
@@ -40,7 +41,8 @@ export function detach(root) {
     if (!attached.has(mesh)) return;
     const { formulas, before, now } = attached.get(mesh);
     attached.delete(mesh);
-    // If other code has wrapped this function since, the wrapper stays, and the wrapped function does nothing any more.
+    // If other code has wrapped this function since attach(), the wrapper stays, and the wrapped function does nothing
+    // any more.
     if (mesh.onBeforeRender === now) {
       if (before) mesh.onBeforeRender = before;
       else delete mesh.onBeforeRender;
@@ -50,8 +52,8 @@ export function detach(root) {
 }
 
 /**
- * Sets the weights of correction targets below an object once, for meshes that are not drawn themselves but whose
- * weights InstancedMesh.setMorphAt() takes.
+ * Sets the weights of correction targets below an object once. Use this function for meshes that are not drawn
+ * themselves but whose weights InstancedMesh.setMorphAt() takes.
  * @param {import('three').Object3D} root
  */
 export function drive(root) {

@@ -8,5 +8,5 @@ export interface TransformOptions extends Omit<BakeOptions, 'name' | 'resources'
 
 /** Returns a transform that bakes a document in place. */
 export function chronormal(options?: TransformOptions): Transform;
-/** Adds the command `gltf-transform chronormal IN OUT`, as onProgramReady in a gltf-transform.config.mjs. */
+/** Adds the command `gltf-transform chronormal IN OUT`. Use it as onProgramReady in a gltf-transform.config.mjs. */
 export function command(context: { program: any; io: any; Session: any }): void;

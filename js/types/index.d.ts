@@ -1,4 +1,4 @@
-/** True normals for meshes that deform: audits and bakes glTF files. Nothing here touches a file system or the network. */
+/** Declares the functions that audit and bake files. They touch neither a file system nor the network. */
 import type { AuditReport, BakeReport, CompareReport, Elements, InspectReport, PathName, PlanReport, Weighting } from './reports.js';
 
 export * from './reports.js';
@@ -6,26 +6,26 @@ export * from './reports.js';
 export type Viewer = 'three' | 'babylon' | 'playcanvas' | 'godot' | 'filament' | 'bevy' | 'gltfpack' | 'quantize' | 'meshopt';
 
 export interface Progress {
-  /** The current step, as in the program's progress bar. */
+  /** The name of the current step, as in the program's progress bar. */
   label: string;
   percent: number;
 }
 
-/** Options of a call itself. */
+/** The options that every call has. */
 export interface CallOptions {
   /**
-   * The name of the input, with its extension, which tells its format: walk.npz. It may have folders in it. A name that no
+   * The name of the input, whose extension tells its format: walk.npz. The name may have folders in it. A name that no
    * file can have is refused with code 2. Default: input.glb or input.gltf.
    */
   name?: string;
-  /** The files that a .gltf names, by their URIs, and the files that options name. */
+  /** The files to which a .gltf refers, by their URIs, and the files that options name. */
   resources?: Record<string, Bytes>;
-  /** Stops the call when it is aborted. The promise of the call is then rejected with the reason. */
+  /** A signal that stops the call. The promise of the call is then rejected with the reason of the signal. */
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
   /**
-   * If false, the calling thread does the work, is blocked meanwhile, and checks `signal` only before. Default: a
-   * worker does the work.
+   * False to work in the calling thread, which is then blocked and checks `signal` only before it begins. Default: true,
+   * and a worker does the work.
    */
   worker?: boolean;
   /** The limit of the program's memory in bytes, at least 16 MiB. Default: 4 GiB, or less if the machine has less. */
@@ -33,8 +33,9 @@ export interface CallOptions {
 }
 
 /**
- * Options for reading the input. These options and those below are options of the program, in camel case, and `chronormal help COMMAND`
- * explains them: `maxTargets: 112` is `--max-targets 112`. Another name, or a value of another type, is refused.
+ * The options for reading the input. These options and those below are options of the program, written in camel case:
+ * `maxTargets: 112` is `--max-targets 112`. `chronormal help COMMAND` explains them. Options with other names, and
+ * values of another type, are refused.
  */
 export interface ReadOptions extends CallOptions {
   allowExternal?: boolean;
@@ -53,7 +54,7 @@ export interface ReadOptions extends CallOptions {
   path?: PathName | `${'catmull-rom' | 'hermite'}:${number}`;
 }
 
-/** Options that select a motion of a file. */
+/** The options that select a motion of a file. */
 interface MotionOptions extends ReadOptions {
   /** The base mesh if the input is a morph target: a name among `resources`. */
   base?: string;
@@ -63,14 +64,14 @@ interface MotionOptions extends ReadOptions {
 export interface AuditOptions extends MotionOptions {
   rule?: 'gltf' | 'lerp' | 'nlerp' | 'slerp' | 'step' | 'flat';
   weighting?: Weighting;
-  /** Further viewers whose normals are judged. */
+  /** The viewers, besides the specification, whose normals are judged. */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   /** @deprecated the old name of `for` */
   host?: Viewer | 'all' | Array<Viewer | 'all'>;
   samples?: number;
-  /** Further poses that are judged: 'random', or a name among `resources`. */
+  /** The poses that are judged besides those of the file: 'random', or a name among `resources`. */
   poses?: string;
-  /** The two weights between which each target is moved alone: '0:1' by default. */
+  /** The two weights between which each target alone is moved. Default: '0:1'. */
   weights?: `${number}:${number}`;
   tolerance?: number;
   /** The largest number of edges of a glTF file that may be torn at one moment. */
@@ -89,9 +90,9 @@ export interface BakeOptions extends ReadOptions {
   maxBytes?: number;
   maxTargets?: number;
   animationsOnly?: boolean;
-  /** The poses to bake for, too: 'random', or a name among `resources`. */
+  /** The poses for which the file is baked besides its own: 'random', or a name among `resources`. */
   poses?: string;
-  /** Reports the size and the errors of each candidate, and makes no file. */
+  /** True to report the size and the errors of each candidate, and to make no file. */
   plan?: boolean;
   denseZeros?: boolean;
   tolerance?: number;
@@ -129,27 +130,27 @@ export interface InspectOptions extends MotionOptions {
 
 export interface SampleOptions extends MotionOptions {
   world?: boolean;
-  /** Seconds: one or several, `FIRST:STEP:LAST`, or `keys`. */
+  /** The times in seconds: one or several numbers, `FIRST:STEP:LAST`, or `keys`. */
   times?: number | number[] | string;
-  /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, and other targets are at 0. */
+  /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, with 0 for other targets. */
   weights?: number[] | number[][] | string;
   /** The scheme that interpolates between the exact normals at the ends of segments. Default: every normal is exact. */
   scheme?: Scheme;
-  /** The number of steps per segment if the scheme is played, so that each step starts from the previous result. */
+  /** The number of steps per segment. The scheme then computes each step from the previous one. */
   step?: number;
   elements?: Elements;
   crease?: number;
   hardEdges?: 'groups' | 'normals';
   noWeld?: boolean;
   weighting?: Weighting;
-  /** 'area': the length of a face's normal is twice its area. Default: 'unit'. */
+  /** The length of each normal. 'area' is twice the area of a triangle. Default: 'unit'. */
   length?: 'unit' | 'area';
 }
 
 export interface Sampled {
-  /** x, y and z of each normal, in the order of `shape`; (0, 0, 0) where there is no normal. */
+  /** The x, y and z of each normal, in the order of `shape`; (0, 0, 0) if there is no normal. */
   normals: Float32Array;
-  /** The numbers of times or poses, of elements, and of coordinates, which are 3. */
+  /** Three numbers: of times or poses, of elements, and of coordinates (3). */
   shape: number[];
   warnings: string[];
 }
@@ -168,7 +169,7 @@ export interface Baked extends Judged<BakeReport> {
   files: Record<string, Uint8Array>;
 }
 
-/** An error: the call was refused or failed. `code` is the exit code of the program: 1 failed, 2 usage, 3 the input is invalid. */
+/** An error of a call. `code` is the exit code of the program: 1 for a failure, 2 for wrong usage, 3 for an invalid input. */
 export class ChronormalError extends Error {
   constructor(code: number, message: string);
   name: 'ChronormalError';

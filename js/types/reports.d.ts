@@ -1,13 +1,14 @@
 /**
- * The reports of the functions, equal to the output of the commands with `--json` (docs/cli.md). Keys may be added; none changes its meaning.
- * Angles are degrees. Vertices, faces, targets, nodes and so on are counted from 0, and null means that there is none.
+ * Declares the reports of the functions, which equal the output of the commands with `--json` (docs/cli.md). New keys may
+ * be added, but the meaning of a key never changes. Angles are in degrees. Vertices, faces, targets, nodes and so on are
+ * counted from 0, and null means that there is none.
  */
 
 export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max' | 'inverse-edges' | 'inverse-roots';
 export type PathName = 'linear' | 'catmull-rom' | 'hermite';
 export type Elements = 'faces' | 'vertices' | 'corners';
 
-/** The fields that every report begins with. */
+/** The fields with which every report begins. */
 interface Head<Command extends string, Schema extends number> {
   /** The version of the program. */
   chronormal: string;
@@ -15,7 +16,7 @@ interface Head<Command extends string, Schema extends number> {
   schema: Schema;
 }
 
-/** The curves of a path that was cut into straight pieces. */
+/** The description of a path that is curved and was cut into straight pieces. */
 interface CurvedPath {
   path?: PathName;
   bend?: number;
@@ -23,18 +24,18 @@ interface CurvedPath {
   cut?: { tolerance_degrees: number; segments: number; pieces: number; faces_beyond: number; rounding: number };
 }
 
-// Types of audits.
+// The next types describe audits.
 
 export interface AuditPlace {
   mesh?: number;
   primitive?: number | null;
   vertex: number;
   segment?: number;
-  /** Present if a target's or an expression's weight moves. */
+  /** Present if the weight of a target or an expression moves. */
   weight?: number;
   /** Present for an animation or a sequence. */
   time?: number;
-  /** The number of the pose, if poses were requested. */
+  /** The number of the pose, if the call asked for poses. */
   pose?: number;
 }
 
@@ -49,10 +50,10 @@ export interface MotionError {
   no_normal: number;
   faint: number;
   faint_worst_degrees: number;
-  /** The number of samples without a true normal although the faces around have an area. Each exceeds any tolerance. */
+  /** The number of samples without a true normal, although the faces around have an area. Each one exceeds any tolerance. */
   cancelled: number;
   unlit: number;
-  /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the samples. Only for glTF files. */
+  /** The average number of edges per sample over which errors jump by more than 10, 20 and 40 degrees. Only for glTF files. */
   torn_edges?: [number, number, number];
   /** The largest number of edges at one moment over which errors jump by more than 10 degrees. */
   most_torn_edges?: number;
@@ -105,7 +106,7 @@ export interface AuthoredOffset {
   vertices: number;
   weighting: Weighting;
   weighting_detected: boolean;
-  /** True if the true normals are weighted by the polygons that the file's triangles came from. */
+  /** True if the true normals are weighted by the polygons from which the triangles of the file were made. */
   polygons: boolean;
   worst_degrees: number;
   mean_degrees: number;
@@ -148,11 +149,11 @@ export interface AuditReport extends Head<'audit', 2>, MotionError, CurvedPath {
   viewers: ViewerAudit[];
   authored_offsets: AuthoredOffset[];
   findings: AuditFinding[];
-  /** Parts of the file that were left out, or were not read as they were meant. */
+  /** Notes on parts of the file that were left out or could not be read as intended. */
   notes: string[];
 }
 
-// Types of bakes.
+// The next types describe bakes.
 
 export interface BakeAudit {
   worst_degrees_before: number;
@@ -175,7 +176,7 @@ export interface ShownErrors {
   mean_degrees: number;
   most_degrees: number;
   worst_degrees: number;
-  /** Edges over which errors jump by more than 10, 20 and 40 degrees, on average over the poses. */
+  /** The average number of edges per pose over which errors jump by more than 10, 20 and 40 degrees. */
   torn_edges: [number, number, number];
 }
 
@@ -193,7 +194,7 @@ export interface ViewerChange {
    */
   named: boolean;
   better: boolean;
-  /** Errors in the file's animations, with each target alone, and in poses that a program sets. */
+  /** The errors in the animations of the file, with each target alone, and in poses that a program sets. */
   file?: JudgedPoses;
   alone?: JudgedPoses;
   posed?: JudgedPoses;
@@ -218,7 +219,7 @@ export interface BakedMesh {
   weighting: Weighting | null;
   already_baked: boolean;
   different_normals: number;
-  /** The weights of correction targets: linear terms [target, factor], and products [target, target, factor]. */
+  /** The formulas of the weights of correction targets: linear terms [target, factor], and products [target, target, factor]. */
   extra_targets: Array<{ target: number; linear: number[][]; quadratic: number[][] }>;
   bytes: number;
   undriven_targets: number;
@@ -239,7 +240,7 @@ export interface BakedMesh {
 
 interface BakeHead extends Head<'bake', 3> {
   input: { name: string };
-  /** Parts of the input that were left out, or were not read as they were meant. */
+  /** Notes on parts of the input that were left out or could not be read as intended. */
   notes: string[];
   warnings: string[];
 }
@@ -273,7 +274,7 @@ export interface SequenceBakeReport extends BakeHead, CurvedPath {
   audit?: WholeBakeAudit;
 }
 
-/** A report of bake(). Only the report for a glTF file has `meshes`, which tells the two types apart. */
+/** A report of bake(). Only the report for a glTF file has `meshes`, so this member tells the two types apart. */
 export type BakeReport = GltfBakeReport | SequenceBakeReport;
 
 /** The report of bake() with `plan`: the size and the errors of each candidate. */
@@ -282,7 +283,7 @@ export interface PlanReport extends BakeHead {
   meshes: Array<{ mesh: number; name: string; candidates: BakeCandidate[] }>;
 }
 
-// Types of comparisons.
+// The next types describe comparisons.
 
 export interface ElementPlace {
   segment: number;
@@ -388,7 +389,7 @@ export interface TruthReport extends Head<'compare', 1> {
   rows: Array<SchemeError & { path: PathName }>;
 }
 
-/** A scheme on one face; vectors follow each other in flat arrays. */
+/** The normals of a scheme on one face. In flat arrays, the coordinates of vectors follow each other. */
 export interface SchemeFigure {
   scheme: string;
   sum_degrees: number;
@@ -418,7 +419,7 @@ export interface FigureReport extends Head<'compare', 1> {
 
 export type CompareReport = SchemesReport | BlendReport | TruthReport | FigureReport;
 
-// Types of inspections.
+// The next types describe inspections.
 
 interface FoundFaces {
   count: number;
@@ -430,7 +431,7 @@ interface FoundVertices {
   first_vertex: number | null;
 }
 
-/** Faces with a problem, and pairs of a face with a keyframe or a segment where it occurs. */
+/** The faces with a problem, and pairs of a face with a keyframe or a segment in which the problem occurs. */
 export interface FacePlaces<Place> {
   faces: number;
   pairs: number;
@@ -523,7 +524,7 @@ export interface InspectedGltf {
   }>;
 }
 
-/** The report of inspect(). For a glTF file without faces, only `input`, `notes`, `gltf` and `trouble` are there. */
+/** The report of inspect(). For a glTF file without faces, it has only `input`, `notes`, `gltf` and `trouble`. */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
   /** The numbers in the file names of a sequence, if they tell the files apart. */

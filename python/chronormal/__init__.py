@@ -487,7 +487,7 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
 
 def contain(positions: ArrayLike, faces: _Faces, points: ArrayLike, times: ArrayLike | None = None, *,
             start: float | None = None, end: float | None = None) -> dict[str, NDArray[Any]]:
-    """Return which points are inside a closed mesh that deforms, and when each crosses its surface, as a dict of arrays.
+    """Return as a dict of arrays which points are inside a closed mesh that deforms, and when each crosses its surface.
 
     positions, faces, times, start, end   as for collapse(); a mesh that is not closed is a ValueError
     points   (P, 3) points that rest, or (P, 2, 3): each point moves straight from its first

@@ -1,5 +1,5 @@
-"""Tests libchronormal_c as an engine calls it, through ctypes: interleaved vertex buffers, memory of the caller, codes and
-messages.
+"""Tests libchronormal_c as an engine calls it, through ctypes: interleaved vertex buffers, memory of the caller, codes
+and messages.
 
 CHRONORMAL_C names the library; without it these tests are skipped.
 """

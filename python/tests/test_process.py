@@ -1,5 +1,5 @@
-"""Tests events that may crash a process or make it hang: signals, forks, pickles, names, numbers that are too large, and
-memory that is both read and written.
+"""Tests events that may crash a process or make it hang: signals, forks, pickles, names, numbers that are too large,
+and memory that is both read and written.
 
 All random numbers follow from SEED.
 """
