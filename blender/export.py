@@ -34,7 +34,7 @@ is_paused = False
 
 
 def writer() -> ModuleType | None:
-    """Returns the exporter's module that writes files, or None if its function does not have the expected parameters."""
+    """Returns the exporter's module that writes files, or None if its parameters are unexpected."""
     for name in _WRITERS:
         try:
             module = importlib.import_module(name)
@@ -88,7 +88,7 @@ def before_writing(_export_settings: dict[str, Any]) -> None:
 
 
 def _bake_or_say_why(path: Path) -> tuple[str, str]:
-    """Bakes a file that has been written. Exceptions must not reach the exporter, because its file is complete by now."""
+    """Bakes a file that has been written. Exceptions must not reach the exporter, whose file is complete by now."""
     try:
         return bake_in_place(path)
     except Exception as error:  # pylint: disable=broad-except

@@ -42,8 +42,8 @@ class Pose:
 
 @dataclass
 class Found:
-    """The checked poses with their errors in degrees. For every corner, `worst` is its largest error, and `which` is the
-    index of the pose in which this error occurs."""
+    """The checked poses with their errors in degrees. For every corner, `worst` is its largest error, and `which`
+    is the index of the pose in which this error occurs."""
 
     poses: list[Pose]
     worst: numpy.ndarray
@@ -254,8 +254,8 @@ def _list_places(state: State, mesh: bpy.types.Mesh, found: Found) -> None:
 
 
 def look(context: bpy.types.Context, o: bpy.types.Object, over: str) -> Found:
-    """Judges the poses that `over` selects. NOW selects the current pose, TIME the poses of all frames, and KEYS each key
-    alone and pairs of keys."""
+    """Judges the poses that `over` selects. NOW selects the current pose, TIME the poses of all frames, and KEYS each
+    key alone and pairs of keys."""
     state, scene = context.window_manager.chronormal, context.scene
     is_baked = state.judged == "BAKED"
     frames = frames_of(scene) if is_baked or over == "TIME" else []

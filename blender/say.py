@@ -23,7 +23,7 @@ def _running_operator() -> bpy.types.Operator | None:
 
 
 def say(level: str, text: str) -> None:
-    """Reports a sentence. The level is INFO or WARNING. An ERROR would make scripts believe that no file was written."""
+    """Reports a sentence. The level is INFO or WARNING; an ERROR would tell scripts that no file was written."""
     global last
     last = (level, text)
     operator = _running_operator()

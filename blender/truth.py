@@ -150,7 +150,7 @@ class Subject:
         mesh.loops.foreach_get("vertex_index", vertices)
         of_corners, of_file = groups[vertices], groups[len(in_blender):]
 
-        # These lists contain pairs of a corner and a vertex at the same place. The pairs of corner c are first[c] ...
+        # The lists contain pairs of a corner and a vertex at the same place. The pairs of corner c are first[c] ...
         # first[c + 1].
         order = numpy.argsort(of_file, kind="stable")
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")

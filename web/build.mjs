@@ -27,13 +27,13 @@ async function bundled(entry, options = {}) {
 
 const styles = () => [readFileSync(fileURLToPath(import.meta.resolve('uplot/dist/uPlot.min.css')), 'utf8'), readFileSync(source('style.css'), 'utf8')].join('\n');
 
-// Escapes text so that it cannot end the script or style around it.
+// Escapes text so that it cannot end the element <script> or <style> that contains it.
 const inScript = (text) => text.replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
 
 // Replaces the marks of a template by texts. The texts are inserted literally: "$" has no special meaning.
 const filled = (template, parts) => Object.entries(parts).reduce((page, [mark, text]) => page.replace(mark, () => text), template);
 
-// Returns the licence of a library. The page ends with a comment that has the licences of all libraries inside.
+// Returns the licence of a library. The page ends with a comment that contains the licences of all its libraries.
 const licenceOf = (name) => readFileSync(join(dirname(fileURLToPath(import.meta.resolve(name))), '..', 'LICENSE'), 'utf8');
 function licences(more = {}) {
   const own = readFileSync(fileURLToPath(new URL('../LICENSE', import.meta.url)), 'utf8');
@@ -47,11 +47,13 @@ async function reportPage() {
   return filled(readFileSync(source('report.html'), 'utf8'), { '/*style*/': styles(), '/*script*/': inScript(script) }) + licences();
 }
 
-// Returns the wasm module, and its worker as text that the page starts a worker from.
+// Returns a page that contains the wasm module, and the script of its worker as text. The page starts the worker from
+// this text.
 async function enginePage(folder) {
   const wasm = gzipSync(readFileSync(join(folder, 'src/program.wasm')), { level: 9 });
   const program = { name: 'program', setup: (made) => made.onResolve({ filter: /\/program\.js$/ }, () => ({ path: join(resolve(folder), 'src/program.js') })) };
-  // run.js looks for the module beside its own address. The page hands the module over, so any address will do.
+  // run.js looks for the module beside its own address. In the page, the module is passed to run.js instead, so any
+  // valid address will do.
   const define = { 'import.meta.url': '"file:///engine/src/run.js"' };
   const worker = await bundled(source('engine_worker.js'), { plugins: [program], external: ['fs', 'path', 'crypto'], define });
   const script = await bundled(source('page.js'), { define: { ENGINE_WORKER: JSON.stringify(worker) } });

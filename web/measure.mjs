@@ -1,8 +1,9 @@
-// Measures how long a step of a slider takes in the page's own code, without the drawing.
+// Measures how long a step of a slider takes in the code of the page, without the drawing.
 //
 //   chronormal report FACE.glb -o face.bin --no-plan && node web/measure.mjs face.bin
 //
-// Moves each target alone, with all others at their weights of the worst moment; then plays the first animation.
+// Moves each target alone, while all others keep the weights that they have at the worst moment. Then plays the first
+// animation.
 import { readFileSync } from 'node:fs';
 import { readContainer } from './src/data.js';
 import { makePlayer } from './src/player.js';
@@ -13,7 +14,7 @@ const { part } = player;
 const count = (n) => n.toLocaleString('en');
 console.log(`${part.name}: ${count(part.vertices)} vertices, ${count(part.triangles.length / 3)} triangles, ${part.targets?.length ?? 0} targets, by ${part.weighting}`);
 
-// Measures processor time as well as elapsed time, since elapsed time grows when other programs use the machine.
+// Prints processor time as well as elapsed time, since elapsed time grows when other programs use the machine.
 function measure(what, steps, step) {
   for (let i = 0; i < 50; ++i) step(i % steps);
   const before = process.cpuUsage();

@@ -24,8 +24,8 @@ export interface CallOptions {
   signal?: AbortSignal;
   onProgress?: (progress: Progress) => void;
   /**
-   * False to work in the calling thread, which is then blocked and checks `signal` only before it begins. Default: true,
-   * and a worker does the work.
+   * False to work in the calling thread, which is then blocked and checks `signal` only before it begins.
+   * Default: true, and a worker does the work.
    */
   worker?: boolean;
   /** The limit of the program's memory in bytes, at least 16 MiB. Default: 4 GiB, or less if the machine has less. */

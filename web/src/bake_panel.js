@@ -1,4 +1,4 @@
-// The panel of a bake: the viewers to bake for, the tolerance, the limits of size, the plan, and the bake itself.
+// Shows the panel of a bake: the viewers to bake for, the tolerance, the limits of size, the plan, and the bake itself.
 import { degreesText } from './colors.js';
 import { h, panel, table } from './dom.js';
 import { choiceTable } from './panels.js';
@@ -13,9 +13,9 @@ const ADDING_UP = ['three', 'babylon', 'playcanvas', 'bevy'];
 
 /**
  * Makes the panel of a bake.
- * @param input of page.js; its member `options` has the user's choices: {viewers, tolerance, maxTargets, maxBytes}. An
- *   empty list of viewers stands for the default viewers
- * @param {{plan: () => void, bake: () => void}} acts
+ * @param input an entry of `inputs` in page.js; its member `options` has the user's choices: {viewers, tolerance,
+ *   maxTargets, maxBytes}. An empty list of viewers stands for the default viewers
+ * @param {{plan: () => void, bake: () => void}} acts the functions that run when the user asks for a plan or a bake
  */
 export function makeBakePanel(input, { plan, bake }) {
   const chosen = (input.options ??= { viewers: [], tolerance: '', maxTargets: '', maxBytes: '' });
@@ -44,7 +44,7 @@ export function makeBakePanel(input, { plan, bake }) {
     comparison(input), planned);
 }
 
-// Shows the result of a bake beside the input.
+// Shows the errors of the baked file beside those of the input.
 function comparison({ came, baked }) {
   if (!baked) return null;
   const row = (title, { audit }) => ({ cells: [title, degreesText(audit.mean_degrees), degreesText(audit.worst_degrees)] });

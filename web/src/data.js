@@ -1,4 +1,5 @@
-// The data of a report: the container that `chronormal report` writes (docs/formats.md), as JSON with typed arrays in it.
+// Reads the data of a report, a container that `chronormal report` writes (docs/formats.md), as JSON with typed arrays
+// in it.
 
 const MAGIC = 'CHRONRPT', VERSION = 1, HEADER = 16;
 const TYPES = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, i16: Int16Array, u8: Uint8Array };
@@ -59,7 +60,7 @@ export function fromBase64(text) {
   return bytes;
 }
 
-/** Returns the content of a gzip file. */
+/** Unpacks a gzip file. */
 export async function unzipped(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
   return new Uint8Array(await new Response(stream).arrayBuffer().catch(() => Promise.reject(damaged())));

@@ -1,4 +1,4 @@
-// Makes elements of the page. Text is only ever set as text, never as HTML: names in files come from strangers.
+// Makes elements of the page. Text is always set as text and never as HTML, because names in files come from strangers.
 
 /** Makes an element: h('button', { onclick, className, ... }, children...). Children are elements or text; null and
  * false are left out. */
@@ -13,7 +13,7 @@ export function h(tag, properties = {}, ...children) {
   return made;
 }
 
-/** Makes a group of buttons of which exactly one is pressed. choices: [[value, text, title]]. */
+/** Makes a group of buttons of which exactly one is pressed. `choices` is [[value, text, title], ...]. */
 export function segmented(label, choices, onChoose) {
   const buttons = choices.map(([value, text, title]) => h('button', { type: 'button', title: title ?? text, onclick: () => onChoose(value) }, text));
   const group = h('div', { className: 'segmented', role: 'group', 'aria-label': label }, buttons);
@@ -21,7 +21,7 @@ export function segmented(label, choices, onChoose) {
   return group;
 }
 
-/** Makes a panel that opens and closes. */
+/** Makes a panel that the user can open and close. */
 export const panel = (title, isOpen, ...children) =>
   h('details', { className: 'panel', open: isOpen }, h('summary', {}, title), h('div', { className: 'content' }, children));
 

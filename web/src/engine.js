@@ -1,10 +1,10 @@
-// The program inside the page. Each command runs in its own worker, which can be stopped in the middle.
+// Runs the program inside the page. Each command runs in its own worker, which can be stopped at any time.
 import { fromBase64, unzipped } from './data.js';
 
-const DONE = 0, BEYOND = 4; // exit codes: success, and a result that exceeds the tolerance
+const DONE = 0, BEYOND = 4; // exit codes for success, and for a result that exceeds the tolerance
 const OUTPUTS = 'out';
 
-/** An error of the program: its exit code and its message. */
+/** An error of the program, with its exit code and its message. */
 export class EngineError extends Error {
   constructor(code, message) {
     super(message);
@@ -13,8 +13,8 @@ export class EngineError extends Error {
 }
 
 /**
- * Makes the engine of the page.
- * @param {HTMLElement} element contains the module, as base64 of gzip
+ * Makes the engine of the page: a function that runs commands of the program.
+ * @param {HTMLElement} element contains the wasm module, packed by gzip and encoded as base64
  * @param {string} workerSource the script of engine_worker.js
  */
 export function makeEngine(element, workerSource) {

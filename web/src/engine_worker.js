@@ -1,5 +1,5 @@
-// The worker of the program. It runs the tasks of the npm package (js/src) on a module that the page sends with each
-// task.
+// Runs tasks of the program in a worker. They are tasks of the npm package (js/src), on a module that the page sends
+// with each task.
 import { serveTasks } from '../../js/src/serve_tasks.js';
 
 serveTasks({
@@ -9,5 +9,5 @@ serveTasks({
   },
 });
 
-// Reports errors that no code awaits, such as too little memory for the module.
+// Errors that no code awaits, such as too little memory for the module, are reported to the page.
 self.addEventListener('unhandledrejection', ({ reason }) => self.postMessage({ failed: String(reason?.message ?? reason) }));

@@ -1,5 +1,5 @@
-// The panel of one face: Figures 1 to 3 of the paper for this face at any t. If the program is available, its corners
-// can be dragged.
+// Shows the panel of one face: Figures 1 to 3 of the paper for this face at any t. If the program is available, the
+// user can drag its corners.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
 import { faceOf, faceOfNumber, wayOf } from './faces.js';
@@ -9,8 +9,9 @@ import { GRAPH, SPHERE, TRIANGLE, cornersInPicture, errorFigure, frameOf, inksOf
 /** The schemes that the panel shows. The command `chronormal report` stores figures of the same schemes. */
 export const FIGURE_SCHEMES = ['linear', 'quadratic', 'cubic', 'slerp', 'decasteljau:4', 'quaternion:matrix', 'quaternion:optimal'];
 const FIRST_SHOWN = ['linear', 'slerp', 'decasteljau:4', 'quaternion:matrix'];
-const STEP = 6; // pixels of the picture by which an arrow key moves a corner; five times as many with Shift
-const TURN = 0.01; // radians that the picture turns for each pixel of a drag
+// An arrow key moves a corner by this many pixels of the picture, and with Shift by five times as many.
+const STEP = 6;
+const TURN = 0.01; // radians by which a drag of one pixel turns the picture
 
 const letterOf = (i) => String.fromCharCode(97 + (i % 26));
 
@@ -18,8 +19,9 @@ const letterOf = (i) => String.fromCharCode(97 + (i % 26));
  * Makes the panel of one face.
  * @param player from makePlayer()
  * @param {{outline(corners: number[]): void}} view gets the corners of the face that is shown
- * @param {((way: {from: number[][], to: number[][]}) => Promise<object>) | undefined} compute asks the program for the figures of a
- *   face that moves straight from one triangle to another; undefined without a program: the report's own figures are shown then
+ * @param {((way: {from: number[][], to: number[][]}) => Promise<object>) | undefined} compute asks the program for the
+ *   figures of a face that moves straight from one triangle to another. Without a program it is undefined, and the panel
+ *   shows the figures that are stored in the report
  */
 export function makeFacePanel(report, player, view, compute) {
   const stored = report.figures ?? [];
@@ -97,7 +99,8 @@ export function makeFacePanel(report, player, view, compute) {
     take(known, true);
   }
 
-  // Requests a figure. While the program is busy, only the latest request is kept; it is sent when the program is free.
+  // Asks the program for a figure. While the program is busy, only the latest request is kept, and sent when the
+  // program is free.
   async function ask(next, isNew) {
     wanted = { next, isNew: isNew || wanted?.isNew };
     if (isAsking) return;
@@ -169,7 +172,8 @@ export function makeFacePanel(report, player, view, compute) {
     draw();
   }
 
-  // Fills in the matrix M and the frames at both ends, whose columns are the tangent, the binormal and the normal.
+  // Shows the matrix M and the frames at both ends. The columns of a frame are the tangent, the binormal and the
+  // normal.
   function fillFrames() {
     const built = figure.schemes.find(({ scheme, tangents }) => scheme === construction && tangents), isOpen = frames.open;
     frames.hidden = !built;
@@ -189,7 +193,7 @@ export function makeFacePanel(report, player, view, compute) {
     draw();
   }
 
-  // Makes handles on the corners, which can be dragged by the mouse or moved by keys.
+  // Makes handles on the corners, which the user can drag with the mouse or move with keys.
   function makeHandles() {
     const count = figure.from.length;
     handles.replaceChildren(...(compute ? [...figure.from, ...figure.to].map((_, i) => {
@@ -242,7 +246,7 @@ export function makeFacePanel(report, player, view, compute) {
     ask(way, false);
   }
 
-  // Dragging either picture turns both.
+  // Dragging one of the two pictures turns both.
   for (const picture of [triangle, sphere]) {
     let last;
     picture.addEventListener('pointerdown', (event) => {
@@ -296,9 +300,9 @@ export function makeFacePanel(report, player, view, compute) {
 
   return {
     box,
-    /** Shows the face that a triangle of the current part belongs to. */
+    /** Shows the face to which a triangle of the current part belongs. */
     pick: (index) => choose(faceOf(player.part, index)),
-    /** Hides the face, which is not part of the part that the player shows now. */
+    /** Hides the face. Called when the player shows another part, to which the face does not belong. */
     leave() {
       face = figure = undefined;
       body.hidden = true;
@@ -310,7 +314,7 @@ export function makeFacePanel(report, player, view, compute) {
     svg: () => new XMLSerializer().serializeToString(svgOf()),
     figure: () => figure,
     way: () => way,
-    /** The settings by which the pictures are drawn: {view, stage, sample, near, ...}. */
+    /** The settings with which the pictures are drawn: {view, stage, sample, near, ...}. */
     look,
   };
 }

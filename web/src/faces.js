@@ -1,8 +1,9 @@
-// Faces of a part: their numbers, their corners, and the straight paths on which they move. This file draws nothing.
+// Finds the faces of a part: their numbers, their corners, and the straight paths on which they move. This file draws
+// nothing.
 import { segmentAt } from './motions.js';
 
-/** Returns the face that a triangle of a part belongs to, as {number, triangle, corners}. The triangles of a face are a
- * fan; `triangle` is the first of them. */
+/** Returns the face to which a triangle of a part belongs, as {number, triangle, corners}. The triangles of a face form
+ * a fan, and `triangle` is the index of the first one. */
 export function faceOf({ triangles, faces }, triangle) {
   let first = triangle, end = triangle + 1;
   const isSame = (t) => faces && faces[t] === faces[triangle];
@@ -21,7 +22,7 @@ export function faceOfNumber(part, number) {
 
 const vectorAt = (array, v) => [array[3 * v], array[3 * v + 1], array[3 * v + 2]];
 
-// Returns vertex v of keyframe k. Later keyframes store only the differences from the first one.
+// Returns the position of vertex v at keyframe k. Later keyframes may store only their differences from the first one.
 function keyframeAt(keyframes, k, v) {
   const keyframe = keyframes.positions[k];
   if (ArrayBuffer.isView(keyframe)) return vectorAt(keyframe, v);
@@ -39,8 +40,8 @@ function blendedAt({ positions, targets }, weights, v) {
 }
 
 /**
- * Returns the straight path of a face at the moment that a player shows. In a sequence it is the path of the current
- * segment; in a glTF file it goes from the base to the pose of the moment, or to weight 1 of a target.
+ * Returns the straight path of a face at the moment that a player shows. In a sequence, the path is that of the current
+ * segment. In a glTF file, the path goes from the base to the pose of the moment, or to weight 1 of a target.
  * @returns {{from: number[][], to: number[][], t: number, segment: number, words: string}}
  */
 export function wayOf(player, { corners }) {
@@ -64,7 +65,8 @@ export function wayOf(player, { corners }) {
 
 const objOf = (corners) => `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf ${corners.map((_, i) => i + 1).join(' ')}\n`;
 
-/** Returns the command line that computes the figures of a face on its path, and the files that the command reads. */
+/** Returns the words of the command line that computes the figures of a face on its path, and the files that the
+ * command reads. */
 export function commandOf({ from, to }, schemes, samples) {
   const bytes = (corners) => new TextEncoder().encode(objOf(corners));
   return {

@@ -37,12 +37,13 @@ export const lookOf = (scheme, isDark) => {
   return { colour: isDark ? dark : light, dashes: dashes || undefined };
 };
 
-/** Returns the colours of a theme. */
+/** Returns the colours of the light or of the dark theme. */
 export const inksOf = (isDark) => isDark
   ? { isDark, ink: '#eceae6', quiet: '#a3a099', line: '#43474c', sheet: '#1f2124', start: '#6cb8f5', end: '#ff9566', ball: '#2a2d31' }
   : { isDark, ink: '#1d1c1a', quiet: '#66625c', line: '#d0ccc4', sheet: '#ffffff', start: '#0b67b2', end: '#c2410c', ball: '#f1efec' };
 
-/** Returns a view of a face in which its normals lean away from the viewer, and move from left to right. */
+/** Returns a view of a face, as three unit vectors, in which the normals lean away from the viewer and move from left to
+ * right. */
 export function viewOf({ normals, from }) {
   const all = vectors(normals).filter((n) => !isZero(n)), first = all[0] ?? [0, 0, 1], last = all.at(-1) ?? first;
   const middle = unit(all.reduce((sum, n) => plus(sum, 1, n), [0, 0, 0])), up = isZero(middle) ? unit(cross(first, [0.6, 0.8, 0.02])) : middle;
@@ -53,7 +54,7 @@ export function viewOf({ normals, from }) {
   return turned({ right: unit(right), up: cross(up, unit(right)), towards: up }, 0, 0.6);
 }
 
-/** Returns a view turned by angles to the right and down. */
+/** Returns a view that is turned by angles in radians, to the right and down. */
 export function turned({ right, up, towards }, across, down) {
   const turn = (a, b, angle) => [plus(a.map((c) => c * Math.cos(angle)), Math.sin(angle), b), plus(b.map((c) => c * Math.cos(angle)), -Math.sin(angle), a)];
   const [newRight, between] = turn(right, towards, -across), [newUp, newTowards] = turn(up, between, down);
@@ -76,8 +77,8 @@ function arrow([x0, y0], [x1, y1], stroke, width, more = {}) {
     s('polygon', { points: place(tip), fill: stroke }));
 }
 
-/** Returns the place where the face is drawn: its centres at both ends, between which the picture moves along, and the
- * length that fills the picture in the first view. */
+/** Returns {centres, size}, by which the face is placed in the picture. The picture moves along between the centres of
+ * the face at both ends, and `size` is the length in space that fills the picture in the first view. */
 export function stageOf({ from, to }, view) {
   const centreOf = (corners) => corners.reduce((sum, p) => plus(sum, 1 / corners.length, p), [0, 0, 0]), centres = [centreOf(from), centreOf(to)];
   const { width, height, y, reach } = TRIANGLE, ways = [from, to].flatMap((corners, end) => corners.map((p) => plus(p, -1, centres[end])));
@@ -92,7 +93,7 @@ export const TRIANGLE = { width: 340, height: 300, x: 170, y: 170, reach: 130, n
 export const SPHERE = { width: 340, height: 320, x: 170, y: 160, radius: 135 };
 export const GRAPH = { width: 340, height: 130, left: 38, right: 332, top: 20, bottom: 110 };
 
-/** Returns the places of all corners in the picture: first at t = 0, then at t = 1. */
+/** Returns the places [x, y] of all corners in the picture: first those at t = 0, then those at t = 1. */
 export function cornersInPicture({ from, to }, { centres, size }, view) {
   const { x, y, reach } = TRIANGLE;
   return [from, to].flatMap((corners, end) => corners.map((p) => {
@@ -126,8 +127,8 @@ export function triangleFigure(figure, { view, stage, sample, shown, inks }) {
     isZero(exact) ? null : arrow(origin, normalTo(exact), inks.ink, 2.4, { 'data-scheme': 'exact' }));
 }
 
-/** Returns the zoom of the sphere that makes short paths large enough to be told apart, and the direction at the middle
- * of the zoomed picture. */
+/** Returns {zoom, middle}. The zoom enlarges the sphere so that short paths can be told apart, and `middle` is the
+ * direction at the middle of the enlarged picture. */
 export function nearOf({ normals, schemes }) {
   const all = [normals, ...schemes.map((one) => one.normals)].flatMap(vectors).filter((n) => !isZero(n)), middle = unit(all.reduce((sum, n) => plus(sum, 1, n), [0, 0, 0]));
   const spread = Math.max(...all.map((n) => Math.hypot(...plus(n, -1, middle))), 0.01);
@@ -135,7 +136,7 @@ export function nearOf({ normals, schemes }) {
 }
 
 // Returns lines on the sphere through points, as arcs of great circles. Lines in front of the sphere and lines behind
-// it are separate.
+// the sphere are separate.
 function spherePath(points, view) {
   const fine = [];
   points.forEach((p, i) => {
@@ -159,7 +160,7 @@ function spherePath(points, view) {
   return parts;
 }
 const onSheet = (x, y) => [SPHERE.x + SPHERE.radius * x, SPHERE.y - SPHERE.radius * y];
-// Returns a view that includes the zoom of the sphere, so that projected directions are where they are drawn.
+// Returns a view with the zoom of the sphere, so that directions are projected to the places where they are drawn.
 const nearer = (view, { zoom, middle }) => (zoom === 1 ? view : { ...view, zoom, centre: project(view, middle) });
 
 const drawn = (points, view, stroke, width, dashes, more = {}) => Object.entries(spherePath(points, view)).reverse().filter(([, d]) => d).map(([side, d]) =>
@@ -170,7 +171,7 @@ function mark(p, view, fill, radius, more = {}) {
   return s('circle', { cx: number(cx), cy: number(cy), r: radius, fill, opacity: z < 0 ? 0.35 : undefined, ...more });
 }
 
-// Returns the points of all levels of de Casteljau's algorithm at a sample. The first level is the nodes.
+// Returns the points of all levels of de Casteljau's algorithm at a sample. The first level consists of the nodes.
 function levelsOf({ nodes, points }, sample) {
   const levels = [vectors(nodes)], count = levels[0].length, all = (count * (count - 1)) / 2;
   for (let from = sample * all, size = count - 1; size > 0; from += size, --size) levels.push(Array.from({ length: size }, (_, i) => vector(points, from + i)));
@@ -236,8 +237,8 @@ export function graphFigure(figure, title, unitName, lines, sample, inks) {
 }
 
 /** Draws Figure 2: the lengths of interpolated normals before they are made unit vectors. The length of the exact
- * normal, which is twice the area, is drawn as a share of its maximum. So are the lengths of schemes that compute
- * this normal. */
+ * normal, which is twice the area, is drawn as a share of its maximum. The lengths of schemes that compute this normal
+ * are drawn in the same way. */
 export function lengthFigure(figure, { sample, shown, inks }) {
   const most = Math.max(...figure.lengths) || 1;
   const lines = figure.schemes.filter(({ scheme, lengths }) => shown.has(scheme) && lengths).map(({ scheme, lengths }) => {

@@ -1,17 +1,17 @@
-// True normals from positions: the cross products of faces, summed over the corners that share a normal
-// (docs/theory.md, sections 1, 8 and 9), and the offsets and polygons of a file's author (docs/formats.md). All
-// arithmetic is in double, and a step allocates nothing.
+// Computes true normals from positions. They are the cross products of faces, summed over the corners that share a
+// normal (docs/theory.md, sections 1, 8 and 9), with the offsets and polygons of a file's author (docs/formats.md). All
+// arithmetic is in double, and a step allocates no memory.
 
-/** Marks a vertex that belongs to no element: a vertex of a flat primitive, or one without a face. */
+/** The element of a vertex that belongs to no element: a vertex of a flat primitive, or a vertex without a face. */
 export const NONE = 0xffffffff;
 
-// Terms that cancel out leave a rounding error. A sum below this share of its terms is treated as zero, since it has no
-// direction.
+// The share of its terms below which a sum is treated as zero. Terms that cancel leave only a rounding error, which has
+// no meaningful direction.
 const ROUNDING = 1e-13;
 
-// For each weighting, a function that returns the factor of a face's vector area n at one of its corners. e and f are
-// the edges at the corner. `dot` is e.f, `sine` the length of e x f, `squares` the product of e.e and f.f, and `area`
-// is |n|.
+// For each weighting, a function that returns the factor by which the vector area n of a face counts at one of its
+// corners. e and f are the edges at the corner. `area` is |n|, `dot` is e.f, `sine` the length of e x f, and `squares`
+// the product of e.e and f.f.
 const WEIGHTS = {
   area: () => 1,
   uniform: (area) => 1 / area,
@@ -21,7 +21,8 @@ const WEIGHTS = {
   'inverse-roots': (area, dot, sine, squares) => 1 / (Math.sqrt(Math.sqrt(squares)) * area),
 };
 
-// Returns the polygons behind the triangles: consecutive triangles of one face are its fan.
+// Returns the polygons from which the triangles were made. Consecutive triangles of one face are the fan of its
+// polygon.
 function cornersOfFaces(triangles, faces) {
   const offsets = [0], corners = [];
   for (let t = 0; t < faces.length; ++t) {
@@ -36,7 +37,8 @@ function cornersOfFaces(triangles, faces) {
   return { offsets: Uint32Array.from(offsets), corners: Uint32Array.from(corners) };
 }
 
-// Adds the area-weighted terms of all triangles. Most of the time of a step is spent here.
+// Adds the area-weighted terms of all triangles to `normals`, and their sizes to `sizes`. Most of the time of a step is
+// spent here.
 function addAreas({ triangles }, slots, p, normals, sizes) {
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
@@ -55,8 +57,8 @@ function addAreas({ triangles }, slots, p, normals, sizes) {
 }
 
 // Adds the weighted terms of all polygons, for weightings other than area and for faces with more than three corners.
-// `slots` has the element of each corner. If `starts` is given, a corner c has several elements, from slots[starts[c]]
-// to slots[starts[c + 1]].
+// `slots` has the element of each corner. If `starts` is given, corner c has several elements, from slots[starts[c]] to
+// slots[starts[c + 1]].
 function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, normals, sizes) {
   const weightOf = WEIGHTS[weighting];
   for (let f = 0; f + 1 < offsets.length; ++f) {
@@ -84,7 +86,7 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
         (tx = cx), (ty = cy), (tz = cz), (weight = 1 / squares);
       } else {
         weight = weightOf(area, ex * fx + ey * fy + ez * fz, Math.sqrt(cx * cx + cy * cy + cz * cz), squares);
-        if (weight === Infinity) continue; // an edge has length zero
+        if (weight === Infinity) continue; // an edge at the corner has length zero
       }
       tx *= weight;
       ty *= weight;
@@ -101,7 +103,7 @@ function addWeighted({ offsets, corners }, { starts, slots }, weighting, p, norm
   }
 }
 
-// Lists the elements to which each corner contributes. `terms` are pairs of a corner and an element; without them, a
+// Lists the elements to which each corner contributes. `terms` are pairs of a corner and an element. Without `terms`, a
 // corner contributes to the element of its vertex.
 function elementsOfCorners({ element, elements, triangles, backs }, corners, terms) {
   if (!terms) {
@@ -141,8 +143,8 @@ export function normalsOf(part, { polygons: given, terms } = {}) {
   };
 }
 
-// Returns a function that rotates the sums of some elements like an author who edited normals. The author's rotations
-// are relative to the surface, and move with it.
+// Returns a function that rotates the sums of some elements as an author has rotated the normals of a file by hand. The
+// author's rotations are relative to the surface, and move with it.
 function offsetsOf({ elements, sides, first, edges, references, turned, base, targets }) {
   const now = new Float64Array(base.length);
   return (p, weights, normals) => {
@@ -176,8 +178,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
         }
       }
       if (isTurned) {
-        // Applies the smallest rotation from z of the base. If the two directions are opposite, it turns by 180 degrees
-        // about a perpendicular axis.
+        // The smallest rotation from z of the base to z is applied. If the two directions are opposite, it turns by 180
+        // degrees about a perpendicular axis.
         const bx = turned[t], by = turned[t + 1], bz = turned[t + 2], ux = turned[t + 3], uy = turned[t + 4], uz = turned[t + 5];
         const sx = by * zz - bz * zy, sy = bz * zx - bx * zz, sz = bx * zy - by * zx, cosine = bx * zx + by * zy + bz * zz;
         const along = cosine > -1 + 1e-12 ? (sx * ux + sy * uy + sz * uz) / (1 + cosine) : 0;
@@ -196,10 +198,12 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
 }
 
 /**
- * Returns a function that computes the true normals of a part that has `truth`: the normals that its author sees.
+ * Returns a function that computes the true normals of a part that has `truth`. They are the normals that the author of
+ * the file sees.
  * @param part of a report, of a glTF file
- * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void} writes the
- *   true normal of each element into `right`; an element without one gets its vector from `normals`, the result of normalsOf(part)
+ * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void}
+ *   writes the true normal of each element into `right`. An element without a true normal gets its vector from
+ *   `normals`, the result of normalsOf(part)
  */
 export function truthOf(part) {
   const { truth, elements } = part;
@@ -216,13 +220,13 @@ export function truthOf(part) {
   };
 }
 
-/** Copies an array of numbers. Unlike set() of typed arrays, which is five times slower when the types differ, this
- * loop is always fast. */
+/** Copies an array of numbers. This loop is always fast, while set() of typed arrays is five times slower if the types of
+ * the arrays differ. */
 export function copy(from, to) {
   for (let i = 0; i < from.length; ++i) to[i] = from[i];
 }
 
-/** Returns the unit vector of three numbers that begin at index `at`, or zero. */
+/** Returns the unit vector of three numbers that begin at index `at`, or the zero vector if they are all 0. */
 export function unitAt(array, at, result = [0, 0, 0]) {
   const length = Math.hypot(array[at], array[at + 1], array[at + 2]);
   for (let c = 0; c < 3; ++c) result[c] = length > 0 ? array[at + c] / length : 0;

@@ -1,17 +1,18 @@
 // Groups the files that a person drops into inputs, and explains which files the program cannot read.
 
-const MOST = 256 * 1024 * 1024; // bytes; the browser holds several copies of a file in 4 GB
+// The limit in bytes. The browser holds several copies of a file in 4 GB of memory.
+const MOST = 256 * 1024 * 1024;
 
 const OWN = /\.(glb|vrm|npz|md2)$/i, GLTF = /\.gltf$/i;
 
-/** Groups files into inputs: [{name, args, files}]. The files are not read yet. */
+/** Groups files into inputs: [{name, args, files}]. Does not read the files. */
 export function inputsOf(list) {
   const files = [...list].sort((a, b) => a.name.localeCompare(b.name, 'en', { numeric: true }));
   const rest = files.filter(({ name }) => !OWN.test(name) && !GLTF.test(name));
   const inputs = files.filter(({ name }) => OWN.test(name)).map((file) => ({ name: file.name, args: [file.name], files: [file] }));
   const documents = files.filter(({ name }) => GLTF.test(name));
   for (const file of documents) inputs.push({ name: file.name, args: [file.name], files: [file, ...rest] });
-  // All remaining files are one motion: keyframes, or a mesh with a cache.
+  // The remaining files together are one motion: keyframes, or a mesh with a cache.
   if (documents.length === 0 && rest.length > 0) {
     const kept = rest.filter(({ name }) => !/\.(mtl|xml|txt|md)$/i.test(name)), named = kept.length > 0 ? kept : rest;
     const name = named.length > 1 ? `${named[0].name} … ${named.at(-1).name}` : named[0].name;
@@ -29,8 +30,8 @@ const KINDS = [
 
 const EXPORT = 'Export the model from your 3D program as glTF 2.0 (.glb), with its shape keys, and drop that file here.';
 
-/** Returns a sentence for people about a problem that a file's name, size or first bytes show before the program reads
- * the file; undefined if there is none. */
+/** Returns a sentence for people about a problem that the name, the size or the first bytes of a file show before the
+ * program reads the file. Returns undefined if there is no problem. */
 export function faultOf(name, size, bytes) {
   const megabytes = Math.round(size / 1e6).toLocaleString('en');
   if (size > MOST) {

@@ -1,12 +1,13 @@
-// Places in a motion. A place `at` is the index of a sample, or a fraction for a place between two samples.
+// Finds places in a motion. A place `at` is the index of a sample, or a fraction for a place between two samples.
 
-/** Returns the time or weight at a place. */
+/** Returns the time in seconds, or the weight, at a place. */
 export function valueAt({ at: values }, at) {
   const from = Math.min(Math.floor(at), values.length - 1), to = Math.min(from + 1, values.length - 1);
   return values[from] + (at - from) * (values[to] - values[from]);
 }
 
-/** Returns the place of a time or weight. If two samples have this value, the result is the later sample. */
+/** Returns the place at which the time or the weight has a value. If two samples have this value, the result is the later
+ * sample. */
 export function placeOf({ at: values }, value) {
   let low = 0, high = values.length - 1;
   while (low < high) {
@@ -18,7 +19,7 @@ export function placeOf({ at: values }, value) {
   return low + Math.min(Math.max((value - values[low]) / (values[low + 1] - values[low]), 0), 1);
 }
 
-/** Returns the closest sample before or after a place that has another time. */
+/** Returns the nearest sample before a place (step -1) or after it (step 1) that has another time. */
 export function neighbour({ at: values }, at, step) {
   const last = values.length - 1, start = valueAt({ at: values }, at);
   let next = step > 0 ? Math.floor(at) + 1 : Math.ceil(at) - 1;
@@ -26,11 +27,11 @@ export function neighbour({ at: values }, at, step) {
   return Math.min(Math.max(next, 0), last);
 }
 
-// Marks a sample whose keyframes were left out of the report.
+// The segment of a sample whose keyframes were left out of the report.
 const LEFT_OUT = 0xffffffff;
 
-/** Returns the segment and t of a place in a motion of keyframes. If its keyframes were left out, the nearest place
- * with keyframes is used. */
+/** Returns the segment and t of a place in a motion of keyframes. If the keyframes of the place were left out, the
+ * nearest place with keyframes is used. */
 export function segmentAt({ segment, t }, at) {
   const last = segment.length - 1, from = Math.min(Math.floor(at), last), to = Math.min(from + 1, last);
   if (segment[from] !== LEFT_OUT) return [segment[from], t[from] + (segment[from] === segment[to] ? (at - from) * (t[to] - t[from]) : 0)];
@@ -40,16 +41,16 @@ export function segmentAt({ segment, t }, at) {
   }
 }
 
-/** Returns the sample with the largest error of a motion. */
+/** Returns the index of the sample with the largest error in a motion. */
 export const worstSample = ({ worst }) => worst.reduce((best, value, i) => (value > worst[best] || !(worst[best] >= 0) ? i : best), 0);
 
-/** Returns words for a sample: "jawOpen at 0.55", "talk at 1.25 s". */
+/** Returns the motion and the moment of a sample in words: "jawOpen at 0.55", "talk at 1.25 s". */
 export function momentOf(motion, sample) {
   const name = motion.name || (motion.kind === 'target' ? `target ${motion.target}` : motion.kind === 'expression' ? `expression ${motion.expression}` : '');
   return `${name ? `${name} at ` : ''}${+motion.at[sample].toFixed(3)}${motion.seconds ? ' s' : ''}`;
 }
 
-/** Returns a name of the motion that people understand. */
+/** Returns a name of a motion for people. */
 export function nameOf(motion) {
   if (motion.kind === 'target') return motion.name || `target ${motion.target}`;
   if (motion.kind === 'track') return `animation ${motion.name || motion.animation}`;

@@ -1,4 +1,4 @@
-// chronormal as a page: a person drops files, looks at them, bakes them and saves the results. Everything happens
+// Runs the page in which a person drops files, looks at them, bakes them and saves the results. Everything happens
 // inside the browser.
 import { readContainer } from './data.js';
 import { h, segmented } from './dom.js';
@@ -12,7 +12,8 @@ import { makeViewer } from './viewer.js';
 
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
-const inputs = []; // {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings, within}}
+// Each is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings, within}}.
+const inputs = [];
 const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;
 
@@ -29,7 +30,8 @@ const message = h('div', { className: 'message', role: 'alert', hidden: true });
 const busy = h('div', { className: 'busy', role: 'status', hidden: true });
 work.append(message, busy);
 
-/** Shows an error until the next action begins. `details` are the messages of the program. */
+/** Shows an error until the next action begins. `details` are the messages of the program. Without a text, hides the
+ * last error. */
 function say(text, details) {
   message.hidden = !text;
   message.classList.remove('mild');
@@ -44,8 +46,8 @@ function remark(text, details) {
   message.firstChild.append(h('details', {}, h('summary', {}, 'Message of the program'), h('pre', {}, details)));
 }
 
-/** Runs a step of several commands, with a progress bar and a button that stops it. Returns the result of the step, or
- * undefined if it failed. */
+/** Runs a step, which may run several commands, with a progress bar and a button that stops it. Returns the result of
+ * the step, or undefined if it failed. */
 async function during(title, step) {
   if (abort) return undefined;
   abort = new AbortController();
@@ -84,7 +86,7 @@ async function reportOf(call, { args, bytes }) {
   return readContainer(files['report.bin']);
 }
 
-// Reads a file into `bytes`. Returns the reason if this fails.
+// Reads a file into `bytes`. Returns a sentence with the reason on failure, and undefined otherwise.
 async function read(file, bytes) {
   try {
     bytes[file.name] = new Uint8Array(await file.arrayBuffer());
@@ -94,8 +96,8 @@ async function read(file, bytes) {
   }
 }
 
-// Reads the files of an input. Returns the reason if they cannot be used, or undefined. Files beside a .gltf may have
-// any content.
+// Reads the files of an input. Returns a sentence with the reason if they cannot be used, and undefined otherwise.
+// Files to which a .gltf refers may have any content.
 async function load({ args, files }, bytes) {
   for (const file of files) {
     const isInput = args.includes(file.name);
@@ -125,7 +127,7 @@ async function open(input) {
   show(inputs.at(-1), 'came');
 }
 
-// Computes the figures of a face on its path, with twice as many samples as a table has.
+// Computes the figures of a face on its path. They have twice as many samples as a table of the paper.
 async function figureOf(way) {
   const { args, files } = commandOf(way, FIGURE_SCHEMES, 41), { stdout } = await run(args, files, { signal: new AbortController().signal, onProgress() {} });
   return JSON.parse(stdout).figure;

@@ -1,4 +1,4 @@
-// The panels beside the picture: the choices, and the tables of the report.
+// Makes the panels beside the picture: the choices, and the tables of the report.
 import { h, panel, table } from './dom.js';
 import { degreesText } from './colors.js';
 import { momentOf, nameOf, worstSample } from './motions.js';
@@ -15,7 +15,7 @@ const select = (label, options, value, onChoose) => {
 const viewerTitle = (report, name) =>
   name === 'specification' ? 'the glTF specification' : report.audit?.viewers?.find((viewer) => viewer.name === name)?.title ?? name;
 
-/** Returns the label above the picture that says which viewer's normals it shows. */
+/** Returns the label above the picture, which says how the normals in the picture are rendered. */
 export const shownBy = (report, player) => {
   if (report.kind !== 'gltf') return player.scheme === 'linear' ? 'As rendered, with normals interpolated between keyframes' : `As rendered by ${player.scheme}`;
   return player.viewer === 'specification' ? 'As rendered' : `As rendered by ${viewerTitle(report, player.viewer)}`;
@@ -46,14 +46,14 @@ export function choosers(report, player) {
   return { box, fill };
 }
 
-/** Returns the worst places with an error that is not negligible, worst first. */
+/** Returns the worst places of a report whose errors are not negligible, the worst first. */
 export const shownPlaces = ({ worst }) => worst.filter(({ degrees }) => degrees >= 0.0005);
 
 /** Makes the list of the worst places. A click on a place calls onVisit. */
 export function worstPlaces(report, onVisit) {
   const places = shownPlaces(report);
   if (places.length === 0) return null;
-  // Properties that all places share are left out of their labels.
+  // The labels of all places may begin with the same words. Such words are left out.
   const pieces = places.map(({ label }) => label.split(', '));
   const same = pieces[0].findIndex((piece, i) => i === pieces[0].length - 1 || pieces.some((other) => other[i] !== piece));
   const item = ({ part, motion, sample, degrees, label }, i) => {
@@ -101,7 +101,7 @@ export function weightSliders(player) {
 
 const TORN = '99.9 % of all errors are below the value in the column 99.9 %. Across a torn edge the error jumps by more than 10 degrees, which looks like a fold that the surface does not have. The column torn has the average number of torn edges at a moment.';
 
-// Returns the number of torn edges at a moment, on average, or an empty text if it is not known.
+// Returns the average number of torn edges at a moment, or an empty text if the number is not known.
 const tornText = ({ torn_edges: torn }) => (torn?.[0] === undefined ? '' : torn[0] > 0 && torn[0] < 10 ? torn[0].toFixed(1) : count(Math.round(torn[0])));
 
 /** Makes a table of the audit, with a row for each viewer. */
@@ -142,11 +142,11 @@ export function schemeTable(report, player) {
   return panel('Ways to interpolate', true, table('Schemes', ['scheme', 'average ', 'worst '], rows));
 }
 
-/** Makes a panel that lists the parts of the input that the report leaves out. */
+/** Makes a panel that lists the parts of the input that are not in the report. */
 export const notes = ({ thinned }) =>
   thinned?.length ? panel('What was left out here', true, h('ul', {}, thinned.map((sentence) => h('li', {}, sentence)))) : null;
 
-/** Returns a sentence that says how large the errors of the file's normals are. */
+/** Returns a sentence about the size of the errors of the file's normals. */
 export function verdict({ audit }) {
   if (!audit) return '';
   const { worst_degrees: worst, mean_degrees: mean, judged } = audit;

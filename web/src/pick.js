@@ -1,11 +1,11 @@
-// Finds where a ray meets the mesh: for the vertex under the pointer, and for directions from which a vertex is
-// visible.
+// Finds the first triangle that a ray meets. This gives the vertex under the pointer, and directions from which a
+// vertex is visible.
 
 /**
- * Finds the nearest triangle that a ray meets.
- * @returns {{distance: number, vertex: number, triangle: number}} the distance, in lengths of the direction, or Infinity if the ray
- *   meets nothing; the triangle; and its corner nearest to the point of intersection. The last two are -1 if the ray meets nothing.
- *   Positions are (V x 3)
+ * Finds the nearest triangle that a ray meets. Positions are (V x 3).
+ * @returns {{distance: number, vertex: number, triangle: number}} the distance, in lengths of the direction; the
+ *   triangle; and the corner of the triangle that is nearest to the point of intersection. If the ray meets nothing, they
+ *   are Infinity, -1 and -1
  */
 export function meet(positions, triangles, origin, direction) {
   const [ox, oy, oz] = origin, [dx, dy, dz] = direction;

@@ -1,17 +1,18 @@
-// Holds the state of what is shown: the part, the motion and the place in it, or weights set by hand; the viewer, and
-// the scheme.
+// Holds the state of the picture: the part, the motion and the place in the motion, or weights that were set by hand,
+// the viewer, and the scheme.
 import { drive, formulasOf } from '../../js/src/drive.js';
 import { makeSequence } from './sequence.js';
 import { SCHEMES } from './schemes.js';
 import { makeSurface, weightsAt } from './surface.js';
 import { neighbour, placeOf, segmentAt, valueAt, worstSample } from './motions.js';
 
-const TOUR = 3; // seconds that a motion without times plays
+const TOUR = 3; // seconds for which a motion without times plays
 
 /**
  * Makes a player.
  * @param report from readContainer()
- * @param {(what: 'part' | 'motion' | 'step') => void} onChange is told what changed: a change of "part" is followed by "motion", and "motion" by "step"
+ * @param {(what: 'part' | 'motion' | 'step') => void} onChange is called with the kind of a change. A change of "part"
+ *   is followed by "motion", and "motion" by "step"
  */
 export function makePlayer(report, onChange) {
   const surfaces = new Map();

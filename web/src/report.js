@@ -1,4 +1,4 @@
-// The page of a report: reads the data inside the page, and shows them.
+// Starts the page of a report: reads the data inside the page, and shows them.
 import { fromBase64, readContainer, unzipped } from './data.js';
 import { h } from './dom.js';
 import { logo, makeTheme } from './theme.js';

@@ -1,7 +1,7 @@
-// Ways to interpolate the unit normals of elements between two keyframes (docs/theory.md, section 4). Each scheme gets
-// exact unit normals at equidistant t, and writes unit normals. Arrays have three numbers for each element.
+// Interpolates the unit normals of elements between two keyframes (docs/theory.md, section 4). Each scheme gets exact
+// unit normals at equidistant t, and writes unit normals. Arrays have three numbers for each element.
 
-// Turns a rule for one vector, rule(units, at, result), into a scheme that applies the rule to all elements.
+// Returns a scheme that applies a rule for one vector, rule(units, at, result), to all elements.
 const each = (rule) => (units, t, result, exact) => {
   const make = rule(t, exact);
   for (let at = 0; at < result.length; at += 3) {
@@ -11,7 +11,7 @@ const each = (rule) => (units, t, result, exact) => {
   }
 };
 
-// Section 4.3: Lagrange's polynomial through K + 1 unit normals. Its weights depend only on t.
+// Returns the scheme of section 4.3: Lagrange's polynomial through K + 1 unit normals. Its weights depend only on t.
 function lagrange(intervals) {
   const rule = (t) => {
     const weights = Array.from({ length: intervals + 1 }, (_, i) => {
@@ -30,7 +30,8 @@ function lagrange(intervals) {
   return { intervals, evaluate: each(rule) };
 }
 
-// Section 4.4: interpolates along the great circle. Equal ends stay; opposite ends turn about a perpendicular axis.
+// Interpolates along the great circle (section 4.4). Equal ends give the same vector; opposite ends turn about a
+// perpendicular axis.
 function alongArc(a, i, b, j, t, result, at) {
   const d = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2];
   const x = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1], y = a[i + 2] * b[j] - a[i] * b[j + 2], z = a[i] * b[j + 1] - a[i + 1] * b[j];
@@ -45,7 +46,7 @@ function alongArc(a, i, b, j, t, result, at) {
 
 const slerp = { intervals: 1, evaluate: each((t) => (units, at, result) => alongArc(units[0], at, units[1], at, t, result, at)) };
 
-// De Casteljau's algorithm over K exact normals, with arcs of great circles in place of lines.
+// Returns the scheme of de Casteljau's algorithm over K exact normals, with arcs of great circles in place of lines.
 function deCasteljau(points) {
   const work = new Float64Array(3 * points);
   const rule = (t) => (units, at, result) => {
@@ -56,8 +57,8 @@ function deCasteljau(points) {
   return { intervals: points - 1, evaluate: each(rule) };
 }
 
-// Section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. With isTimed, the result at t = 1/2 is the
-// middle normal.
+// Returns the scheme of section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. If isTimed is true, the
+// result at t = 1/2 is the middle normal.
 function circle(isTimed) {
   const rule = (t) => (units, at, result) => {
     const [a, m, b] = units, ax = a[at], ay = a[at + 1], az = a[at + 2];
@@ -83,7 +84,7 @@ function circle(isTimed) {
   return { intervals: 2, evaluate: each(rule) };
 }
 
-// Section 4.2: the polynomial n(t), normalised.
+// The scheme of section 4.2: the polynomial n(t), normalised.
 const polynomial = {
   intervals: 1,
   evaluate: each((t, exact) => (units, at, result) => {

@@ -1,10 +1,10 @@
-// A sequence of keyframes at a moment: the positions of its vertices, the rendered normals of a scheme that
-// interpolates between keyframes, the true normals, and the angles between the two. All arrays are allocated once; a
-// step fills them.
+// Computes a sequence of keyframes at a moment: the positions of its vertices, the rendered normals of a scheme that
+// interpolates between keyframes, the true normals, and the angles between rendered and true normals. All arrays are
+// allocated once, and each step fills them.
 import { NONE, copy, degreesBetween, normalsOf, unitAt } from './geometry.js';
 import { schemeOf } from './schemes.js';
 
-// Returns a complete keyframe from one that stores either all numbers or only the differences from the first keyframe.
+// Returns all numbers of a keyframe, which may store only its differences from the first keyframe.
 function whole(values, first) {
   if (!values.indices) return values;
   const result = first.slice();
@@ -24,7 +24,7 @@ function perpendicular(a) {
   return unitAt(cross(a, axis), 0);
 }
 
-// Returns v, turned by the smallest rotation from one unit vector to another.
+// Returns vector v after the smallest rotation that turns one unit vector into another.
 function turned(from, to, v) {
   const sine = cross(from, to), cosine = dot(from, to), length = Math.hypot(...sine);
   if (cosine < 0 && length < 1e-12) {
@@ -35,8 +35,8 @@ function turned(from, to, v) {
   return sum(sum(scaled(cosine, v), cross(sine, v)), scaled((1 - cosine) * dot(axis, v), axis));
 }
 
-// Returns `direction`, turned by the rotation from the geometry's normal at a keyframe to the author's stored normal,
-// but by at most `allowed` radians.
+// Returns `direction`, turned by the rotation from the normal of the geometry at a keyframe to the author's stored
+// normal, but by at most `allowed` radians.
 function offsetBy(geometry, stored, allowed, direction) {
   if (isZero(geometry) || isZero(stored) || allowed === undefined) return direction;
   if (anglesBetween(geometry, stored) <= allowed) return turned(geometry, stored, direction);
@@ -48,7 +48,8 @@ function offsetBy(geometry, stored, allowed, direction) {
 /**
  * Makes the surface of a sequence.
  * @param part of a report, of kind "sequence" or "targets"
- * @returns the arrays that are drawn, like makeSurface() of surface.js, and pose(segment, t, scheme, least)
+ * @returns the arrays that are drawn, as makeSurface() of surface.js returns them, and the function pose(segment, t,
+ *   scheme, least), which fills them
  */
 export function makeSequence(part) {
   const { vertices: V, elements: E, element, keyframes } = part;
@@ -71,8 +72,8 @@ export function makeSequence(part) {
     computeNormals(p, n, sizes);
   }
 
-  // The data of the current segment, and of the current scheme in it. They are computed anew when another segment or
-  // scheme is shown.
+  // The data of the current segment, and of the current scheme in this segment. They are computed again when another
+  // segment or scheme is shown.
   let segment = {}, fit = {};
   function enter(number) {
     if (segment.number === number) return;
@@ -80,8 +81,8 @@ export function makeSequence(part) {
     segment = { number, from: positionsOf(a), to: positionsOf(b), storedFrom: storedOf(a), storedTo: storedOf(b) };
     fit = {};
   }
-  // Returns the unit normals of all elements at t = 0, 1/K, ..., 1. An element without a normal at t = 0 or 1 gets its
-  // normal just inside the segment.
+  // Returns the unit normals of all elements at t = 0, 1/K, ..., 1, where K is the number of intervals. An element
+  // without a normal at t = 0 or 1 gets its normal just inside the segment.
   function unitsAt(intervals) {
     const units = [];
     for (let i = 0; i <= intervals; ++i) {
@@ -100,8 +101,8 @@ export function makeSequence(part) {
     return units;
   }
 
-  // The largest angle at each vertex between the author's normal and the geometry's normal, in radians: the angle in
-  // the first keyframe. It is empty unless each keyframe has its own normals.
+  // The largest angle, in radians, that is allowed at each vertex between the author's normal and the normal of the
+  // geometry. It is the angle in the first keyframe. The array is empty unless each keyframe has its own normals.
   const allowed = new Float64Array(keyframes.normals ? V : 0);
   if (keyframes.normals) {
     enter(0);
@@ -148,8 +149,8 @@ export function makeSequence(part) {
     }
   }
 
-  /** Computes all arrays at a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals
-   * of both keyframes. */
+  /** Fills all arrays for a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals of
+   * both keyframes. */
   surface.pose = (number, t, scheme, least) => {
     enter(number);
     const { intervals, evaluate } = schemeOf(scheme);

@@ -1,5 +1,5 @@
-// Shaders that draw a mesh with its rendered or its true normals, lit or as colours, or with the angle between the two
-// as colours.
+// Defines shaders that draw a mesh with its rendered or its true normals. They show the mesh lit, the normals as
+// colours, or the angle between rendered and true normals as colours.
 
 export const LIT = 0, NORMALS = 1, ERROR = 2, PLAIN = 3;
 
@@ -20,8 +20,8 @@ void main() {
   gl_Position = projectionMatrix * position4;
 }`;
 
-// A studio of three lights that are fixed to the camera: a key light with a sharp highlight, which reveals every bump
-// of the normals, a fill light and a rim light.
+// The light comes from three lights that are fixed to the camera: a key light with a sharp highlight, which reveals
+// every bump of the normals, a fill light and a rim light.
 export const fragmentShader = `
 uniform int mode;
 uniform float scale;

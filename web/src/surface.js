@@ -1,12 +1,14 @@
-// A mesh with morph targets at given weights: the positions of its vertices, the normals that a viewer renders, the
-// true normals, and the angles between the two (docs/viewers.md). All arrays are allocated once; a step fills them.
+// Computes a mesh with morph targets at given weights: the positions of its vertices, the normals that a viewer
+// renders, the true normals, and the angles between rendered and true normals (docs/viewers.md). All arrays are
+// allocated once, and each step fills them.
 import { NONE, copy, degreesBetween, normalsOf, truthOf } from './geometry.js';
 
-// The largest float32. A larger component cannot be lit.
+// The largest float32. A normal with a larger component cannot be lit.
 const MOST = 3.4028234663852886e38;
 
-// Returns the deltas of all targets in order of the vertices: the deltas of vertex v are from offsets[v] to offsets[v +
-// 1], each with its target. Summing a vertex in registers takes a quarter of the time of adding target after target.
+// Returns the deltas of all targets in the order of the vertices. The deltas of vertex v are from offsets[v] to
+// offsets[v + 1], each with its target. Summing a vertex in registers takes a quarter of the time of adding target
+// after target.
 function byVertex(targets, member, vertices) {
   const isMoved = (values, n) => values[n] !== 0 || values[n + 1] !== 0 || values[n + 2] !== 0;
   const offsets = new Uint32Array(vertices + 1);
@@ -27,7 +29,7 @@ function byVertex(targets, member, vertices) {
   return { offsets, of, deltas };
 }
 
-// Adds the weighted deltas to the base, or to zero, in double.
+// Adds the weighted deltas to the base, or to zero if there is no base, in double.
 function addUp(base, { offsets, of, deltas }, weights, sums) {
   for (let v = 0, at = 0; v + 1 < offsets.length; ++v, at += 3) {
     let x = 0, y = 0, z = 0;
@@ -48,16 +50,16 @@ function addUp(base, { offsets, of, deltas }, weights, sums) {
   }
 }
 
-// Returns the nearest 16-bit float; halves are rounded away from zero.
+// Returns the nearest 16-bit float. Values in the middle between two such floats are rounded away from zero.
 function half(value) {
   if (value === 0 || !Number.isFinite(value)) return value;
   const step = 2 ** Math.max(Math.floor(Math.log2(Math.abs(value))) - 10, -24);
   return Math.sign(value) * Math.floor(Math.abs(value) / step + 0.5) * step;
 }
 
-// Returns the smallest rotation from the true normal of the base to the stored normal, for each vertex: the axis, with
-// the sine as its length, and the cosine. If the two normals are on opposite sides, the axis belongs to the opposite
-// normal, and the cosine is negative.
+// Returns, for each vertex, the smallest rotation from the true normal of the base to the stored normal. A rotation is
+// its axis, whose length is the sine of the angle, and the cosine. If the two normals are on opposite sides, the axis
+// belongs to the opposite normal, and the cosine is negative.
 function turnsOf({ element, normals }, base) {
   const turns = new Float64Array(4 * element.length);
   for (let v = 0; v < element.length; ++v) {
@@ -74,8 +76,8 @@ function turnsOf({ element, normals }, base) {
   return turns;
 }
 
-// Returns for each vertex whether its normal is judged: some target must move the surface around the vertex or change
-// its normal.
+// Returns a flag for each vertex that tells if its normal is judged. A normal is judged if some target moves the
+// surface around the vertex or changes the normal.
 function judgedVertices({ vertices, triangles, element, elements, truth }, moved, shown) {
   const has = ({ offsets }, v) => offsets[v] < offsets[v + 1];
   const elementMoves = new Uint8Array(elements), judged = new Uint8Array(vertices);
@@ -97,7 +99,8 @@ function judgedVertices({ vertices, triangles, element, elements, truth }, moved
   return judged;
 }
 
-/** Writes the weight of each target at a place of a motion. `at` counts samples; between two samples weights are linear. */
+/** Writes the weight of each target at a place of a motion. `at` is the index of a sample; between two samples, weights
+ * are linear. */
 export function weightsAt(motion, viewer, at, result) {
   const track = motion.weights.find(({ viewers }) => viewers.includes(viewer)) ?? motion.weights[0];
   const count = track.targets.length, from = Math.min(Math.floor(at), motion.at.length - 1), to = Math.min(from + 1, motion.at.length - 1);
@@ -113,9 +116,10 @@ export function weightsAt(motion, viewer, at, result) {
 /**
  * Makes the surface of a part.
  * @param part of a report, of kind "gltf"
- * @returns the arrays that are drawn: positions, rendered (`shown`) and true (`right`) normals (V x 3, float32), and degrees (V; -1 for
- *   vertices that are not judged); and pose(weights, viewer, least), which fills them. The weights are those that this viewer plays,
- *   and the true normals are computed from the same weights.
+ * @returns the arrays that are drawn, and the function pose(weights, viewer, least), which fills them. The arrays are
+ *   positions, rendered normals (`shown`) and true normals (`right`), all (V x 3, float32), and degrees (V), which are
+ *   -1 for vertices that are not judged. The weights are those that this viewer plays, and the true normals are computed
+ *   from the same weights
  */
 export function makeSurface(part) {
   const { vertices: V, elements: E, element } = part;
@@ -124,7 +128,7 @@ export function makeSurface(part) {
   const judged = judgedVertices(part, moved, shownBy);
   const computeNormals = normalsOf(part), computeTruth = part.truth ? truthOf(part) : undefined;
   const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
-  // The sums over triangles decide whether an element has a normal; the truth gives the normal's direction.
+  // The sums over triangles show if an element has a normal. Its direction comes from `truth`.
   const n = new Float64Array(3 * E + 3), r = computeTruth ? new Float64Array(3 * E + 3) : n, sizes = new Float64Array(E + 1);
   p.set(part.positions);
   computeNormals(p, n, sizes);
@@ -174,7 +178,7 @@ export function makeSurface(part) {
       right[at + 2] = rz;
       const limit = least && e < least.length ? least[e] : 0;
       if (!judged[v]) degrees[v] = 0;
-      // If weights are NaN or infinite, the sizes are too, and the rendered normal cannot be lit.
+      // If weights are NaN or infinite, the sizes are NaN or infinite too, and the rendered normal cannot be lit.
       else if (unlit && !(sizes[e] <= limit)) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
       else degrees[v] = degreesBetween(Math.fround(sx), Math.fround(sy), Math.fround(sz), rx, ry, rz);

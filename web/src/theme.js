@@ -1,7 +1,7 @@
-// The theme, dark or light. It follows the system until a person presses the button.
+// Chooses the theme, dark or light. The theme follows the system until a person presses the button.
 import { h } from './dom.js';
 
-/** Makes the button of the theme. @param {() => void} onChange is called after the colours have changed */
+/** Makes the button that changes the theme. @param {() => void} onChange is called after the colours have changed */
 export function makeTheme(onChange) {
   const system = matchMedia('(prefers-color-scheme: dark)');
   let chosen;

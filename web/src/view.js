@@ -1,4 +1,5 @@
-// The picture: the rendered and the true mesh with one camera, side by side or on the two sides of a wipe.
+// Draws the picture: the rendered and the true mesh with one camera, side by side or on the two sides of a movable
+// border (a wipe).
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, LineBasicMaterial, LineLoop, Mesh, PerspectiveCamera, Scene, ShaderMaterial, Sphere, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { VIRIDIS, degreesText } from './colors.js';
@@ -21,7 +22,8 @@ const element = (parent, name) => {
 /**
  * Makes the picture.
  * @param {HTMLElement} stage gets a canvas, and the labels above it
- * @param {(found: {vertex: number, triangle: number, x: number, y: number} | null) => void} onPoint is called with the vertex under the pointer
+ * @param {(found: {vertex: number, triangle: number, x: number, y: number} | null) => void} onPoint is called with the
+ *   vertex under the pointer
  * @param {(triangle: number) => void} onPick is called with the triangle that was clicked
  */
 export function makeView(stage, onPoint, onPick) {
@@ -40,7 +42,7 @@ export function makeView(stage, onPoint, onPick) {
   };
   const material = new ShaderMaterial({ uniforms, vertexShader, fragmentShader, side: DoubleSide });
   const plain = new ShaderMaterial({ uniforms: { ...uniforms, mode: { value: PLAIN } }, vertexShader, fragmentShader, side: DoubleSide });
-  // Outlines the face that a person has picked. The outline is visible through the parts of the mesh before it.
+  // The outline marks the face that a person has picked. It is visible through the parts of the mesh in front of it.
   const outline = new LineLoop(new BufferGeometry(), new LineBasicMaterial({ color: 0xff8a00, depthTest: false }));
   let outlined = [];
   Object.assign(outline, { frustumCulled: false, renderOrder: 1, visible: false });
@@ -122,8 +124,8 @@ export function makeView(stage, onPoint, onPick) {
     requestAnimationFrame(draw);
   }
 
-  // Returns the box around the mesh. The comparisons skip NaN: a file's weights may be NaN, and then positions are NaN
-  // as well.
+  // Returns the box around the mesh. The weights in a file may be NaN, and positions are then NaN as well. The
+  // comparisons skip such positions.
   function bounds() {
     const { positions } = surface, least = [Infinity, Infinity, Infinity], most = [-Infinity, -Infinity, -Infinity];
     for (const triangles of [part.triangles, part.coarse ?? []]) {
@@ -140,7 +142,7 @@ export function makeView(stage, onPoint, onPick) {
     return { centre, low, high, size: high.distanceTo(centre) || 1 };
   }
 
-  // Moves the camera in a short flight, or at once for people who have asked the system for reduced motion.
+  // Moves the camera in a short flight, or at once for people who have set the system to reduced motion.
   function fly(position, target, onEnd) {
     const from = camera.position.clone(), to = controls.target.clone(), begin = performance.now(), mine = ++flight;
     const step = (now) => {
@@ -156,7 +158,7 @@ export function makeView(stage, onPoint, onPick) {
     step(begin);
   }
 
-  // Returns the distance at which a sphere of this radius fills the smaller side of a pane.
+  // Returns the distance at which a sphere of radius `size` fills the smaller side of a pane.
   function distanceOf(size) {
     const [{ width, height }] = panes(), aspect = width / Math.max(height, 1);
     const half = Math.tan((camera.fov * Math.PI) / 360) * Math.min(1, aspect);
@@ -172,7 +174,7 @@ export function makeView(stage, onPoint, onPick) {
       ([name, member, size]) => [name, new BufferAttribute(surface[member], size).setUsage(DynamicDrawUsage)]);
     const geometryOf = (triangles) => {
       const geometry = new BufferGeometry();
-      geometry.boundingSphere = new Sphere(); // an empty sphere, so that nothing is culled or sorted
+      geometry.boundingSphere = new Sphere(); // the radius is not positive, so nothing is culled or sorted
       for (const [name, attribute] of attributes) geometry.setAttribute(name, attribute);
       return geometry.setIndex(new BufferAttribute(triangles, 1));
     };
@@ -193,7 +195,7 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** Outlines the face with these corners, or no face if there are none. */
+  /** Outlines the face with these corners, or no face if the list is empty. */
   view.outline = (corners) => {
     outlined = corners;
     outline.geometry.dispose();
@@ -219,8 +221,8 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  /** Looks at a point, given as shares of the box of the mesh, from a direction. `near` is a share of the distance at
-   * which the whole mesh is seen. */
+  /** Looks at a point from a direction. `shares` are the coordinates of the point as fractions of the box of the mesh.
+   * `near` is a fraction of the distance at which the whole mesh is seen. */
   view.look = (shares, direction, near) => {
     const { low, high } = bounds();
     ++flight;
@@ -230,9 +232,9 @@ export function makeView(stage, onPoint, onPick) {
     request();
   };
 
-  // Returns the vector from a vertex to a camera that sees it. Tries several directions around the normal, and takes
-  // the first in which nothing is in the way for `distance`. If there is none, takes the direction with the most room,
-  // and shortens the vector to that room.
+  // Returns the vector from a vertex to a camera that sees the vertex. Tries several directions around the normal, and
+  // takes the first one in which nothing is in the way for `distance`. If there is none, takes the direction with the
+  // longest free way, and shortens the vector to this way.
   function freeWay(target, normal, towards, distance) {
     const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
     up.cross(side);
@@ -248,8 +250,8 @@ export function makeView(stage, onPoint, onPick) {
     return best.direction.clone().setLength(Math.max(Math.min(distance, 0.9 * best.free), 0.03 * radius));
   }
 
-  /** Moves the camera near a vertex, to a direction from which it is visible, if possible the direction of its true
-   * normal. */
+  /** Moves the camera near a vertex, to a place from which the vertex is visible. If possible, this place lies in the
+   * direction of the true normal. */
   view.visit = (vertex) => {
     marked = vertex;
     const target = new Vector3().fromArray(surface.positions, 3 * vertex);
@@ -303,7 +305,7 @@ export function makeView(stage, onPoint, onPick) {
     pointed = event;
   });
   renderer.domElement.addEventListener('pointerleave', () => onPoint(null));
-  // The end of a drag also causes a click event. Only a click that ends near its start picks a face.
+  // The end of a drag also causes a click event. Only a click that ends near its start therefore picks a face.
   let pressed = [0, 0];
   renderer.domElement.addEventListener('pointerdown', (event) => (pressed = [event.clientX, event.clientY]));
   renderer.domElement.addEventListener('click', (event) => {

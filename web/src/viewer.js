@@ -1,4 +1,4 @@
-// A report on the screen: the picture, the slider and the plot below it, and the panels beside it.
+// Shows a report: the picture, the slider and the plot below the picture, and the panels beside it.
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
 import { makeFacePanel } from './face_panel.js';
@@ -15,7 +15,7 @@ const KEYS = [
 
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 
-/** Returns the label of a vertex, as it is called in the file. */
+/** Returns a label for a vertex with the numbers that it has in the file. */
 function labelOf(part, vertex) {
   const found = part.primitives.findIndex(({ first, count }) => vertex >= first && vertex < first + count);
   const primitive = part.primitives[found], number = part.labels ? part.labels[vertex] : vertex - (primitive?.first ?? 0);
@@ -26,7 +26,7 @@ function labelOf(part, vertex) {
 
 /**
  * Fills an element with a report.
- * @param {HTMLElement} root is filled
+ * @param {HTMLElement} root the element
  * @param report from readContainer()
  * @param compute asks the program for the figures of a face (face_panel.js); undefined without a program
  * @returns {{player, view, visit, key, restyle}} the parts that tests and the pages around this one use
@@ -90,7 +90,8 @@ export function makeViewer(root, report, compute) {
     view.setLayout(layout);
     layouts.choose(layout);
   }
-  // Ends the colour scale at the 99th percentile of the errors, or else at the worst error.
+  // Sets the end of the colour scale: the choice of the user, or else the 99th percentile of the errors, or else the
+  // worst error.
   function setScale() {
     const { motion } = player, subject = motion && report.audit?.subjects?.[motion.subject ?? -1];
     const typical = subject?.percentile_99_degrees ?? (motion ? motion.worst[worstSample(motion)] : 1);
@@ -166,7 +167,7 @@ export function makeViewer(root, report, compute) {
     1: () => setMode('lit'), 2: () => setMode('normals'), 3: () => setMode('error'), w: () => setLayout(view.layout === 'side' ? 'wipe' : 'side'),
     n: next, p: previous, f: () => view.frame(), '?': () => help.showModal(),
   };
-  /** Handles a key. Returns true if the key has a meaning. */
+  /** Handles a key. Returns true if the key has a function here. */
   function key({ key: name, shiftKey, target, ctrlKey, metaKey, altKey }) {
     const act = keys[name.length === 1 ? name.toLowerCase() : name];
     const isOwn = target.closest('select, dialog, input:not(.time), summary') || (name === ' ' && target.closest('button'));
