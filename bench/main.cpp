@@ -1,4 +1,4 @@
-// chronormal_bench (./run bench) measures the speed of every path, and compares it with the speed of this machine's
+// Measures the speed of every path (chronormal_bench, ./run bench), and compares it with the speed of this machine's
 // memory and with libraries that people use today. docs/benchmarks.md is made from its --json.
 
 #include <fmt/core.h>
@@ -46,7 +46,7 @@ std::vector<Size> parse_sizes(const std::string& list) {
   return sizes;
 }
 
-// Fails early if the file cannot be written; otherwise ten minutes of measurements would be lost.
+// Fails early if the file cannot be written, so that ten minutes of measurements are not lost.
 void check_writable(const std::string& json) {
   if (json.empty() || json == "-") return;
   if (!std::ofstream(json, std::ios::binary | std::ios::app))

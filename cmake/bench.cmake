@@ -1,4 +1,4 @@
-# The benchmarks (./run bench). Libraries that are not installed are left out, with a message.
+# Builds the benchmarks (./run bench). Libraries that are not installed are left out, with a message.
 find_package(benchmark QUIET)
 if(NOT benchmark_FOUND)
   message(STATUS "Google Benchmark was not found (Debian: libbenchmark-dev): the benchmarks are not built")

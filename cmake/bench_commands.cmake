@@ -1,5 +1,5 @@
-# The benchmark of commands (./run bench --commands), which is built only on request. Libraries that are not installed
-# are left out of the comparison.
+# Builds the benchmark of commands (./run bench --commands), but only on request. Libraries that are not installed are
+# left out of the comparison.
 add_executable(chronormal_bench_commands EXCLUDE_FROM_ALL bench/commands/main.cpp)
 target_include_directories(chronormal_bench_commands PRIVATE src)
 target_link_libraries(chronormal_bench_commands PRIVATE chronormal_io chronormal_product_flags CLI11::CLI11 fmt::fmt

@@ -7,7 +7,8 @@ target_include_directories(bits PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_D
 target_include_directories(bits SYSTEM PRIVATE ${gtest} ${gtest}/include)
 target_link_libraries(bits PRIVATE chronormal chronormal_flags)
 if(EMSCRIPTEN)
-  # Makes one file: this version of Emscripten would fetch a second one, which fails in Node.js since it has fetch().
+  # The output is a single file. This version of Emscripten would load a second file with fetch(), which Node.js has but
+  # which fails there for files.
   target_link_options(bits PRIVATE -sSINGLE_FILE=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=4MB -sEXIT_RUNTIME=1)
 else()
   target_link_options(bits PRIVATE -static)

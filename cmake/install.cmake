@@ -7,12 +7,13 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/chronormal)
 set(config_folder ${PROJECT_BINARY_DIR}/package)
 set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)  # relative, so a package may be moved
+# relative, so that an installed package may be moved
+file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)
 
-# chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the description of a library for pkg-config.
+# chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the file that describes a library to pkg-config.
 function(chronormal_install_pkg_config target requires libraries)
-  # A program that links static libraries must also link the libraries that they need, so these are in Requires, not in
-  # Requires.private.
+  # A program that links static libraries must also link the libraries that these need. They are therefore in Requires
+  # and not in Requires.private.
   file(CONFIGURE OUTPUT ${config_folder}/${target}.pc CONTENT
 "prefix=\${pcfiledir}/@prefix_from_pkg_config@
 libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@
@@ -28,7 +29,8 @@ Libs: -L\${libdir} -l@target@@libraries@
   install(FILES ${config_folder}/${target}.pc DESTINATION ${pkg_config_folder})
 endfunction()
 
-# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS): installs a library with its description.
+# chronormal_install_library(TARGET PKG_CONFIG_REQUIRES PKG_CONFIG_LIBS): installs a library and its description for
+# pkg-config.
 function(chronormal_install_library target requires libraries)
   install(TARGETS ${target} EXPORT ${target}Targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT ${target}Targets NAMESPACE chronormal:: DESTINATION ${package_folder})
@@ -70,8 +72,8 @@ if(CHRONORMAL_PROGRAM)
   install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-  # Installs the page of reports, if ./run report has built it. It is in a folder beside all builds, where their
-  # programs look for it.
+  # Installs the page of reports, if ./run report has built the page. It lies in a folder beside all builds, where the
+  # programs in these builds look for it.
   install(FILES ${PROJECT_BINARY_DIR}/../share/chronormal/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/chronormal
           OPTIONAL)
 endif()

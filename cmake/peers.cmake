@@ -1,7 +1,7 @@
-# The other libraries that benchmarks compare with. ./run bench installs and uses them.
+# Finds the other libraries with which benchmarks are compared. ./run bench installs and uses them.
 find_package(OpenMesh QUIET)
 find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
-# Silences CGAL, which complains about build types that are not Release.
+# CGAL complains about build types that are not Release. This setting silences it.
 set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE TRUE)
 find_package(CGAL QUIET)
 if(NOT TARGET OpenMeshCore OR NOT VTK_FOUND OR NOT CGAL_FOUND)
@@ -13,7 +13,7 @@ endif()
 file(GLOB peer_sources CONFIGURE_DEPENDS bench/peers/*.cpp)
 add_library(chronormal_peers STATIC ${peer_sources})
 target_include_directories(chronormal_peers PUBLIC ${PROJECT_SOURCE_DIR}/bench)
-# Turns off assertions in Release, as in the product: otherwise OpenMesh would check every handle.
+# In Release, assertions are off as in the product. Otherwise OpenMesh would check every handle.
 target_link_libraries(chronormal_peers PUBLIC chronormal PRIVATE chronormal_product_flags OpenMeshCore VTK::CommonCore
                                                                  VTK::CommonDataModel VTK::FiltersCore VTK::FiltersModeling
                                                                  CGAL::CGAL)

@@ -1,5 +1,5 @@
-# The product: two libraries and the program. chronormal_add_product() describes the product once. It is built once for
-# users and, if tests are built, once more with sanitizers for the tests.
+# Adds the targets of the product: libraries and the program. chronormal_add_product() describes them. They are built
+# once for users and, if tests are built, once more with sanitizers for the tests.
 #
 #   chronormal       core, simd, motion, normals, schemes, analysis
 #   chronormal_io    io and workflow                                      (CHRONORMAL_IO)
@@ -45,14 +45,14 @@ list(FILTER kernel_sources INCLUDE REGEX "/kernels/")
 file(GLOB_RECURSE io_sources CONFIGURE_DEPENDS src/io/*.cpp src/workflow/*.cpp)
 file(GLOB_RECURSE cli_sources CONFIGURE_DEPENDS cli/*.cpp)
 if(CHRONORMAL_MPI)
-  set(MPI_CXX_SKIP_MPICXX ON)  # only the bindings for C are used
+  set(MPI_CXX_SKIP_MPICXX ON)  # only the interface of MPI for C is used
   find_package(MPI REQUIRED COMPONENTS CXX)
   list(FILTER cli_sources EXCLUDE REGEX "/ranks/alone\\.cpp$")
 else()
   list(FILTER cli_sources EXCLUDE REGEX "/ranks/mpi\\.cpp$")
 endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
-  # GCC 12 for 64-bit ARM ends with an internal error in vect_transform_reduction.
+  # Without these options, GCC 12 for 64-bit ARM stops with an internal error in vect_transform_reduction.
   set_source_files_properties(src/workflow/bake/sequence/fewest_keys.cpp
                               PROPERTIES COMPILE_OPTIONS -fno-tree-vectorize SKIP_UNITY_BUILD_INCLUSION ON)
 endif()
@@ -99,8 +99,7 @@ function(chronormal_compile_together target)
     endforeach()
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
-  # In files that are compiled as one, GCC takes private types of one .cpp file for types of a header, and warns about
-  # them.
+  # If files are compiled as one, GCC takes private types of one .cpp file for types of a header, and warns about them.
   target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endfunction()
 
@@ -108,12 +107,13 @@ endfunction()
 # names.
 set(position_independent ON)
 if(EMSCRIPTEN)
-  set(position_independent OFF)  # a wasm module is linked whole, and is smaller without position-independent code
+  # a wasm module is never loaded as a library, and is smaller without position-independent code
+  set(position_independent OFF)
 endif()
 set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
 
-# chronormal_add_product(SUFFIX FLAGS): adds the targets with this suffix in their names, compiled with the options of
-# the interface library FLAGS.
+# chronormal_add_product(SUFFIX FLAGS): adds the targets of the product. Their names end with this suffix, and they are
+# compiled with the options of the interface library FLAGS.
 function(chronormal_add_product suffix flags)
   add_library(chronormal${suffix} STATIC ${library_sources})
   target_include_directories(chronormal${suffix} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
@@ -130,7 +130,7 @@ function(chronormal_add_product suffix flags)
       chronormal${suffix}
       PRIVATE CHRONORMAL_HIGHWAY "HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_AVX3_DL|HWY_SVE|HWY_SVE2|HWY_SVE_256|HWY_SVE2_128|HWY_RVV)")
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
-      # Highway enables these instructions by a pragma, which GCC 12 ignores in constructors that the compiler
+      # Highway enables these instructions by a pragma, but GCC 12 ignores the pragma in constructors that the compiler
       # generates.
       target_compile_options(chronormal${suffix} PRIVATE -march=armv8-a+crypto)
     endif()
@@ -150,8 +150,8 @@ function(chronormal_add_product suffix flags)
   add_library(chronormal_io${suffix} STATIC ${io_sources})
   set_target_properties(chronormal_io${suffix} PROPERTIES ${linkable})
   chronormal_compile_together(chronormal_io${suffix} ${io_sources})
-  # Most files include these headers, so they are parsed once. Each file must still include the headers that it uses;
-  # ./test --full clang checks this.
+  # Most files include these headers, so the headers are parsed once for all of them. Each file must still include the
+  # headers that it uses; ./test --full clang checks this.
   target_precompile_headers(chronormal_io${suffix} PRIVATE <algorithm> <functional> <map> <memory> <optional> <string> <string_view>
                                                            <vector> <nlohmann/json.hpp>)
   target_include_directories(chronormal_io${suffix} PRIVATE src)
@@ -182,7 +182,7 @@ function(chronormal_add_product suffix flags)
     # The main thread gets as much stack as on Linux.
     target_link_options(chronormal_cli${suffix} PRIVATE -static -Wl,--stack,8388608)
   elseif(CHRONORMAL_STATIC)
-    # The system may load a program that is linked with -static-pie at any address.
+    # The program is linked with -static-pie, so that the system may load it at any address.
     target_link_options(chronormal_cli${suffix} PRIVATE -static-pie)
   endif()
   if(CHRONORMAL_MPI)
@@ -191,7 +191,7 @@ function(chronormal_add_product suffix flags)
 endfunction()
 
 chronormal_add_product("" chronormal_product_flags)
-# The targets have the same names in this build tree as in an installed package.
+# The names of the targets are the same in this build tree and in an installed package.
 add_library(chronormal::chronormal ALIAS chronormal)
 if(CHRONORMAL_IO)
   add_library(chronormal::chronormal_io ALIAS chronormal_io)
@@ -215,11 +215,12 @@ endif()
 
 if(CHRONORMAL_FUZZ)
   # Fuzzing exercises the readers, which call no kernels. Kernels take long to compile with sanitizers, so they are
-  # compiled without.
+  # compiled without sanitizers.
   set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 elseif(CHRONORMAL_SANITIZED)
-  # The address and undefined behaviour sanitizers, at an optimisation level that compiles fast. Checks that double the
-  # compile time are left out: a null pointer crashes anyway, and clang's build (./test --full fuzz) has all checks.
+  # The targets with sanitizers for addresses and undefined behaviour use an optimisation level that compiles fast.
+  # Checks that double the compile time are left out: a null pointer crashes anyway, and clang's build (./test --full
+  # fuzz) has all checks.
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all)
   add_library(chronormal_sanitized_flags INTERFACE)
   target_link_libraries(chronormal_sanitized_flags INTERFACE chronormal_flags)
@@ -229,6 +230,6 @@ elseif(CHRONORMAL_SANITIZED)
   # 1.5 million pointers at each start, and the tests start thousands of programs.
   target_link_options(chronormal_sanitized_flags INTERFACE ${sanitizers} -no-pie)
   chronormal_add_product(_sanitized chronormal_sanitized_flags)
-  # Static libraries do not pass on link options by themselves.
+  # Static libraries do not pass on link options by themselves, so the options are repeated here.
   target_link_options(chronormal_sanitized INTERFACE ${sanitizers})
 endif()

@@ -1,4 +1,4 @@
-# The extension module `_chronormal` of python/, built for the Python that setup.py names, or else for Debian's.
+# Builds the extension module `_chronormal` of python/, for the Python that setup.py names, or else for Debian's Python.
 if(NOT CHRONORMAL_IO)
   message(FATAL_ERROR "CHRONORMAL_PYTHON needs CHRONORMAL_IO")
 endif()
@@ -18,12 +18,13 @@ endif()
 
 file(GLOB python_sources CONFIGURE_DEPENDS python/src/*.cpp)
 pybind11_add_module(_chronormal NO_EXTRAS ${python_sources})
-target_include_directories(_chronormal PRIVATE python/src src)  # src has the JSON of the program
+target_include_directories(_chronormal PRIVATE python/src src)  # src has the code that writes reports as JSON
 target_compile_definitions(_chronormal PRIVATE CHRONORMAL_VERSION="${PROJECT_VERSION}")
 target_link_libraries(_chronormal PRIVATE chronormal_io chronormal_product_flags)
 target_link_options(_chronormal PRIVATE -Wl,--exclude-libs,ALL)
 
-# Makes a package that can be imported from the build tree: PYTHONPATH=build/.../python.
+# The module and the files of python/chronormal form a package that can be imported from the build tree:
+# PYTHONPATH=build/.../python.
 set(python_package ${PROJECT_BINARY_DIR}/python/chronormal)
 set_target_properties(_chronormal PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${python_package} CXX_STANDARD 20)
 foreach(file __init__.py _chronormal.pyi py.typed)

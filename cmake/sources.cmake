@@ -1,7 +1,7 @@
-# The libraries that find_package() normally finds, compiled from Debian's sources, which tools/wasm.sh unpacks into
-# build/wasm-sources. Only the parts that the product needs are compiled. Header-only libraries are the system's.
+# Compiles the libraries that find_package() normally finds from Debian's sources, which tools/wasm.sh unpacks into
+# build/wasm-sources. Only the parts that the product needs are compiled. Header-only libraries come from the system.
 #
-# This is for the wasm module, and for programs that run on machines where nothing is installed (CHRONORMAL_STATIC).
+# The wasm module needs this, and so do programs for machines on which nothing is installed (CHRONORMAL_STATIC).
 enable_language(C)  # for zlib
 set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
 if(NOT EXISTS ${sources})
@@ -9,7 +9,7 @@ if(NOT EXISTS ${sources})
 endif()
 set(headers ${PROJECT_BINARY_DIR}/headers)
 file(MAKE_DIRECTORY ${headers})
-# Links only these headers of /usr/include, since others may not fit the target system.
+# Only these headers of /usr/include are used, since others may not fit the target system.
 foreach(header fmt CLI nlohmann fast_float)
   file(CREATE_LINK /usr/include/${header} ${headers}/${header} SYMBOLIC)
 endforeach()

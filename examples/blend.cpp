@@ -9,9 +9,9 @@ namespace {
 
 using namespace chronormal;
 
-constexpr std::uint32_t kSide = 65;  // vertices
+constexpr std::uint32_t kSide = 65;  // number of vertices along a side
 
-// Returns a flat sheet that is 2 wide.
+// Returns a flat sheet whose sides have the length 2.
 BlendSet sheet() {
   BlendSet set;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -27,7 +27,7 @@ BlendSet sheet() {
   return set;
 }
 
-// Returns a target that lifts a part of the sheet smoothly.
+// Returns a target that smoothly lifts the part of the sheet around (x, y).
 BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const Vec3f& push) {
   std::vector<float> deltas;
   for (std::size_t v = 0; v < set.base.size(); v += 3) {
@@ -38,7 +38,8 @@ BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const 
   return BlendTarget::from_dense(deltas, name);
 }
 
-// Returns the largest angle in radians between these normals and the normals of blended positions in float32.
+// Returns the largest angle in radians between `normals` and the normals of positions that were blended and rounded to
+// float32.
 double largest_difference(const BlendSet& set, const NormalGroups& groups, const std::vector<double>& weights,
                           const std::vector<float>& normals) {
   std::vector<double> blended(set.base.size());
@@ -59,7 +60,7 @@ double largest_difference(const BlendSet& set, const NormalGroups& groups, const
 }  // namespace
 
 int main() {
-  // Make three targets like those of a face: two that overlap, and one elsewhere.
+  // Make three targets like those of a face: two that overlap, and one far from both.
   BlendSet set = sheet();
   set.targets = {bump(set, "smile", -0.4F, 0, {0.1F, 0, 0.3F}), bump(set, "puff", -0.2F, 0, {-0.1F, 0.1F, 0.2F}),
                  bump(set, "brow", 0.5F, 0.5F, {0, 0.1F, 0.2F})};
@@ -79,7 +80,8 @@ int main() {
     done = normals.unit_normals(weights, VectorView<float>::packed(xyz.data(), normals.size()));
     return xyz;
   };
-  // Do what engines do: add the normal deltas of all targets, which is right only for one target with the weight 1.
+  // Do what engines do, and add the normal deltas of all targets. The result is right only for one target with the
+  // weight 1.
   BlendEvaluation done;
   const std::vector<float> base = unit_normals({0, 0, 0}, done), smile = unit_normals({1, 0, 0}, done),
                            puff = unit_normals({0, 1, 0}, done), brow = unit_normals({0, 0, 1}, done);

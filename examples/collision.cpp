@@ -1,10 +1,10 @@
-// Collision response with the normal at the contact time: balls thrown at a sheet that waves.
+// Computes collision response with the normal at the contact time: balls are thrown at a sheet that waves.
 //
 // A ball (a point here) moves on a straight line, and so does every vertex of the sheet. Containment::crossings() finds
 // where a ball crosses the surface: the face, the time, and the unit normal of the face at that time. It promises that
-// no contact is missed, which is only possible for closed meshes, so the sheet becomes the top of a cushion. At the
-// contact the velocity relative to the sheet is mirrored, so the normal decides where the ball goes: an error of the
-// normal changes the outgoing direction by up to twice as much.
+// no contact is missed. This promise is only possible for closed meshes, so the sheet becomes the top of a cushion. At
+// the contact, the velocity relative to the sheet is mirrored. The normal thus decides where the ball goes: an error of
+// the normal changes the outgoing direction by up to twice as much.
 
 #include <array>
 #include <cmath>
@@ -23,10 +23,11 @@ using namespace chronormal;
 constexpr int kBalls = 100;
 
 struct Ball {
-  Vec3d position, velocity;  // at t = 0; in units of length, and of length per segment
+  // The position at t = 0 in units of length, and the velocity in units of length per segment.
+  Vec3d position, velocity;
 };
 
-/// A moving vertex: a line from one end of the segment to the other.
+/// The path of a moving vertex: a line from its position at one end of the segment to that at the other end.
 struct Line {
   Vec3d from, to;
 };
@@ -36,10 +37,11 @@ std::array<Line, 3> corners(const Segment& segment, std::size_t face) {
   return {line(v[0]), line(v[1]), line(v[2])};
 }
 
-/// Returns the motion of a closed mesh: the faces of the sheet, and a face from every edge of its border to a vertex
-/// below.
+/// Returns the motion of a closed mesh. It has the faces of the sheet, and a face from every edge of the border of the
+/// sheet to a vertex below.
 Motion cushion(Motion sheet) {
-  // Faces that have the edge from a to b, minus faces that have it from b to a.
+  // For each edge (a, b), the number of faces that have it from a to b, minus the number of faces that have it from b
+  // to a.
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> passed;
   const std::span<const std::uint32_t> corners = sheet.topology.corners();
   for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -57,8 +59,8 @@ Motion cushion(Motion sheet) {
   return sheet;
 }
 
-/// Returns the velocity of the sheet where a ball meets it. The weight of a corner is the area between the ball and the
-/// opposite edge, as a share of the face.
+/// Returns the velocity of the sheet at the point where a ball meets it. The weight of a corner is the area between the
+/// ball and the opposite edge, as a share of the face.
 Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const Vec3d p = ball.position + contact.t * ball.velocity;
@@ -72,11 +74,11 @@ Vec3d surface_velocity(const Segment& segment, const Ball& ball, const Crossing&
   return velocity;
 }
 
-/// Reflects a velocity elastically at a plane with a unit normal.
+/// Reflects a velocity elastically at a plane with the unit normal `normal`.
 Vec3d reflect(const Vec3d& velocity, const Vec3d& normal) { return velocity - (2 * dot(velocity, normal)) * normal; }
 
-/// Computes the same response independently, from positions alone: the contact time by bisection of the volume,
-/// recomputed from the corners at each step, and the normal by the cross product.
+/// Computes the same response independently, from positions alone. The contact time comes from a bisection of the
+/// volume, which is recomputed from the corners at each step, and the normal from the cross product.
 Vec3d independent_response(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const std::array<Line, 3> moving = corners(segment, contact.face);
   const auto normal = [&moving](double t) {
@@ -94,8 +96,8 @@ Vec3d independent_response(const Segment& segment, const Ball& ball, const Cross
   return reflect(ball.velocity - surface_velocity(segment, ball, contact), unit(normal(before)));
 }
 
-/// Returns how far the ball is outside the face that it meets, as a share of the face's area: the areas of the three
-/// triangles between the ball and the edges exceed the area of the face.
+/// Returns how far the ball is outside the face that it meets, as a share of the area of the face. It is the amount by
+/// which the areas of the three triangles between the ball and the edges exceed the area of the face.
 double area_outside(const Segment& segment, const Ball& ball, const Crossing& contact) {
   const Vec3d p = ball.position + contact.t * ball.velocity;
   std::array<Vec3d, 3> to;
@@ -110,7 +112,7 @@ double area_outside(const Segment& segment, const Ball& ball, const Crossing& co
 }  // namespace
 
 int main() {
-  // Makes a sheet with a wave that moves by a fifth of a wavelength within the segment.
+  // Take a sheet with a wave, which moves by a fifth of a wavelength within the segment.
   const Motion motion = cushion(make_builtin_morph("cloth").value());
   const Segment segment = motion.segment(1);
   const Containment containment =
@@ -131,8 +133,8 @@ int main() {
   // A normal that the response could use, and the errors of the directions in which balls leave with this normal.
   struct Choice {
     const char* name;
-    double sum = 0, max = 0;  // degrees
-    int through = 0;          // balls that go on through the sheet
+    double sum = 0, max = 0;  // sum and maximum of the errors, in degrees
+    int through = 0;          // number of balls that go on through the sheet
   };
   std::array<Choice, 5> choices{{{"start"}, {"end"}, {"linear"}, {"slerp"}, {"exact"}}};
 
@@ -140,7 +142,7 @@ int main() {
   std::uint32_t last = kBalls;
   double energy_error = 0, difference = 0, outside = 0;
   for (const Crossing& contact : crossings) {
-    if (contact.point == last) continue;  // the first crossing of each ball is its contact
+    if (contact.point == last) continue;  // only the first crossing of each ball is its contact
     last = contact.point;
     const Ball& ball = balls[contact.point];
     ++hits;

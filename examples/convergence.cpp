@@ -1,12 +1,12 @@
-// Measures how fast the error of each scheme falls as keyframes get closer, and how far the exact normals of straight
-// paths are from the true ones if the motion between keyframes is curved. docs/theory.md shows the output and proves
-// the orders.
+// Measures how fast the error of each scheme falls as keyframes get closer. Also measures how far the exact normals of
+// straight paths are from the true normals if the motion between keyframes is curved. docs/theory.md shows the output
+// and proves the orders.
 //
 // Two smooth motions are sampled at the ends of 1, 2, 4, 8 and 16 segments: the built-in column, in which each layer
-// turns continuously, and a sheet that waves of random direction and speed run through. The first rows compare schemes
-// with the exact normals of straight segments; the last four compare normals of straight segments and of curved paths
-// with the normals of the motion itself. Fails if a measured order differs from the proven one, or if the error of
-// order 2 in 16 segments differs from the prediction of eq. 55.
+// turns continuously, and a sheet through which waves of random direction and speed run. The first rows compare schemes
+// with the exact normals of straight segments. The last four rows compare normals of straight segments and of curved
+// paths with the normals of the motion itself. Fails if a measured order differs from the proven one, or if the error
+// of order 2 in 16 segments differs from the prediction of eq. 55.
 
 #include <array>
 #include <cmath>
@@ -28,16 +28,16 @@ constexpr std::array<std::size_t, 5> kSegments = {1, 2, 4, 8, 16};
 
 constexpr int kSamples = 21;
 
-/// The error in degrees that eq. 55 of docs/theory.md predicts for a scheme of order 2, on average. The prediction
-/// follows from the tangential acceleration of the exact normals: `all` takes the whole acceleration, `along` its part
-/// along the path of the normal, and `across` its part across the path.
+/// The average error in degrees that eq. 55 of docs/theory.md predicts for a scheme of order 2. The prediction follows
+/// from the tangential acceleration of the exact normals: `all` takes the whole acceleration, `along` its part along
+/// the path of the normal, and `across` its part across the path.
 struct Leading {
   double all = 0, along = 0, across = 0;
 };
 
 struct Row {
   const char* name;
-  double order;                        // the order that docs/theory.md proves; 0 if only rounding remains
+  double order;                        // order that docs/theory.md proves; 0 if only rounding errors remain
   double Leading::*leading = nullptr;  // the prediction of the error, if docs/theory.md has one
   double divisor = 1;
 };
@@ -83,7 +83,8 @@ struct SmoothMotion {
 
 SmoothMotion turning_column() {
   const Motion twist = make_builtin_morph("twist").value();
-  std::vector<std::uint32_t> corners;  // only every 19th face, which changes the figures by less than a percent
+  // Only every 19th face is measured, which changes the figures by less than a percent.
+  std::vector<std::uint32_t> corners;
   for (std::size_t f = 0; f < twist.topology.face_count(); f += 19) {
     for (const std::uint32_t corner : twist.topology.face(f)) corners.push_back(corner);
   }
@@ -138,7 +139,7 @@ Leading leading_terms(const Motion& sampled) {
   for (std::size_t s = 0; s < sampled.segments.size(); ++s) {
     face_control_normals(sampled.segment(s), {0, faces}, normals);
     for (const ControlNormals& c : normals) {
-      // Compute n(t) and its derivatives at t = 1/2, and from these eq. 54.
+      // Eq. 54 needs n(t) and its derivatives at t = 1/2.
       const Vec3d n = 0.25 * (c.n0 + 2.0 * c.m + c.n1), d1 = c.n1 - c.n0, d2 = 2.0 * (c.n0 - 2.0 * c.m + c.n1);
       const double size = length(n);
       const Vec3d u = (1 / size) * n;
@@ -156,9 +157,10 @@ Leading leading_terms(const Motion& sampled) {
   return {factor * sum.all, factor * sum.along, factor * sum.across};
 }
 
-/// The errors against the motion itself: of the exact normals of straight segments, and of interpolated end normals.
+/// The errors against the normals of the motion itself: of the exact normals of straight segments, and of interpolated
+/// end normals.
 struct AgainstMotion {
-  double exact = 0, linear = 0;  // mean degrees
+  double exact = 0, linear = 0;  // average errors in degrees
 };
 
 AgainstMotion against_motion(const SmoothMotion& smooth, const Motion& sampled) {
@@ -183,8 +185,8 @@ AgainstMotion against_motion(const SmoothMotion& smooth, const Motion& sampled) 
   return {sum.exact * degrees, sum.linear * degrees};
 }
 
-/// Returns the cubic of segment s on a curved path. Positions are in double, since the rounding of float32 keyframes
-/// would hide order 4.
+/// Returns the cubic of segment s on a curved path. Positions are in double, since rounding keyframes to float32 would
+/// hide the order 4.
 CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::size_t s, PathKind path) {
   std::vector<double> times;
   for (std::size_t k = 0; k <= segments; ++k) times.push_back(static_cast<double>(k) / static_cast<double>(segments));
@@ -215,7 +217,8 @@ CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::siz
   return curve;
 }
 
-/// Compares the exact normals of curved paths with the normals of the motion itself, in mean degrees.
+/// Returns the average angle, in degrees, between the exact normals of curved paths and the normals of the motion
+/// itself.
 double curve_against_motion(const SmoothMotion& smooth, std::size_t segments, PathKind path) {
   double sum = 0;
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// Back-face culling at time t: which faces of a morph face the eye, between the keyframes.
+// Finds which faces of a morph face the eye between the keyframes, for back-face culling at any time t.
 //
 // A face shows its front if n(t).(eye - a(t)) > 0, where a is any of its corners. Two shortcuts are common and wrong:
 // to interpolate the end normals, and to skip a face that is back-facing at both keyframes. Exact normals give the
@@ -19,8 +19,8 @@ using namespace chronormal;
 
 constexpr Vec3d kEye{4, -5, 2};
 constexpr int kSamples = 21;
-// The smallest angle, in radians, between a face and the line of sight at which float32 must decide correctly. The
-// error of float32 is 1e-6 radians.
+// The smallest angle in radians between a face and the line of sight for which float32 must decide correctly. Float32
+// has an error of 1e-6 radians.
 constexpr double kGrazing = 2e-6;
 
 Vec3d corner_at(const Segment& segment, std::size_t face, double t) {
@@ -28,8 +28,8 @@ Vec3d corner_at(const Segment& segment, std::size_t face, double t) {
   return lerp(to_double(segment.from[v]), to_double(segment.to[v]), t);
 }
 
-/// Returns a time at which a face that is hidden at both ends of the segment is seen, in the middle between two
-/// changes, or -1 if there is none.
+/// Returns a time at which a face is seen that is hidden at both ends of the segment, in the middle between two
+/// changes. Returns -1 if there is no such time.
 double time_seen(const Facing& facing) {
   for (std::size_t i = 0; i + 1 < facing.count; ++i)
     if (facing.at[i].after == Side::kFront) return (facing.at[i].upper + facing.at[i + 1].lower) / 2;
@@ -40,9 +40,9 @@ struct Count {
   std::size_t decisions = 0;  // number of (face, segment, sample) triples
   std::size_t linear_wrong = 0;
   std::size_t exact_wrong = 0;
-  std::size_t hidden = 0;       // (face, segment) pairs that are back-facing at both ends
-  std::size_t seen_inside = 0;  // pairs among these that are front-facing for some t between
-  std::size_t refuted = 0;      // answers of find_facing() that the reference contradicts
+  std::size_t hidden = 0;       // number of (face, segment) pairs that are back-facing at both ends
+  std::size_t seen_inside = 0;  // number of these pairs that are front-facing for some t in between
+  std::size_t refuted = 0;      // number of answers of find_facing() that the reference contradicts
 
   void add(const Count& c) {
     decisions += c.decisions, linear_wrong += c.linear_wrong, exact_wrong += c.exact_wrong;
@@ -50,8 +50,8 @@ struct Count {
   }
 };
 
-/// Returns the sine of the angle between a face and the line of sight, positive in front. This reference uses positions
-/// alone.
+/// Returns the sine of the angle between a face and the line of sight, which is positive in front. This reference uses
+/// positions alone.
 double reference_facing(const Segment& segment, std::size_t face, double t) {
   Vec3d n;
   reference_normals(segment, {face, 1}, t, {&n, 1});
@@ -67,7 +67,7 @@ Count count(const Segment& segment) {
   std::vector<float> packed(3 * faces);
   const auto normals = VectorView<float>::packed(packed.data(), faces);
 
-  // Decide every face at every sample, in three ways.
+  // Decide in three ways if each face is seen at each sample.
   std::vector<bool> ever_seen(faces, false);
   for (int i = 0; i < kSamples; ++i) {
     const double t = i / (kSamples - 1.0);
@@ -96,9 +96,9 @@ Count count(const Segment& segment) {
   return result;
 }
 
-/// Lists the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine between
-/// a face and the line of sight at these times by the reference, which is zero up to rounding, since the face is seen
-/// edge on.
+/// Prints the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine
+/// between a face and the line of sight at these times. By the reference, this sine is zero up to rounding, since the
+/// face is seen edge on.
 double print_turns(const Segment& segment, const Vec3d& direction, int wanted) {
   double largest = 0;
   for (std::size_t f = 0; f < segment.topology->face_count() && wanted > 0; ++f) {

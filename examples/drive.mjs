@@ -1,5 +1,6 @@
 // Gives the correction targets of a baked file their weights, for a program that sets weights by itself instead of
-// playing the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries it.
+// playing the animations of the file. `chronormal` is extras.chronormal of the mesh, or of a node that carries the
+// mesh.
 
 // Returns the weight of one correction target, from the weights w of the mesh's own targets.
 function weightOf({ linear, quadratic }, w) {
@@ -9,13 +10,13 @@ function weightOf({ linear, quadratic }, w) {
   return sum;
 }
 
-// Writes the weights of all correction targets into w.
+// Writes the weights of all correction targets into w, which has the weights of all targets.
 export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
-// Returns the mark of a mesh, or else the mark of the nearest object above. A mesh of several primitives is a node with
-// a child for each, and gltfpack puts a mesh into a new node below the one with the extras.
+// Returns the mark of a mesh, or else the mark of the nearest object above it. A mesh of several primitives becomes an
+// object with a child for each primitive, and gltfpack puts a mesh into a new node below the node with the extras.
 function markAbove(mesh, extrasOf) {
   for (let object = mesh; object; object = object.parent) {
     const mark = extrasOf(object)?.chronormal;
@@ -23,7 +24,7 @@ function markAbove(mesh, extrasOf) {
   }
 }
 
-// Drives a scene of three.js, which passes on the extras of meshes and of nodes.
+// Drives a scene of three.js, which gives access to the extras of meshes and of nodes.
 export function driveThree(scene) {
   scene.traverse((object) => {
     if (!object.morphTargetInfluences) return;
@@ -32,7 +33,7 @@ export function driveThree(scene) {
   });
 }
 
-// Drives a scene of Babylon.js, which passes on the extras of nodes.
+// Drives a scene of Babylon.js, which gives access to the extras of nodes.
 export function driveBabylon(scene) {
   for (const mesh of scene.meshes) {
     const chronormal = markAbove(mesh, ({ metadata }) => metadata?.gltf?.extras);

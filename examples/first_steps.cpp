@@ -11,13 +11,13 @@ int failed(const Error& error) {
 }
 
 int main() {
-  // Take the triangles of a mesh, and where its vertices are at two moments. Here a square folds along its diagonal:
-  // vertex 3 rises from the plane. In between, every vertex moves on a straight line.
+  // Take the triangles of a mesh, and the positions of its vertices at two moments. Here a square folds along its
+  // diagonal: vertex 3 rises from the plane. In between, every vertex moves on a straight line.
   const Topology topology = Topology::triangles(4, {0, 1, 2, 1, 3, 2}).value();
   const std::vector<float> start = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, end = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0.5, 0.5, 1};
 
-  // Prepare the normals of all vertices once, exact for every t between. Options choose faces, corners with hard edges,
-  // or another weighting. Faults of the data are reported here, with their place.
+  // Prepare the normals of all vertices once; they are exact for every t in between. Options choose faces, corners with
+  // hard edges, or another weighting. Faults of the data are reported here, with their place.
   Result<MeshNormals> made = MeshNormals::make(topology);
   if (!made) return failed(made.error());
   MeshNormals& mesh = made.value();
@@ -34,8 +34,8 @@ int main() {
                 normals[1], normals[2], normals[3], normals[4], normals[5]);
   }
 
-  // Many keyframes with times in seconds are a Motion, which open_input() also reads from files. find_instant() says in
-  // which segment a time lies, and where in it. Here the normals are those of faces.
+  // A Motion has many keyframes with times in seconds; open_input() also reads it from files. find_instant() finds the
+  // segment in which a time lies, and the t in this segment. Here the normals are those of faces.
   Motion motion;
   motion.topology = topology;
   motion.keyframes = {{start, 0.0, "start"}, {end, 2.0, "end"}, {start, 3.0, "start again"}};

@@ -1,5 +1,5 @@
-// Counts the elements that float32 cannot represent accurately, for several kinds of triangles, and measures the
-// difference of the results from double. docs/theory.md shows the output.
+// Counts the elements that float32 cannot represent accurately, for several kinds of triangles, and compares the
+// normals with those computed in double. docs/theory.md shows the output.
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 
 #include "chronormal/chronormal.h"
 
-// An engine's frame loop: a flag of four keyframes at 24 a second, shown 60 times a second. Eight jobs write the
-// normals of a frame, each for a range of vertices, while another job prepares the next segment. Then a slider changes
-// the shape of the flag.
+// Shows the frame loop of an engine: a flag of four keyframes at 24 a second, shown 60 times a second. Eight jobs write
+// the normals of a frame, each for a range of vertices, while another job prepares the next segment. Then a slider
+// changes the shape of the flag.
 namespace {
 
 using namespace chronormal;
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> triangles() {
   return corners;
 }
 
-// Stands in for the job system of an engine. A job is a thread here.
+// Stands in for the job system of an engine. Each job is a thread here.
 template <class Job>
 void run_jobs(const Job& job) {
   std::vector<std::thread> threads;
@@ -73,7 +73,7 @@ int main() {
   double largest = 0;
   std::printf("frame  segment     t  without a normal\n");
   for (int frame = 0; frame < 8; ++frame) {
-    const double time = frame * 24.0 / 60;  // in keyframes
+    const double time = frame * 24.0 / 60;  // the time in keyframes
     if (time >= static_cast<double>(segment + 1)) {
       normals.finish_segment();
       ++segment;
@@ -84,7 +84,7 @@ int main() {
     const double t = time - static_cast<double>(segment);
     std::atomic<std::size_t> zeros = 0;
     run_jobs([&](std::size_t job) {
-      if (job == 0) (void)normals.prepare(0.4);  // there are 2.5 frames per segment
+      if (job == 0) (void)normals.prepare(0.4);  // a segment has 2.5 frames, so 0.4 of the work is due in each
       zeros += normals.unit_normals(t, in_buffer, share_of(job, normals.size()));
     });
     std::printf("%5d %8zu  %.2f %17zu\n", frame, segment, t, zeros.load());

@@ -1,4 +1,4 @@
-// Wrong and right shading of a morph, side by side: writes shading.png and shading_flat.png, or to the paths given.
+// Draws wrong and right shading of a morph side by side: writes shading.png and shading_flat.png, or the paths given.
 //
 // A square column is halfway through a twist. All panels have the same geometry and the same light, but different
 // normals:
@@ -8,8 +8,8 @@
 //     right   the angle between the two, in degrees
 //
 // The first picture is smooth (a normal per vertex), the second flat (a normal per face). |n(t)| is twice the area, so
-// the area-weighted normal of a vertex is the sum of the n(t) of its faces. The sum is a quadratic too, exact at every
-// t.
+// the area-weighted normal of a vertex is the sum of the n(t) of its faces. The sum is a quadratic too, and exact at
+// every t.
 
 #include <png.h>
 
@@ -25,12 +25,12 @@ namespace {
 
 using namespace chronormal;
 
-constexpr double kTime = 0.5;  // local t, between the keyframes
+constexpr double kTime = 0.5;  // t between the keyframes
 // The width of one panel, the width of three panels with the legend, and the height, in pixels.
 constexpr int kPanel = 380, kWidth = 1200, kHeight = 480;
 constexpr int kSub = 3;               // samples per pixel in each direction
 constexpr double kScale = 132;        // pixels per unit of length
-constexpr double kLargestAngle = 40;  // degrees, where the colour scale ends
+constexpr double kLargestAngle = 40;  // degrees at the end of the colour scale
 constexpr Vec3d kBackground{0.94, 0.945, 0.955};
 
 /// The unit normals of all elements at kTime.
@@ -48,7 +48,7 @@ struct Normals {
   }
 };
 
-/// The first hit of the ray through a sample: a face, and the place in the face.
+/// The first point that the ray through a sample meets: a face, and the place in the face.
 struct Hit {
   std::size_t face = 0;
   std::array<double, 3> weights{};
@@ -58,14 +58,14 @@ struct Hit {
 
 /// The directions towards the camera, to its right and upwards. The camera is at infinity, so all rays are parallel.
 const Vec3d kEye = unit(Vec3d{0.55, -1, 0.24}), kRight = unit(cross(Vec3d{0, 0, 1}, kEye)), kUp = cross(kEye, kRight);
-constexpr Vec3d kMiddle{0, 0, 1.5};  // the point that the camera looks at
+constexpr Vec3d kMiddle{0, 0, 1.5};  // the point at which the camera looks
 
-/// Finds the visible faces of a panel for each sample, with a z-buffer. The whole column must be in the picture.
+/// Finds the visible face for each sample of a panel, with a z-buffer. The whole column must be in the picture.
 std::vector<Hit> rasterise(const Segment& segment) {
   constexpr std::size_t kColumns = std::size_t{kPanel} * kSub, kRows = std::size_t{kHeight} * kSub;
   std::vector<Hit> hits(kColumns * kRows);
   for (std::size_t f = 0; f < segment.topology->face_count(); ++f) {
-    // The corners in samples: x to the right, y down, z towards the eye.
+    // The corners are measured in samples: x to the right, y down, z towards the eye.
     std::array<Vec3d, 3> p;
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = segment.topology->face(f)[k];
@@ -93,21 +93,21 @@ std::vector<Hit> rasterise(const Segment& segment) {
   return hits;
 }
 
-/// Returns the colour of glossy paint in a studio, with light from the sky, a lamp, and upright tubes of light that are
-/// reflected.
+/// Returns the colour of glossy paint in a studio. The light comes from the sky, a lamp, and upright tubes that the
+/// paint reflects.
 Vec3d paint(const Vec3d& normal) {
   const Vec3d lamp = unit(0.8 * kEye + 0.9 * kUp - 0.9 * kRight);
   const Vec3d mirrored = (2 * dot(normal, kEye)) * normal - kEye;
   const double diffuse = 0.22 + 0.18 * normal.z + 0.8 * std::max(0.0, dot(normal, lamp));
   const double azimuth = std::atan2(dot(mirrored, kRight), dot(mirrored, kEye));
   const double tubes = 0.5 + 0.5 * std::tanh(6 * (std::cos(5 * azimuth) - 0.55));
-  // Schlick's approximation of the reflectance.
+  // This is Schlick's approximation of the reflectance.
   const double mirror = 0.05 + 0.95 * std::pow(1 - std::max(0.0, dot(normal, kEye)), 5);
   const double gloss = 0.5 * std::pow(std::max(0.0, dot(mirrored, lamp)), 40) + (0.42 + mirror) * tubes;
   return diffuse * Vec3d{0.02, 0.20, 0.40} + gloss * Vec3d{1, 0.98, 0.95};
 }
 
-/// Returns a colour from pale through yellow and red to black: a darker colour is a larger error.
+/// Returns a colour for an angle: from pale for 0 through yellow and red to black for a large error.
 Vec3d colour_of(double degrees) {
   constexpr std::array<Vec3d, 5> kColours{
       {{0.80, 0.82, 0.84}, {0.95, 0.72, 0.25}, {0.85, 0.25, 0.08}, {0.40, 0.02, 0.10}, {0.05, 0.0, 0.06}}};
@@ -116,11 +116,12 @@ Vec3d colour_of(double degrees) {
   return lerp(kColours[i], kColours[i + 1], s - static_cast<double>(i));
 }
 
-/// Returns a pixel of the legend: the colour scale with 0, 10, ... 40 degrees beside it.
+/// Returns a pixel of the legend, which has the colour scale with 0, 10, ... 40 degrees beside it.
 Vec3d legend(int x, int y) {
-  // The glyphs 0 to 4, the degree sign and a blank: three by five pixels, with one octal digit for each row.
+  // The glyphs of the digits 0 to 4, the degree sign and a blank. Each is three by five pixels, with one octal digit
+  // for each row.
   constexpr std::array<int, 7> kFont{075557, 026227, 071747, 071717, 055711, 075700, 0};
-  constexpr int kTop = 130, kStep = 55, kZoom = 2;  // kStep pixels for 10 degrees
+  constexpr int kTop = 130, kStep = 55, kZoom = 2;  // 10 degrees take kStep pixels
   if (x < 12 && y >= kTop && y < kTop + 4 * kStep) return colour_of(kLargestAngle * (1 - (y - kTop) / (4.0 * kStep)));
   const int line = y - kTop + 5, label = 4 - line / kStep, row = line % kStep / kZoom, column = (x - 18) / kZoom;
   if (x < 18 || line < 0 || label < 0 || row >= 5 || column >= 12 || column % 4 == 3) return kBackground;
@@ -164,8 +165,8 @@ int main(int argc, char** argv) {
   const Segment segment = motion.segment(0);
   const Topology& topology = motion.topology;
 
-  // Compute the control normals of faces and their sums per vertex, and beside them the true normals from positions
-  // alone.
+  // Compute the control normals of faces and their sums for vertices. For comparison, compute the true normals from
+  // positions alone.
   const IndexRange all{0, topology.face_count()};
   std::vector<ControlNormals> faces(all.count), vertices(topology.vertex_count());
   std::vector<Vec3d> true_faces(all.count), true_vertices(topology.vertex_count());

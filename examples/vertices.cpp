@@ -8,8 +8,8 @@ namespace {
 
 using namespace chronormal;
 
-// Returns a keyframe of the strip. Vertices 0 and 1 are at x = 0, the next two at x = 1, and so on; 4 and 5 are at the
-// places of 2 and 3.
+// Returns a keyframe of the strip. Vertices 0 and 1 are at x = 0, the next two at x = 1, and so on. Vertices 4 and 5
+// are at the same places as 2 and 3.
 Motion::Keyframe strip(double time, float down) {
   constexpr float kX[] = {0, 1, 1, 2, 2.5F, 3}, kHeight[] = {0, 0.3F, 0.3F, 0, -1, -2};
   Motion::Keyframe keyframe{{}, time, {}};
@@ -23,16 +23,17 @@ Motion::Keyframe strip(double time, float down) {
 }  // namespace
 
 int main() {
-  // A strip of four quads, folded along the edge between the second and the third, that opens flat over one second. The
-  // edge between the first two is cut, like a texture seam: vertices 4 and 5 are at the places of 2 and 3.
+  // Make a strip of four quads that is folded along the edge between the second and the third quad, and opens flat over
+  // one second. The edge between the first two quads is cut, like a texture seam: vertices 4 and 5 are at the places of
+  // 2 and 3.
   Motion motion;
   motion.topology =
       Topology::polygons(12, {0, 4, 8, 12, 16}, {0, 2, 3, 1, 4, 6, 7, 5, 6, 8, 9, 7, 8, 10, 11, 9}).value();
   motion.keyframes = {strip(0, 1), strip(1, 0)};
   motion.connect_as_sequence();
 
-  // Say once which vertices share a normal: vertices that coincide in all keyframes, but not across edges of over 40
-  // degrees.
+  // Say once which vertices share a normal: vertices that coincide in all keyframes, except across edges whose angle is
+  // over 40 degrees.
   const auto groups = NormalGroups::by_crease_angle(motion, weld_coincident(motion), 40);
   if (!groups.ok()) {
     std::fprintf(stderr, "%s\n", groups.error().text().c_str());

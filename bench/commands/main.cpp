@@ -1,5 +1,5 @@
-// chronormal_bench_commands (./run bench --commands) measures how long commands of the program take on one large
-// sequence. For comparison it measures lower bounds: reading the bytes of the files (cat), copying them in memory
+// Measures how long commands of the program take on one large sequence: chronormal_bench_commands (./run bench
+// --commands). For comparison it measures lower bounds: reading the bytes of the files (cat), copying them in memory
 // (memcpy), reading the files as a motion, and copying the output to the disk for a command that writes a large file.
 // It also measures how long one frame of OBJ takes to read: by our reader, by a loop that finds its numbers with
 // std::from_chars, and by other libraries if they are installed. All of them must find the same positions before they
@@ -49,10 +49,10 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 struct Times {
-  double wall = 0, cpu = 0;  // seconds
+  double wall = 0, cpu = 0;  // elapsed time and processor time, in seconds
 };
 
-// Makes a sheet of about this many vertices that bends while waves run through it.
+// Makes a sheet of about `vertices` vertices that bends while waves run through it.
 Motion make_waves(std::size_t vertices, std::size_t keyframes) {
   const auto side = std::max<std::size_t>(2, static_cast<std::size_t>(std::sqrt(static_cast<double>(vertices))));
   std::vector<std::uint32_t> corners;
@@ -90,7 +90,7 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// Measures a child process that runs body and exits with its result.
+// Measures a child process that runs body() and exits with its result.
 Times time_child(const std::string& name, const std::function<int()>& body) {
   const auto start = std::chrono::steady_clock::now();
   const pid_t child = ::fork();
@@ -104,7 +104,7 @@ Times time_child(const std::string& name, const std::function<int()>& body) {
   int status = 0;
   rusage usage{};
   ::wait4(child, &status, 0, &usage);
-  // An audit that finds errors exits with 4, which is not a failure of the command.
+  // An audit that finds errors exits with 4, which does not mean that the command failed.
   if (!WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != 4))
     throw std::runtime_error(fmt::format("{} failed", name));
   return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
@@ -121,7 +121,8 @@ Times time_command(const std::string& program, const std::vector<std::string>& a
   });
 }
 
-// Copies a file until it is on the disk, as the program does with its outputs. Removes the copy afterwards.
+// Copies a file and waits until the copy is on the disk, as the program does with its outputs. Removes the copy
+// afterwards.
 int copy_to_disk(const std::string& file) {
   const std::string copy = file + ".copy";
   const int from = ::open(file.c_str(), O_RDONLY), to = ::open(copy.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0600);
@@ -134,7 +135,7 @@ int copy_to_disk(const std::string& file) {
   return is_whole ? 0 : 1;
 }
 
-// Prints a row and appends it to rows.
+// Prints a row of the table and appends it to `rows`. `reading` is the processor time of reading the input, in seconds.
 void add_row(Json& rows, const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
   std::fflush(stdout);
@@ -148,7 +149,8 @@ Json measure_input(const std::string& program, const std::string& title, const s
   InputOptions input;
   input.files = files;
   const auto open = [&input] { return open_input(input) ? 0 : 1; };
-  time_child("reading", open);  // loads the files into the file cache of the system
+  // This loads the files into the file cache of the system.
+  time_child("reading", open);
   const Times cat = time_child("cat", [&] {
     std::vector<char> buffer(1 << 17);
     for (const std::string& file : files) {
@@ -250,7 +252,8 @@ Json measure_obj(const std::string& file) {
   for (const Reader& reader : readers) {
     double best = 1e300;
     for (int i = 0; i < 5; ++i) {
-      const std::clock_t start = std::clock();  // processor time, since other programs may run beside this one
+      // Processor time, because other programs may run beside this one.
+      const std::clock_t start = std::clock();
       const std::vector<float> positions = reader.read();
       best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
       if (reader.name != "assimp" && positions != expected)

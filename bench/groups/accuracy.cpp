@@ -15,14 +15,14 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // steps of t
+constexpr std::size_t kSamples = 20, kQuickSamples = 3;  // number of steps of t
 constexpr std::size_t kGridFaces = 20000;
 constexpr float kFar = 1000;  // distance from the origin, in multiples of the radius of the ring
 
 // The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
-// A way to compute the unit normals of all elements, sample after sample.
+// A way to compute the unit normals of all elements, one sample after the other.
 struct Path {
   std::string name;
   double bound = 0, bytes = 0;
@@ -44,7 +44,7 @@ struct Subject {
   }
 };
 
-// Makes a Path that writes its normals as three floats each.
+// Makes a Path whose normals are three floats each.
 Path float_path(const Subject& subject, std::string name, double bound, double bytes,
                 std::function<void(std::size_t, double, VectorView<float>)> evaluate) {
   auto memory = std::make_shared<std::vector<float>>(3 * subject.count);

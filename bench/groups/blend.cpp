@@ -1,4 +1,4 @@
-// Times unit normals of vertices under blend shapes, where a few of many targets are active at once and each moves a
+// Times unit normals of vertices under blend shapes. A few of many targets are active at once, and each target moves a
 // part of the mesh.
 
 #include <fmt/core.h>
@@ -19,13 +19,15 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kTargets = 100, kDenseTargets = 5;
-constexpr double kMoved = 0.025;       // share of vertices per target, as in a face with 102 targets
-constexpr double kDisplacement = 0.1;  // multiple of the radius of the ring
+constexpr double kMoved = 0.025;       // share of the vertices that a target moves, as in a face with 102 targets
+constexpr double kDisplacement = 0.1;  // displacement as a multiple of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
-// The limit in radians for the linear sum. It is inexact by design, so the limit reveals gross mistakes only.
+// The limit in radians for the error of the linear sum. The sum is inexact by design, so the limit reveals gross
+// mistakes only.
 constexpr double kLinearError = 3.2;
 
-// Makes targets that move a region around a random vertex and fall off smoothly, in the order of the mesh.
+// Makes targets that move a region around a random vertex, less and less towards the border of the region. Their
+// vertices have the order of the mesh.
 BlendSet make_sparse(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();
@@ -87,7 +89,7 @@ std::vector<double> make_weights(std::size_t active, std::size_t targets) {
   return weights;
 }
 
-// Computes the normals at the given weights exactly: from positions that are blended in double.
+// Computes the exact normals at the given weights, from positions that are blended in double.
 std::vector<Vector> exact_normals(const BlendSet& set, std::span<const double> weights, const Oracle& oracle) {
   std::vector<double> p(set.base.begin(), set.base.end());
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -127,7 +129,7 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// The sum of the unit normals of the base and the sparse deltas of each target, as engines compute it.
+// The sum that engines compute: the unit normals of the base plus the weighted sparse deltas of each target, normalised.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {
@@ -165,7 +167,7 @@ class LinearSum {
   std::vector<BlendTarget> deltas_;
 };
 
-// Computes face normals in float32 and adds them up per vertex, in the most straightforward way.
+// Computes face normals in float32 and adds them up for each vertex, in the most straightforward way.
 void plain_loop(const BlendSet& set, const NormalGroups& groups, std::span<const float> positions,
                 std::span<float> face_normals, float* result) {
   const std::uint32_t* corner = set.topology.corners().data();
@@ -251,7 +253,7 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("chosen", kExactError, "", [weights](Subject& on) { (void)on.normals.unit_normals(weights, on.result); });
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
-    // Blending in float32 rounds positions in the last bit, which is large relative to the length of an edge.
+    // Blending in float32 rounds the last bit of a position, which is large relative to the length of an edge.
     add("chosen in float32", kFloatError, "",
         [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {

@@ -18,8 +18,8 @@ void run_faces(Suite& suite, const Size& size) {
   const double limit = float_limit(mesh.count(Elements::kFaces));
   add_loops(list, mesh, Elements::kFaces, limit);
   add_libraries(list, mesh, Elements::kFaces);
-  // A recomputation reads the positions at both ends and the corners once, 24 bytes for each vertex and 12 for each
-  // face. In random order it loads the same cache lines again and again, so the number of bytes is unknown.
+  // A recomputation reads the positions at both ends and the corners once, which is 24 bytes for each vertex and 12 for
+  // each face. In random order, the same cache lines are loaded again and again, so the number of bytes is unknown.
   add_ours(list, mesh.segment(), nullptr, size.shuffled ? 0 : 24 * vertices + 12 * faces, limit);
   suite.run(group, size, faces, oracle, list.take());
 }

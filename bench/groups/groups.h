@@ -1,4 +1,4 @@
-/// Declares the groups of rows. Each group has a file of its own.
+/// Declares the groups of measurements. Each group has a file of its own.
 #ifndef BENCH_GROUPS_GROUPS_H_
 #define BENCH_GROUPS_GROUPS_H_
 
@@ -18,10 +18,10 @@ void run_meshes(Suite& suite);
 /// Measures every scheme, at random access and played.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Measures bounds of the largest errors of schemes, and dense sampling for comparison.
+/// Measures certificates of the largest errors of schemes, and dense sampling for comparison.
 void run_certificates(Suite& suite, const Size& size);
 
-/// Measures cones, bounds of clusters and means over a segment, and sampling for comparison.
+/// Measures cones, bounds of clusters and mean normals over a segment, and sampling for comparison.
 void run_cones(Suite& suite, const Size& size);
 
 /// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
@@ -29,27 +29,27 @@ void run_blend(Suite& suite, const Size& size);
 
 /// Measures queries about a whole segment: when faces collapse, and which way they face.
 void run_uses(Suite& suite, const Size& size);
-/// Measures crossings of points through the surface.
+/// Measures how fast the crossings of points through the surface are found.
 void run_containment(Suite& suite, const Size& size);
 
-/// The quality of a scheme, for a table of quality against cost.
+/// The cost and the quality of a scheme, for a table of quality against cost.
 struct SchemeQuality {
   std::string scheme, mesh;
   double mean_degrees = 0, max_degrees = 0;
-  double bytes = 0;  ///< per element
+  double bytes = 0;  ///< bytes of prepared data for each element
 };
 [[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
 [[nodiscard]] std::vector<std::string> benchmark_schemes();
 
-/// The error of a path over all elements and many t.
+/// The error of a path over all elements and many t, in radians.
 struct Accuracy {
   std::string path, mesh, elements;
-  double bound = 0;  ///< promised by the path, in radians
+  double bound = 0;  ///< the bound that the path promises, in radians
   double mean = 0, share_9999 = 0, max = 0;
-  std::size_t samples = 0;  ///< pairs of an element and a t
-  double bytes = 0;         ///< per element; 0 if the path keeps no data
+  std::size_t samples = 0;  ///< number of pairs of an element and a t
+  double bytes = 0;         ///< bytes of prepared data for each element; 0 if the path keeps none
 };
-/// Throws std::runtime_error if a path exceeds the error that it promises.
+/// Measures the accuracy of all paths. Throws std::runtime_error if a path exceeds the error that it promises.
 [[nodiscard]] std::vector<Accuracy> measure_accuracy(const Suite& suite);
 
 }  // namespace chronormal::bench

@@ -1,5 +1,5 @@
-// Times our unit normals and plain loops on meshes other than the torus: thin triangles, varied valence, a collapse,
-// and meshes by other people.
+// Times our unit normals and plain loops on meshes other than the torus: meshes with thin triangles, with varied
+// valence, with a collapse, and meshes by other people.
 
 #include <fmt/core.h>
 
@@ -21,11 +21,11 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// The limit in radians for needles (very thin triangles) and for vertices whose face normals nearly cancel. It reveals
-// gross mistakes only.
+// The limit in radians for the error at very thin triangles (needles) and at vertices whose face normals nearly cancel.
+// It reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
-// The torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
+// Returns the torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.
 Mesh thin() {
   const Mesh torus(Elements::kFaces, kFaces, false);
   std::vector<float> from(torus.from().begin(), torus.from().end()), to(torus.to().begin(), torus.to().end());
@@ -40,7 +40,7 @@ Mesh varied() {
   std::vector<std::uint32_t> corners(torus.topology().corners().begin(), torus.topology().corners().end());
   std::mt19937_64 random(1);
   for (std::size_t i = 0; i + 6 <= corners.size(); i += 6) {
-    // The two triangles a b c and a c d of a quad become a b d and b c d.
+    // The two triangles a b c and a c d of the quad become a b d and b c d.
     if (random() % 3 != 0) continue;
     corners[i + 2] = corners[i + 5];
     corners[i + 3] = corners[i + 1];

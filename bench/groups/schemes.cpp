@@ -1,5 +1,5 @@
-// Measures every scheme on the faces of the grid: the cost of an evaluation, at any t and played step by step, and the
-// quality of the normals.
+// Measures every scheme on the faces of the grid: the cost of an evaluation at any t and step by step, and the quality
+// of the normals.
 
 #include "chronormal/schemes/scheme.h"
 
@@ -17,7 +17,7 @@
 namespace chronormal::bench {
 namespace {
 
-// Limits in radians. Schemes that follow the exact curve must agree with it up to rounding, and schemes that
+// Limits of errors in radians. Schemes that follow the exact curve must agree with it up to rounding, and schemes that
 // interpolate exact normals must agree with their formula up to the rounding of float32. All others are checked for
 // gross mistakes only.
 constexpr double kExactError = 1e-6, kFormulaError = 2e-6, kApproximationError = 0.8, kPlayedError = 5e-5;
@@ -61,7 +61,8 @@ std::vector<Vector> along_great_circle(const Oracle& oracle, double t) {
 }
 
 struct Expectation {
-  std::function<std::vector<Vector>(const Oracle&)> expected;  // if empty, the exact normals
+  // If empty, the exact normals are expected.
+  std::function<std::vector<Vector>(const Oracle&)> expected;
   double limit = kApproximationError;
   std::string note;
 };

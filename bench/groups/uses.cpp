@@ -1,6 +1,6 @@
-// Answers queries about a whole segment from control normals in memory: when faces collapse, and from which side they
+// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side they
 // are seen. For comparison, also times the evaluation of the same control normals at one t, and the methods by which
-// other programs answer such a query.
+// other programs answer such a question.
 
 #include <fmt/core.h>
 
@@ -40,7 +40,7 @@ Vec3d way_at(const Segment& segment, std::size_t face, const View& view, double 
   return viewer - lerp(to_double(segment.from[a]), to_double(segment.to[a]), t);
 }
 
-// Finds the visible sides by sampling, as a renderer without exact answers does.
+// Finds the sides of a face that the viewer sees by sampling, as a renderer without exact answers does.
 ShutterSide side_by_samples(const Question& q, std::size_t face, const View& view, int samples) {
   bool is_front = false, is_back = false;
   for (int i = 0; i < samples; ++i) {
@@ -52,8 +52,8 @@ ShutterSide side_by_samples(const Question& q, std::size_t face, const View& vie
   return is_back ? ShutterSide::kBoth : ShutterSide::kFront;
 }
 
-// Culls a face where no Bernstein coefficient of the cubic is positive (Munkberg and Akenine-Moller). The coefficients
-// come from control normals and ignore rounding, as published.
+// Decides by a published method if a face can be culled (Munkberg and Akenine-Moller): it can if no Bernstein
+// coefficient of the cubic is positive. The coefficients come from control normals and ignore rounding, as published.
 ShutterSide side_by_coefficients(const Question& q, std::size_t face, const View& view) {
   const ControlNormals& c = q.normals[face];
   const Vec3d from = way_at(q.segment, face, view, 0), to = way_at(q.segment, face, view, 1);
@@ -69,7 +69,7 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Compares the results with many samples of some faces. A face that is culled must not show its front in any sample.
+// Compares the results of some faces with many samples. A face that is culled must not show its front in any sample.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

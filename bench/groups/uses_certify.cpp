@@ -1,5 +1,6 @@
-// Measures certificates of the largest error over a segment, beside common practice: evaluating the scheme at 64
-// moments, comparing each with the exact normal, and hoping that no error between the moments is larger.
+// Measures certificates of the largest error over a segment. For comparison, also measures common practice, which
+// evaluates the scheme at 64 moments, compares each normal with the exact one, and hopes that no error between these
+// moments is larger.
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ struct Certified {
   std::vector<float> shown;  // normals of the scheme at kTime
 };
 
-// Returns the largest angle of each face over the samples. A certificate must be at least as large.
+// Returns the largest angle in radians of each face over the samples. A certificate must be at least as large.
 std::vector<double> sampled(const Scheme& scheme, const Segment& segment, std::size_t count) {
   std::vector<double> worst(count);
   std::vector<float> shown(3 * count);

@@ -1,5 +1,5 @@
-// Measures cones, bounds of clusters and mean normals over a whole segment, beside common practice: cones of the two
-// ends, meshoptimizer's bounds at some instants, and means of many samples.
+// Measures cones, bounds of clusters and mean normals over a whole segment. For comparison, also measures common
+// practice: cones of the two ends, meshoptimizer's bounds at some instants, and means of many samples.
 
 #include <fmt/core.h>
 #include <meshoptimizer.h>
@@ -42,7 +42,7 @@ struct Subject {
   }
 };
 
-// Returns the smallest cone around the unit normals at both ends, which ignores everything between them.
+// Returns the smallest cone around the unit normals at both ends. The normals in between may leave this cone.
 NormalCone cone_of_ends(const ControlNormals& c) {
   const Vec3d u0 = unit(c.n0), axis = unit(u0 + unit(c.n1));
   return {to_float(axis), static_cast<float>(length(cross(u0, axis)))};
@@ -74,7 +74,8 @@ Vec3d sampled_mean(const ControlNormals& c) {
   return (1.0 / kSamples) * sum;
 }
 
-// Computes positions at some instants and the bounds of each, as a renderer does for every frame.
+// Computes the positions at some instants, and meshoptimizer's bounds of each instant, as a renderer does for every
+// frame.
 void bounds_at_instants(const Subject& s, std::vector<float>& positions, std::vector<meshopt_Bounds>& result) {
   const auto corners = s.segment.topology->corners();
   for (int i = 0; i < kInstants; ++i) {

@@ -62,7 +62,7 @@ struct Scene {
   }
 };
 
-// Computes the winding number of a point at t by the solid angles of all faces, in double (van Oosterom and Strackee,
+// Computes the winding number of a point at t from the solid angles of all faces, in double (van Oosterom and Strackee,
 // 1983).
 int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   const auto at = [t](const Vec3f& a, const Vec3f& b) { return lerp(to_double(a), to_double(b), t); };
@@ -80,7 +80,7 @@ int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   return static_cast<int>(std::lround(sum / (4 * 3.14159265358979323846)));
 }
 
-// Compares the sums of crossings with winding numbers by solid angles, for some points at several times.
+// Compares the sums of crossings with winding numbers from solid angles, for some points at several times.
 void verify(const Scene& scene) {
   const Windings start = scene.windings(0);
   const std::size_t step = 1 + scene.segment.topology->face_count() / 200;

@@ -1,4 +1,5 @@
-// Times unit normals of vertices, area-weighted where the library supports that: plain loops, libraries, and our own.
+// Times unit normals of vertices, weighted by area if the library supports that: by plain loops, by libraries, and by
+// chronormal.
 
 #include <memory>
 #include <optional>

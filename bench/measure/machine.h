@@ -1,4 +1,4 @@
-/// Describes the machine that a run is measured on, and gives the process huge pages.
+/// Describes the machine on which a run is measured, and gives the process huge pages.
 #ifndef BENCH_MEASURE_MACHINE_H_
 #define BENCH_MEASURE_MACHINE_H_
 
@@ -8,7 +8,7 @@
 
 namespace chronormal::bench {
 
-/// Returns names and values in the order in which they are shown: cpu, cores, caches, compiler, ...
+/// Returns names and values in the order in which tables show them: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
 /// Returns the distance at which evaluations prefetch curves (PrefetchRule), as this run has measured it.

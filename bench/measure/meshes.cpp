@@ -12,7 +12,7 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr double kTube = 0.4;  // in multiples of the radius of the ring
+constexpr double kTube = 0.4;  // radius of the tube, in multiples of the radius of the ring
 
 struct Angle {
   double angle, cosine, sine;
@@ -27,7 +27,8 @@ std::vector<Angle> around(std::size_t count) {
   return angles;
 }
 
-// Shuffles by code of our own, since shuffles of the standard library differ between systems.
+// Returns the numbers below `count`, in random order if `shuffled` is true. The code is our own, since shuffles of the
+// standard library differ between systems.
 std::vector<std::uint32_t> shuffled_order(std::size_t count, bool shuffled, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
@@ -40,7 +41,7 @@ std::vector<std::uint32_t> shuffled_order(std::size_t count, bool shuffled, std:
 }  // namespace
 
 Mesh::Mesh(Elements elements, std::size_t element_count, bool shuffled) {
-  // Chooses rows and columns so that quads are about as long as wide.
+  // Rows and columns are chosen so that quads are about as long as wide.
   const double vertices = static_cast<double>(element_count) / (elements == Elements::kFaces ? 2 : 1);
   const std::size_t rows = std::max<std::size_t>(3, static_cast<std::size_t>(std::lround(std::sqrt(vertices * kTube))));
   const std::size_t columns =

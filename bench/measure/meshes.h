@@ -1,4 +1,4 @@
-/// The meshes that are measured: a closed grid on a torus, in the order of the grid or shuffled.
+/// Makes the meshes that are measured: a closed grid on a torus, in the order of the grid or shuffled.
 ///
 /// Every vertex has six faces. The first keyframe is a torus with ripples. In the second keyframe the torus is turned
 /// by 60 degrees, stretched, and twisted around its own tube by up to a radian, so that every face changes its shape,
@@ -19,13 +19,13 @@ enum class Elements { kFaces, kVertices };
 
 class Mesh {
  public:
-  /// Makes a mesh with about element_count of the elements. If shuffled, vertices and faces are in a random order that
-  /// is the same in every run.
+  /// Makes a mesh with about element_count elements. If `shuffled` is true, vertices and faces are in a random order,
+  /// which is the same in every run.
   Mesh(Elements elements, std::size_t element_count, bool shuffled);
   /// Makes a mesh of any triangles, with packed positions at both ends of the segment.
   Mesh(Topology topology, std::span<const float> from, std::span<const float> to);
 
-  /// Returns a segment of packed positions, which refers to this mesh: the mesh must outlive it.
+  /// Returns a segment of packed positions, which refers to this mesh. The mesh must outlive the segment.
   [[nodiscard]] Segment segment() const noexcept;
   [[nodiscard]] const Topology& topology() const noexcept { return topology_; }
   [[nodiscard]] std::span<const float> from() const noexcept { return {from_.data(), from_.size()}; }

@@ -1,5 +1,5 @@
-/// The oracle that every benchmark is compared with before it is timed: it interpolates the vertices and computes the
-/// normals by eq. 1 of docs/theory.md, all in double.
+/// Computes the normals with which every benchmark is compared before it is timed. This oracle interpolates the
+/// vertices and computes the normals by eq. 1 of docs/theory.md, all in double.
 ///
 /// The oracle calls no code of the library, neither for vectors nor for control normals. Differences of float32
 /// positions are exact in double up to the last bit, so the direction of a normal has an error of 1e-15 rad, times the
@@ -40,18 +40,18 @@ struct Errors {
 class Oracle {
  public:
   /// Takes a segment of triangles or polygons, which must outlive this object. Chooses all elements if there are at
-  /// most 100,000 of them, otherwise 4,096 random ones, which are the same in every run.
+  /// most 100,000 of them. Otherwise chooses 4,096 random elements, which are the same in every run.
   Oracle(const Segment& segment, Elements elements);
 
-  /// Returns the chosen elements.
+  /// Returns the indices of the chosen elements.
   [[nodiscard]] std::span<const std::uint32_t> elements() const { return elements_; }
   /// Returns n(t) of each chosen element, not normalised.
   [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;
-  /// Returns the angles between n(t) and normal_of(element). Leaves out elements without a direction: an element
-  /// collapses if n(t) is below 1e-7 of the sum of its areas.
+  /// Returns the angles in radians between n(t) and normal_of(element). Leaves out elements without a direction, for
+  /// which |n(t)| is below 1e-7 of the sum of the areas.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
-  /// Returns the angles between the given exact normals and normal_of(element). If the exact normals are sums by area,
-  /// leaves out elements without a direction.
+  /// Returns the angles in radians between the given exact normals and normal_of(element). If the exact normals are
+  /// sums by area, leaves out elements without a direction.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:
@@ -60,8 +60,10 @@ class Oracle {
   Segment segment_;
   Elements kind_;
   std::vector<std::uint32_t> elements_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;  // terms of sums: index into elements_, and face
-  std::vector<double> areas_;                                   // sum of the areas of each element, at both ends
+  // The terms of the sums, as pairs of an index into elements_ and a face.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;
+  // for each element, the sum of the areas of its faces at both ends
+  std::vector<double> areas_;
 };
 
 }  // namespace chronormal::bench

@@ -1,4 +1,4 @@
-/// The output of a run: tables for people, and one JSON object for tools/make_page benchmarks.
+/// Prints the results of a run: tables for people, and one JSON object for tools/make_page benchmarks.
 #ifndef BENCH_MEASURE_REPORT_H_
 #define BENCH_MEASURE_REPORT_H_
 
@@ -14,7 +14,8 @@ namespace chronormal::bench {
 struct Report {
   bool quick = false;
   std::vector<std::pair<std::string, std::string>> machine;
-  std::map<std::string, std::string> rivals;  ///< names of the libraries that are compared, with versions
+  /// The names of the libraries that are compared with ours, and their versions.
+  std::map<std::string, std::string> rivals;
   std::vector<Bandwidth> bandwidths;
   std::vector<Row> rows;
   std::vector<SchemeQuality> qualities;

@@ -1,5 +1,5 @@
-/// Runs groups of cases. Compares the result of each case with the oracle, then times all cases in random order,
-/// together with the speed of memory. Makes a row of each case.
+/// Runs groups of cases. It compares the result of each case with the oracle, then times all cases in random order,
+/// together with the speed of memory, and makes a row of the table from each case.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -18,49 +18,51 @@
 namespace chronormal::bench {
 
 struct Size {
-  std::string name;  ///< written as on the command line: 15k, 1M
+  std::string name;  ///< as on the command line: 15k, 1M
   std::size_t elements = 0;
   bool shuffled = false;
 
   [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
 };
 
-/// A result at one t, which is verified after the run.
+/// A check of a result at one t after the run.
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;
-  /// Returns the expected result for the elements of the oracle; if empty, the exact normals are expected.
+  /// Returns the expected result for the elements of the oracle. If empty, the exact normals are expected.
   std::function<std::vector<Vector>(const Oracle&)> expected = {};
 };
 
 struct Case {
   std::string name;
-  std::string library = {};  ///< with its version; empty for chronormal
-  std::string note = {};     ///< explains what is timed, or compared, if needed
+  std::string library = {};  ///< name and version of the library; empty for chronormal
+  std::string note = {};     ///< a remark on what is timed or compared, or empty
   std::size_t threads = 1;
-  std::size_t evaluations = 1;  ///< evaluations of each element in a run
+  std::size_t evaluations = 1;  ///< number of evaluations of each element in a run
   std::function<void()> run = {};
   std::vector<Check> checks = {};
-  double limit = 0;  ///< radians
+  double limit = 0;  ///< largest allowed error in radians
   Rule rule = Rule::kArea;
-  std::size_t bytes_read = 0;     ///< per run, at least; 0 if unknown
-  std::size_t bytes_written = 0;  ///< per run, at least; 0 if unknown
+  std::size_t bytes_read = 0;     ///< lower bound for a run; 0 if unknown
+  std::size_t bytes_written = 0;  ///< lower bound for a run; 0 if unknown
 };
 
 struct Row {
   std::string group, name, library, note, size, order;
   std::size_t elements = 0, threads = 1, evaluations = 1;
-  double median_ns = 0, least_ns = 0, spread = 0;  ///< per element and evaluation; spread: quartiles / median
+  /// Nanoseconds for each element and evaluation. `spread` is the interquartile range divided by the median.
+  double median_ns = 0, least_ns = 0, spread = 0;
   std::size_t repetitions = 0;
-  double bytes_read = 0, bytes_written = 0;  ///< per element and evaluation
-  double share_of_bandwidth = 0;             ///< time that the memory needs / least_ns; 0 if unknown
+  double bytes_read = 0, bytes_written = 0;  ///< for each element and evaluation
+  double share_of_bandwidth = 0;             ///< time that the memory needs, divided by least_ns; 0 if unknown
   double verified_error = 0, limit = 0;      ///< radians
   std::size_t verified_elements = 0;
 };
 
 struct SuiteOptions {
   bool quick = false;
-  std::string filter;  ///< a POSIX regular expression for "GROUP/SIZE/ORDER/NAME"; empty: everything
+  /// A POSIX regular expression for "GROUP/SIZE/ORDER/NAME"; if empty, all cases run.
+  std::string filter;
   std::size_t threads = 2;
 };
 
@@ -94,7 +96,7 @@ class Suite {
   BandwidthMeter meter_;
 };
 
-/// The requested cases of one group and size. Cases that were not requested are not even prepared.
+/// A list of the cases of one group and size that the user asked for. Other cases are not even prepared.
 class CaseList {
  public:
   CaseList(const Suite& suite, std::string group, Size size)
@@ -118,7 +120,7 @@ class CaseList {
   std::vector<Case> cases_;
 };
 
-/// The time t of every verification. It is not a short binary fraction, so that products with it must be rounded.
+/// The time t of every verification. It is not a short binary fraction, so products with it must be rounded.
 inline constexpr float kTime = 0.3f;
 
 }  // namespace chronormal::bench

@@ -10,10 +10,10 @@
 namespace chronormal::bench {
 namespace {
 
-// A function that takes at most kShort seconds is called kWarmCalls times before it is timed. Several calls are needed
-// because data that barely exceed a cache reach a steady state only after several passes. A function that takes at most
-// kSlow seconds is called once before, and a slower one never. Beyond kVerySlow seconds, the first rough timing counts
-// as a result, and only one more call follows.
+// Before a function is timed, it is called to fill the caches. If a call takes at most kShort seconds, it is called
+// kWarmCalls times, because data that barely exceed a cache reach a steady state only after several passes. If a call
+// takes at most kSlow seconds, it is called once, and a slower function is not called. If a call takes more than
+// kVerySlow seconds, the first rough timing counts as a result, and only one more call follows.
 constexpr int kWarmCalls = 4;
 constexpr double kShort = 0.012, kSlow = 0.15, kVerySlow = 3;
 
@@ -77,7 +77,8 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const int warm = seconds < kShort ? kWarmCalls : seconds < kSlow ? 1 : 0;
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
                                  [&run, warm](benchmark::State& state) {
-                                   // The functions that ran before have evicted the data of this one from the caches.
+                                   // The functions that ran before have evicted the data of this function from the
+                                   // caches.
                                    for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
                                  })

@@ -1,7 +1,7 @@
 /// Times many functions against each other, on a machine that has other work to do.
 ///
 /// Google Benchmark runs the loops. Each function runs in short repetitions, and the repetitions of all functions are
-/// in random order, so that a disturbance of the machine affects all of them alike.
+/// in random order, so that a disturbance of the machine affects all functions alike.
 #ifndef BENCH_MEASURE_TIMING_H_
 #define BENCH_MEASURE_TIMING_H_
 
@@ -12,9 +12,9 @@
 namespace chronormal::bench {
 
 struct Effort {
-  double repetition = 0.006;  ///< seconds per function; slow functions take more
-  double total = 0.5;         ///< most repetitions per function
-  int most = 25;              ///< estimated seconds per call; 0 if unknown
+  double repetition = 0.006;  ///< seconds of a repetition; slow functions take more
+  double total = 0.5;         ///< seconds for a function in total; slow functions take more
+  int most = 25;              ///< largest number of repetitions for a function
   int least = 3;
 };
 inline constexpr Effort kFullEffort{};
@@ -22,14 +22,14 @@ inline constexpr Effort kQuickEffort{0.001, 0.01, 5, 3};
 
 struct Timed {
   std::function<void()> run;
-  double seconds = 0;                    ///< time of an observed call; 0 if there was no such call
-  std::vector<double> nanoseconds = {};  ///< per call, one value for each repetition
+  double seconds = 0;                    ///< seconds that an observed call took; 0 if none was observed
+  std::vector<double> nanoseconds = {};  ///< nanoseconds of a call, one value for each repetition
 };
 
-/// Estimates the seconds that a call takes, from a few calls.
+/// Estimates how many seconds a call takes, from a few calls.
 [[nodiscard]] double roughly_timed(const std::function<void()>& run);
 
-/// Sets `nanoseconds` of each function.
+/// Times all functions, and sets their `nanoseconds`.
 void time_all(std::vector<Timed>& functions, const Effort& effort);
 
 [[nodiscard]] double median(std::vector<double> values);

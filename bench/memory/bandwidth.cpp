@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kAhead = 2048;  // bytes between the data in use and the data that are prefetched
 
-// Sums 64-bit words. `bytes` must be a multiple of 512, here and in the functions below.
+// Adds up 64-bit words. `bytes` must be a multiple of 512, here and in the functions below.
 template <bool kPrefetch>
 std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   const hn::ScalableTag<std::uint64_t> tag;
@@ -33,7 +33,7 @@ std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   return hn::GetLane(hn::SumOfLanes(tag, hn::Add(hn::Add(sum0, sum1), hn::Add(sum2, sum3))));
 }
 
-// Sets to = from, or to = from + 3 third if kTriad is true. With kStream, stores bypass the caches.
+// Sets to = from, or to = from + 3 third if kTriad is true. If kStream is true, stores bypass the caches.
 template <bool kTriad, bool kStream, bool kPrefetch>
 void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::size_t bytes) {
   const hn::ScalableTag<float> tag;
@@ -65,8 +65,8 @@ void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::s
 std::uint64_t ReadPlain(const std::byte* from, std::size_t bytes) { return Read<false>(from, bytes); }
 std::uint64_t ReadAhead(const std::byte* from, std::size_t bytes) { return Read<true>(from, bytes); }
 
-// Copies in one of four ways: 0 ordinary stores, 1 stores past the caches, 2 stores past the caches with prefetch, 3
-// ordinary stores with prefetch.
+// Copies in one of four ways. Ways 0 and 3 use ordinary stores, and ways 1 and 2 use stores that bypass the caches. Ways
+// 2 and 3 also prefetch.
 void Copy(int way, const std::byte* from, std::byte* to, std::size_t bytes) {
   if (way == 0) Stream<false, false, false>(from, nullptr, to, bytes);
   if (way == 1) Stream<false, true, false>(from, nullptr, to, bytes);
@@ -102,9 +102,9 @@ HWY_EXPORT(ReadAhead);
 HWY_EXPORT(Copy);
 HWY_EXPORT(Triad);
 
-constexpr std::size_t kPiece = 512, kLargest = std::size_t{256} << 20, kBeyond = 4096;  // bytes
+constexpr std::size_t kPiece = 512, kLargest = std::size_t{256} << 20, kBeyond = 4096;  // sizes in bytes
 constexpr int kWays = 4;
-constexpr std::size_t kFunctions = 2 + 2 * kWays;  // for each working set
+constexpr std::size_t kFunctions = 2 + 2 * kWays;  // number of functions for each working set
 
 std::size_t rounded(std::size_t working_set) {
   const double step = std::log(1.2);

@@ -6,8 +6,8 @@
 ///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with stores past
 ///              the caches, and with prefetch; all bytes read and written count
 ///
-/// A working set is rounded to a step of 1.2. Working sets above 256 MiB are measured at 256 MiB, since all of them are
-/// in DRAM.
+/// A working set is rounded to a step of 1.2. Working sets above 256 MiB are measured at 256 MiB, since they all lie in
+/// DRAM.
 #ifndef BENCH_MEMORY_BANDWIDTH_H_
 #define BENCH_MEMORY_BANDWIDTH_H_
 
@@ -21,7 +21,7 @@
 namespace chronormal::bench {
 
 struct Bandwidth {
-  std::size_t bytes = 0;  ///< working set
+  std::size_t bytes = 0;  ///< size of the working set
   double read = 0;        ///< GB/s
   double stream = 0;      ///< GB/s
   double copy = 0;        ///< GB/s of the best copy; `stream` may be larger
@@ -29,20 +29,21 @@ struct Bandwidth {
 
 class BandwidthMeter {
  public:
-  /// Requests the bandwidth at a working set, which is measured together with the other timed functions.
+  /// Asks for the bandwidth at a working set in bytes, which is then measured together with the other functions.
   void want(std::size_t working_set);
-  /// Appends the functions to be timed.
+  /// Appends the functions that measure the bandwidth.
   void append(std::vector<Timed>& functions);
-  /// Takes the times of the functions that append() added last, beginning at index `first`.
+  /// Takes the times of the functions that append() added last. Their first index is `first`.
   void take(const std::vector<Timed>& functions, std::size_t first);
 
-  /// Returns the bandwidth at a working set that was measured.
+  /// Returns the bandwidth at a working set for which want() asked. Call take() before.
   [[nodiscard]] Bandwidth at(std::size_t working_set) const;
   [[nodiscard]] std::vector<Bandwidth> all() const;
 
  private:
   AlignedBytes arena_;
-  std::map<std::size_t, Bandwidth> measured_;  // keyed by rounded working set; no value yet if only requested
+  // The key is a rounded working set. An entry has no figures until it is measured.
+  std::map<std::size_t, Bandwidth> measured_;
 };
 
 }  // namespace chronormal::bench

@@ -11,10 +11,11 @@ namespace chronormal::bench::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Reads `kRead` lines of 64 bytes, sums them into three lines, writes these three lines, and repeats.
+// Reads `kRead` lines of 64 bytes, adds them up into three lines, writes these three lines, and repeats this for all
+// blocks.
 template <std::size_t kRead, bool kStream, std::size_t kAhead>
 void Lines(const float* from, float* to, std::size_t blocks) {
-  constexpr std::size_t kLine = 16, kWritten = 3;  // floats in a line; lines written
+  constexpr std::size_t kLine = 16, kWritten = 3;  // floats in a line, and number of lines that are written
   const hn::CappedTag<float, kLine> tag;
   const std::size_t lanes = hn::Lanes(tag);
   for (std::size_t b = 0; b < blocks; ++b) {
@@ -80,9 +81,10 @@ HWY_EXPORT(Lines5);
 HWY_EXPORT(Lines9);
 
 constexpr int kWays = 7;
-constexpr std::size_t kBlock = 16;                    // elements
-constexpr std::size_t kPiece = 512;                   // blocks that a thread takes at a time
-constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;  // so that prefetches beyond the end stay in this array
+constexpr std::size_t kBlock = 16;   // number of elements in a block
+constexpr std::size_t kPiece = 512;  // number of blocks that a thread takes at a time
+// Prefetches beyond the end must stay inside this array.
+constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;
 
 }  // namespace
 

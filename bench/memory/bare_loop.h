@@ -1,5 +1,5 @@
-/// A loop that reads and writes as many bytes as an evaluation, in the same order, but computes almost nothing. Its
-/// time is the time that would remain if all arithmetic were free.
+/// Measures a loop that reads and writes as many bytes as an evaluation, in the same order, but computes almost
+/// nothing. Its time is the time that would remain if all arithmetic were free.
 #ifndef BENCH_MEMORY_BARE_LOOP_H_
 #define BENCH_MEMORY_BARE_LOOP_H_
 
@@ -12,7 +12,7 @@ namespace chronormal::bench {
 
 class BareLoop {
  public:
-  /// The number of bytes that are read for each element.
+  /// The number of bytes that the loop reads for each element.
   enum class Reads { kNothing = 0, kCompact = 20, kExact = 36 };
 
   /// Prepares to run over `count` elements, rounded up to a multiple of 16, and to write 12 bytes for each. Tries

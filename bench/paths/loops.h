@@ -1,6 +1,6 @@
-/// Unit normals in the most straightforward way: a loop over plain arrays, and the same loop with Eigen.
+/// Computes unit normals in the most straightforward way: by a loop over plain arrays, and by the same loop with Eigen.
 ///
-/// Both loops first interpolate all positions, then add up face normals by area.
+/// Both loops first interpolate all positions, and then add up face normals by area.
 #ifndef BENCH_PATHS_LOOPS_H_
 #define BENCH_PATHS_LOOPS_H_
 
@@ -10,14 +10,14 @@
 
 namespace chronormal::bench {
 
-/// Arrays (V, 3) of positions at both ends, (F, 3) of corners, and (V, 3) of scratch memory.
+/// The arrays of a mesh: positions at both ends (V, 3), corners (F, 3), and scratch memory for positions (V, 3).
 struct LoopMesh {
   std::span<const float> from, to;
   std::span<const std::uint32_t> corners;
   std::span<float> positions;
 };
 
-/// Sets positions = (1 - t) from + t to, which every baseline must do first.
+/// Sets positions = (1 - t) from + t to. Every baseline must do this first.
 void interpolate(const LoopMesh& mesh, float t);
 
 void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< (F, 3)

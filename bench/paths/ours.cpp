@@ -12,8 +12,9 @@
 namespace chronormal::bench {
 namespace {
 
-constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;  // radians, as promised in normals/normal_curves.h
-// The most bytes of results in a case that evaluates many t.
+// limits in radians, as promised in normals/normal_curves.h
+constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;
+// The largest number of bytes of results in a case that evaluates many t.
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }
@@ -70,9 +71,9 @@ Case recompute_case(const SharedPointer& shared, std::size_t bytes, Threads thre
   return one;
 }
 
-// Float32 rounds positions relative to the size of the whole mesh. In a mesh of more elements the edges are shorter, so
-// the error of a normal is larger, and the limit grows. An element without a normal in float32 gets (0, 0, 0), which
-// the oracle leaves out.
+// Makes the case of normals from positions in float32, with a limit in radians. Float32 rounds positions relative to
+// the size of the whole mesh. In a mesh of more elements the edges are shorter, so the error of a normal is larger, and
+// the limit grows. An element without a normal in float32 gets (0, 0, 0), and the oracle leaves it out.
 Case float_case(const SharedPointer& shared, std::size_t bytes, double limit, Threads threads) {
   const Topology& topology = *shared->segment.topology;
   auto rival = shared->groups == nullptr ? std::make_shared<FloatRecompute>(topology)
@@ -91,7 +92,7 @@ Case prepare_case(const SharedPointer& shared, double tolerance, Threads threads
   auto made = std::make_shared<NormalCurves>();
   Case one;
   one.run = [shared, made, tolerance, threads] {
-    // Reuses memory, like a program that prepares one segment after another.
+    // The memory of the previous segment is reused, as in a program that prepares one segment after the other.
     *made = shared->prepared(tolerance, threads, made.get());
   };
   auto evaluated = std::make_shared<std::vector<float>>();
@@ -141,7 +142,7 @@ Case encoded_case(const SharedPointer& shared, double tolerance, double encoding
   return one;
 }
 
-// Evaluates many t in one call, and writes the normals at each t to a separate array.
+// Makes a case that evaluates many t in one call, and writes the normals at each t to a separate array.
 Case many_times_case(const SharedPointer& shared, double tolerance, std::size_t evaluations, Threads threads) {
   struct Many {
     std::vector<AlignedArray<float>> arrays;

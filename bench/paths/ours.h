@@ -7,10 +7,10 @@
 
 namespace chronormal::bench {
 
-/// Adds the cases of preparing curves, evaluating them at one t, at many t, and playing them in small steps, on one
-/// thread and on all. Without groups, the elements are faces. The segment and the groups must outlive the cases.
-/// recompute_bytes: the bytes that recomputing all normals has to read at least, 0 if unknown
-/// float_limit: the largest allowed error of normals from positions in float32, in radians
+/// Adds the cases of preparing curves, evaluating them at one t and at many t, and playing them in small steps, each on
+/// one thread and on all. Without groups, the elements are faces. The segment and the groups must outlive the cases.
+/// recompute_bytes is the smallest number of bytes that recomputing all normals has to read, or 0 if unknown.
+/// float_limit is the largest allowed error of normals from positions in float32, in radians.
 void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes,
               double float_limit);
 

@@ -39,7 +39,7 @@ Case loop_case(const std::shared_ptr<LoopMemory>& memory, Loop loop, double limi
 
 #ifdef CHRONORMAL_HAVE_PEERS
 
-// The limit for CGAL in radians, since CGAL does not define its vertex normal as a sum.
+// The limit for the error of CGAL in radians. It is large because CGAL does not define its vertex normal as a sum.
 constexpr double kOtherRule = 0.3;
 
 constexpr std::size_t kManyElements = 5000000;
@@ -80,8 +80,8 @@ std::vector<peers::Library> libraries() {
 
 }  // namespace
 
-// Returns the limit in radians. Float32 rounds positions relative to the size of the whole mesh. In a mesh of more
-// elements the edges are shorter, so the limit grows.
+// Returns the limit for the error of normals from float32 positions, in radians. Float32 rounds positions relative to
+// the size of the whole mesh. In a mesh of more elements the edges are shorter, so the limit grows.
 double float_limit(std::size_t elements) { return 2e-6 * std::sqrt(static_cast<double>(elements)) + 1e-5; }
 
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit) {

@@ -1,5 +1,5 @@
-/// Baselines: a loop in plain C++, a loop with Eigen, and the libraries in bench/peers that were installed when the
-/// benchmark was built.
+/// Adds the baselines: a loop in plain C++, a loop with Eigen, and the libraries in bench/peers that were installed
+/// when the benchmark was built.
 #ifndef BENCH_PATHS_RIVALS_H_
 #define BENCH_PATHS_RIVALS_H_
 
@@ -11,15 +11,16 @@
 
 namespace chronormal::bench {
 
-/// Adds loops that interpolate the positions and compute normals. The mesh must outlive the cases.
+/// Adds loops that interpolate the positions and compute normals. `limit` is the largest allowed error in radians. The
+/// mesh must outlive the cases.
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
-/// Returns the largest allowed error, on the torus, of normals from float32 positions, in radians.
+/// Returns the largest allowed error of normals from float32 positions on the torus, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
-/// Adds cases of libraries. Each library has the interpolated positions in its own structure already, and only computes
-/// normals.
+/// Adds the cases of libraries. Each library has the interpolated positions in its own structure already, and only
+/// computes normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 
-/// Returns the versions of the libraries that are built.
+/// Returns the names and versions of the libraries that were built in.
 [[nodiscard]] std::map<std::string, std::string> rival_versions();
 
 }  // namespace chronormal::bench

@@ -48,7 +48,7 @@ struct KeptMesh : LibraryMesh {
 };
 
 std::string version() {
-  // The version is printed without its third number, which only counts patches.
+  // The third number of the version only counts patches, so it is not printed.
   const std::string all = CGAL_VERSION_STR;
   return all.substr(0, all.rfind('.'));
 }

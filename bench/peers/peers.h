@@ -1,4 +1,5 @@
-/// Normals of triangle meshes by libraries that people use today, each in its own file, behind one interface.
+/// Computes normals of triangle meshes by libraries that people use today. Each library has its own file, and all have
+/// the same interface.
 ///
 /// Positions are passed as float32, as in files. A library computes in its own way and precision, and returns one
 /// normal for each element, in the order of the elements, scaled to length 1.
@@ -18,8 +19,8 @@
 
 namespace chronormal::peers {
 
-/// A mesh for all libraries. It must be a manifold with consistently wound faces, since some libraries accept nothing
-/// else.
+/// A mesh that all libraries can read. It must be a manifold with consistently wound faces, since some libraries accept
+/// no other mesh.
 struct TriangleMesh {
   std::span<const float> positions;        ///< (V, 3)
   std::span<const std::uint32_t> corners;  ///< (F, 3)
@@ -41,15 +42,15 @@ class LibraryMesh {
 /// The rule by which a library adds up the faces of a vertex.
 enum class Rule { kArea, kUniform, kOther };
 
-/// One function of a library. `compute` and `normal` accept only meshes of their own library.
+/// A function of a library that computes normals. `compute` and `normal` accept only meshes of their own library.
 struct Call {
   std::string name;
-  bool of_vertices = false;  ///< false if it computes normals of faces
+  bool of_vertices = false;  ///< true for normals of vertices, false for normals of faces
   Rule rule = Rule::kArea;
-  std::string note = {};              ///< the input, if it is not only positions
+  std::string note = {};              ///< a remark on the input, if it is not only positions
   bool slow_in_random_order = false;  ///< true if 10 M elements take minutes
   void (*compute)(LibraryMesh&) = nullptr;
-  /// Returns the unit normal of an element from the last call of compute()
+  /// Returns the unit normal of an element from the last call of compute().
   Vec3d (*normal)(const LibraryMesh&, std::size_t element) = nullptr;
 };
 
@@ -59,7 +60,7 @@ struct Library {
   std::unique_ptr<LibraryMesh> (*make_mesh)(const TriangleMesh&) = nullptr;
 };
 
-/// Returns for each point of (P, 3) whether it is inside a closed mesh, by vtkSelectEnclosedPoints.
+/// Returns a flag for each point of (P, 3) that tells if the point is inside a closed mesh, by vtkSelectEnclosedPoints.
 [[nodiscard]] std::vector<bool> vtk_enclosed(const TriangleMesh& mesh, std::span<const float> points);
 
 [[nodiscard]] Library openmesh_library();

@@ -34,7 +34,7 @@ vtkNew<vtkPolyData> make_mesh(const TriangleMesh& from) {
 
 struct KeptMesh : LibraryMesh {
   explicit KeptMesh(const TriangleMesh& from) : mesh(make_mesh(from)) {
-    // Does the work of vtkSMPTools::Initialize(), whose header does not compile as C++20.
+    // This call does the work of vtkSMPTools::Initialize(), whose header does not compile as C++20.
     vtk::detail::smp::vtkSMPToolsAPI::GetInstance().Initialize(1);
     for (vtkPolyDataNormals* const filter : {of_faces.Get(), of_vertices.Get()}) {
       filter->SetInputData(mesh);
@@ -51,7 +51,7 @@ struct KeptMesh : LibraryMesh {
   vtkNew<vtkTriangleMeshPointNormals> by_area;
 };
 
-// Marks the points as moved, so that the filter runs again.
+// Marks the points as moved, so that the filter computes its normals again.
 template <class Filter>
 void run_again(LibraryMesh& kept, Filter& filter) {
   static_cast<KeptMesh&>(kept).mesh->GetPoints()->Modified();

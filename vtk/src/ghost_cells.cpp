@@ -1,4 +1,5 @@
-// Counts the levels of ghost cells outward from the cells of a piece, since VTK 9 marks ghosts without their levels.
+// Counts the levels of ghost cells outward from the cells of a piece, since VTK 9 marks ghost cells without their
+// levels.
 #include "ghost_cells.h"
 
 #include <vtkCellData.h>
@@ -20,7 +21,7 @@ namespace {
 const char* const kFlags = vtkDataSetAttributes::GhostArrayName();
 constexpr const char* kMeanwhile = "chronormal: ghosts";
 
-// Marks the cells beyond the given number of levels, in the way that vtkPolyData::RemoveGhostCells() expects.
+// Marks the cells beyond the given number of levels, as vtkPolyData::RemoveGhostCells() expects.
 vtkSmartPointer<vtkUnsignedCharArray> cells_beyond(vtkPolyData* piece, vtkUnsignedCharArray* ghosts, int levels) {
   const auto beyond = vtkSmartPointer<vtkUnsignedCharArray>::New();
   beyond->SetName(kFlags);
@@ -28,7 +29,7 @@ vtkSmartPointer<vtkUnsignedCharArray> cells_beyond(vtkPolyData* piece, vtkUnsign
   for (vtkIdType c = 0; c < piece->GetNumberOfCells(); ++c)
     beyond->SetValue(c, ghosts->GetValue(c) & vtkDataSetAttributes::DUPLICATECELL);
 
-  // Each round reaches the cells that share a point with cells reached before.
+  // Each round reaches the cells that share a point with cells that were reached before.
   std::vector<bool> reached(static_cast<std::size_t>(piece->GetNumberOfPoints()), false);
   const auto is_reached = [&reached](vtkIdType point) { return reached[static_cast<std::size_t>(point)]; };
   vtkNew<vtkIdList> points;
@@ -56,8 +57,8 @@ void keep_ghost_levels(vtkPolyData* piece, int levels) {
   if (ghosts == nullptr) return;
   const vtkSmartPointer<vtkUnsignedCharArray> beyond = cells_beyond(piece, ghosts, levels);
 
-  // RemoveGhostCells() also drops the ghost flags of the cells that stay. So the flags get another name until it is
-  // done.
+  // RemoveGhostCells() also drops the ghost flags of the cells that stay. The flags therefore get another name until
+  // the call is done.
   const std::array<vtkDataSetAttributes*, 2> all = {piece->GetPointData(), piece->GetCellData()};
   for (vtkDataSetAttributes* const attributes : all) {
     vtkDataArray* const flags = attributes->GetArray(kFlags);

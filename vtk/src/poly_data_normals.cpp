@@ -28,7 +28,7 @@
 namespace chronormal::vtk {
 namespace {
 
-constexpr std::size_t kBlock = 4096;  // elements that one thread takes at a time
+constexpr std::size_t kBlock = 4096;  // number of elements that one thread takes at a time
 
 std::size_t size(vtkIdType count) { return static_cast<std::size_t>(count); }
 
@@ -79,7 +79,7 @@ Status check_positions(vtkPolyData* mesh) {
   return Success{};
 }
 
-// The polygons and the triangles of strips, each with the cell that it belongs to.
+// The polygons of a mesh and the triangles of its strips, each with the cell to which it belongs.
 struct Faces {
   Topology topology;
   std::vector<std::uint32_t> cells;
@@ -116,7 +116,7 @@ Faces find_faces(vtkPolyData* mesh) {
   return {std::move(topology).value(), std::move(cells)};
 }
 
-// Evaluates eq. 5 of docs/theory.md in double, for positions that are not in float: the edges e(t), f(t) of each
+// Evaluates eq. 5 of docs/theory.md in double, for positions that are not in float. The edges e(t), f(t) of each
 // triangle of the fan have the product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
 ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std::span<const std::uint32_t> face) {
   struct Edge {
@@ -162,8 +162,8 @@ std::vector<ControlNormals> normals_of_faces(vtkPolyData* from, vtkPolyData* to,
   return result;
 }
 
-// Adds the terms in the order of their values, so that the sum does not depend on their order in a mesh or in a piece
-// of it.
+// Adds the terms in the order of their values, so that the sum does not depend on the order of the faces in a mesh or
+// in a piece of the mesh.
 ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   const auto values = [](const ControlNormals& n) {
     return std::tie(n.n0.x, n.n0.y, n.n0.z, n.m.x, n.m.y, n.m.z, n.n1.x, n.n1.y, n.n1.z);
@@ -175,7 +175,7 @@ ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   return sum.without_rounding();
 }
 
-// Vectors in an array of VTK, in float or in double.
+// The vectors in an array of VTK, which are in float or in double.
 struct Vectors {
   Vectors(std::size_t count, bool in_double)
       : array(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(in_double ? VTK_DOUBLE : VTK_FLOAT))) {
@@ -192,8 +192,8 @@ struct Vectors {
 
 // The faces whose control normals each element adds up.
 struct Groups {
-  // Calls for_pairs(body) twice. for_pairs must call body(element, face) for each face of each element, in the same
-  // order both times.
+  // Collects the faces of each element. for_pairs(body) is called twice, and must call body(element, face) for each
+  // face of each element, in the same order both times.
   template <class ForPairs>
   Groups(std::size_t elements, const ForPairs& for_pairs) : ends(elements + 1, 0) {
     // This is a counting sort: ends[e + 1] first counts the faces of e; then ends[e] is the first index of e, and
@@ -230,7 +230,7 @@ bool is_in_double(vtkPolyData* mesh) {
   return mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
 }
 
-// Returns the requested normals, in double if in_double, else in float.
+// Returns the normals of points, of cells or of both. They are in double if in_double is true, otherwise in float.
 MeshNormals normals_of(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells, bool in_double) {
   const Faces faces = find_faces(from);
   const Topology& topology = faces.topology;

@@ -1,4 +1,4 @@
-// The filter as pipelines see it: its requests to its input, its results block by block, and its errors.
+// Implements the filter as pipelines see it: its requests to its input, its results block by block, and its errors.
 #include "vtkChronormalInterpolator.h"
 
 #include <vtkCellData.h>
@@ -32,12 +32,12 @@ using chronormal::vtk::NearSteps;
 using chronormal::vtk::PointCurves;
 using chronormal::vtk::steps_near;
 
-// The request of one execution.
+// The data of one execution of the filter.
 struct vtkChronormalInterpolator::Request {
   std::vector<double> times;  // times of the steps
   std::size_t from = 0;       // the earlier of the two steps around the time
-  double t = 0;               // from 0 at that step to 1 at the next step
-  int ghosts = -1;            // levels of ghost cells to keep, or -1 if there are no pieces
+  double t = 0;               // from 0 at the step `from` to 1 at the next step
+  int ghosts = -1;            // number of levels of ghost cells to keep, or -1 if there are no pieces
   std::string place;          // place in composite data, for messages
 };
 
@@ -51,15 +51,15 @@ bool has_normals(vtkDataSet* data) {
   return data->GetPointData()->GetNormals() != nullptr || data->GetCellData()->GetNormals() != nullptr;
 }
 
-// Tells whether the values of an array are names and not amounts: ids, ghost flags, and texts. Names must not be
+// Returns true if the values of an array are names and not amounts: ids, ghost flags, and texts. Names must not be
 // interpolated.
 bool is_name(vtkDataSetAttributes* of, vtkAbstractArray* array) {
   return array == of->GetGlobalIds() || array == of->GetPedigreeIds() ||
          array == of->GetAbstractArray(vtkDataSetAttributes::GhostArrayName()) || !array->IsA("vtkDataArray");
 }
 
-// Copies the data, with only the arrays that vtkTemporalInterpolator may interpolate: not normals, and not texts, which
-// it cannot interpolate.
+// Copies the data, with only the arrays that vtkTemporalInterpolator may interpolate. Normals must not be interpolated,
+// and texts cannot be.
 vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   const auto copy = vtkSmartPointer<vtkDataSet>::Take(data->NewInstance());
   copy->ShallowCopy(data);
@@ -71,7 +71,7 @@ vtkSmartPointer<vtkDataSet> amounts(vtkDataSet* data) {
   return copy;
 }
 
-// Copies arrays of names from the earlier step.
+// Copies the arrays of names from the earlier step to the output.
 void keep_names(vtkDataSet* before, vtkDataSet* output) {
   const Attributes from = attributes(before), to = attributes(output);
   for (std::size_t k = 0; k < from.size(); ++k) {
@@ -90,7 +90,7 @@ void set_normals(vtkDataSetAttributes* output, vtkDataSetAttributes* before, vtk
   output->SetNormals(normals);
 }
 
-// Returns all steps as one class of data, or nothing unless every step is of that class.
+// Returns all steps converted to one class of data, or nothing if a step is of another class.
 template <class Data>
 std::optional<std::vector<Data*>> all_as(const auto& steps) {
   std::vector<Data*> result;
@@ -125,8 +125,8 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
   const int pieces = out->Get(Pipeline::UPDATE_NUMBER_OF_PIECES());
   const int ghosts = out->Get(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS());
 
-  // vtkMultiTimeStepAlgorithm keeps steps whatever piece they belong to. So a request for another piece is preceded by
-  // a request for information, which makes it forget the steps.
+  // vtkMultiTimeStepAlgorithm keeps steps whatever piece they belong to. A request for another piece is therefore
+  // preceded by a request for information, which makes the algorithm forget the steps.
   const std::array piece = {out->Get(Pipeline::UPDATE_PIECE_NUMBER()), pieces, ghosts};
   if (piece != this->KeptPiece) {
     vtkNew<vtkInformation> forget;
@@ -135,7 +135,7 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
     this->KeptPiece = piece;
   }
 
-  // Requests one more ghost level of each step, since normals along a seam need the faces on its other side.
+  // Each step is requested with one more ghost level, since normals along a seam need the faces on its other side.
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
   if (pieces > 1) in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), ghosts + 1);
   return result;
@@ -145,13 +145,14 @@ int vtkChronormalInterpolator::RequestUpdateExtent(vtkInformation* request, vtkI
                                                    vtkInformationVector* outputs) {
   if (this->Superclass::RequestUpdateExtent(request, inputs, outputs) == 0) return 0;
 
-  // vtkTemporalInterpolator asks for one step at the ends of the range. A mesh that has no area there still has
-  // normals, their limits from within the segment, so both steps are needed.
+  // vtkTemporalInterpolator asks for one step at the ends of the range. A mesh that has no area at such a step still
+  // has normals, which are limits from inside the segment. Both steps of the segment are therefore needed.
   vtkInformation* const in = inputs[0]->GetInformationObject(0);
   const int count = in->Length(Pipeline::TIME_STEPS());
   this->NumberOfCacheEntries = this->Path == LINEAR ? 2 : 4;
   if (count >= 2 && this->Path == CATMULL_ROM && in->Length(UPDATE_TIME_STEPS()) > 0) {
-    // The later requested step is the end of the segment. A time at or before the first step is in the first segment.
+    // The later requested step is the end of the segment. A time at or before the first step belongs to the first
+    // segment.
     double* const times = in->Get(Pipeline::TIME_STEPS());
     const double last = in->Get(UPDATE_TIME_STEPS())[in->Length(UPDATE_TIME_STEPS()) - 1];
     const auto end = static_cast<std::size_t>(std::lower_bound(times + 1, times + count - 1, last) - times);
@@ -184,7 +185,7 @@ int vtkChronormalInterpolator::Execute(vtkInformation*, const std::vector<vtkSma
   }
   const std::vector<double>& times = request.times;
   const double time = out->Has(Pipeline::UPDATE_TIME_STEP()) ? out->Get(Pipeline::UPDATE_TIME_STEP()) : times.front();
-  if (steps.size() == 1) {  // nothing moves
+  if (steps.size() == 1) {  // a single step, so the mesh does not move
     steps.push_back(steps.front());
     request.times.push_back(times.front());
   }

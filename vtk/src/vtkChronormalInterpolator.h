@@ -1,8 +1,8 @@
-/// A vtkTemporalInterpolator with true normals.
+/// Replaces vtkTemporalInterpolator in a pipeline by a filter with true normals.
 ///
-/// The filter replaces vtkTemporalInterpolator in a pipeline. Positions and all other arrays are interpolated in the
-/// same way, but the normals of every vtkPolyData, alone or in blocks of composite data, are the true normals of the
-/// mesh at the requested time, and not mixtures of stored normals. See docs/simulation.md.
+/// Positions and all other arrays are interpolated as vtkTemporalInterpolator does. However, the normals of every
+/// vtkPolyData, alone or in blocks of composite data, are the true normals of the mesh at the requested time, and not
+/// mixtures of stored normals. See docs/simulation.md.
 ///
 /// Normals    Point normals are sums over the faces around a point, weighted by area; cell normals are the normals of
 ///            the cells. Both are of length 1, or (0, 0, 0) where there is no face. Normals of the input are replaced;
@@ -37,17 +37,17 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkChronormalInterpolator(const vtkChronormalInterpolator&) = delete;
   void operator=(const vtkChronormalInterpolator&) = delete;
 
-  /// Sets whether points without stored normals get normals; on by default.
+  /// Sets whether normals of points are also computed for data without stored ones. On by default.
   vtkSetMacro(ComputePointNormals, bool);
   vtkGetMacro(ComputePointNormals, bool);
   vtkBooleanMacro(ComputePointNormals, bool);
 
-  /// Sets whether cells without stored normals get normals; off by default.
+  /// Sets whether normals of cells are also computed for data without stored ones. Off by default.
   vtkSetMacro(ComputeCellNormals, bool);
   vtkGetMacro(ComputeCellNormals, bool);
   vtkBooleanMacro(ComputeCellNormals, bool);
 
-  /// Selects the path of points between steps; a straight line by default.
+  /// Selects the path of points between steps: straight lines (the default) or curves.
   enum { LINEAR = 0, CATMULL_ROM = 1 };
   vtkSetClampMacro(Path, int, LINEAR, CATMULL_ROM);
   vtkGetMacro(Path, int);
@@ -76,8 +76,8 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   bool ComputePointNormals = true;
   bool ComputeCellNormals = false;
   int Path = LINEAR;
-  std::array<int, 3> KeptPiece = {0, 1, 0};  // for the steps that are kept: the number of the piece, the number of
-                                             // pieces, and the ghost levels
+  // The piece to which the kept steps belong: its number, the number of pieces, and the ghost levels.
+  std::array<int, 3> KeptPiece = {0, 1, 0};
 };
 
 #endif

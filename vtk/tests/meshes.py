@@ -1,5 +1,5 @@
-"""A sheet that bends, turns and folds, as a source with time steps, and its normals from positions alone, by cross
-products in double, with which the results of the filter are compared."""
+"""Makes a sheet that bends, turns and folds, as a source with time steps. Computes its normals from positions alone, by
+cross products in double, with which the results of the filter are compared."""
 
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -14,7 +14,7 @@ TIMES = (0.0, 1.0, 2.5)
 
 
 def positions(time, side=SIDE):
-    """Returns positions (n, 3) in float32: waves run along a sheet that twists about its middle line."""
+    """Returns positions (n, 3) in float32 of a sheet that twists about its middle line while waves run through it."""
     u, v = (x.reshape(-1) for x in np.meshgrid(*2 * [np.linspace(0, 1, side)], indexing="ij"))
     height = 0.3 * np.sin(3 * u + 2 * v + 2 * time) + time * u * v
     angle = 2 * time * v
@@ -34,7 +34,7 @@ def triangles(side=SIDE):
 
 
 def between(time, side=SIDE):
-    """Returns positions at any time, on straight lines between the steps, in double."""
+    """Returns the positions at any time, in double. Points move on straight lines between the steps."""
     time = min(max(time, TIMES[0]), TIMES[-1])
     k = min(int(np.searchsorted(TIMES, time, side="right")), len(TIMES) - 1)
     t = (time - TIMES[k - 1]) / (TIMES[k] - TIMES[k - 1])
@@ -42,9 +42,9 @@ def between(time, side=SIDE):
 
 
 def on_curve(time, times, side=SIDE, shape=positions):
-    """Returns positions at a time on the cubics through the steps, in double. The slope at a step is that of the
-    polynomial through it and its neighbours; at both ends it is that of the polynomial through the nearest four
-    steps."""
+    """Returns the positions at a time on the cubics through the steps, in double. The slope at a step is that of the
+    polynomial through the step and its neighbours. At both ends, the slope is that of the polynomial through the
+    nearest four steps."""
     def slope(k):
         nearest = slice(0, 4) if k == 0 else slice(max(k - 3, 0), k + 1) if k == len(times) - 1 else slice(k - 1, k + 2)
         steps = np.array([shape(t, side).reshape(-1).astype(float) for t in times[nearest]])
@@ -71,7 +71,7 @@ def unit(vectors):
 
 
 def point_normals(points, faces):
-    """Returns the sums of the vector areas of the faces around each point."""
+    """Returns the unit normals of points, from the sums of the vector areas of the faces around each point."""
     sums = np.zeros((len(points), 3))
     for corner in faces.T:
         np.add.at(sums, corner, areas(points, faces))
@@ -107,7 +107,7 @@ def mesh(points, faces):
     data.SetPolys(cells(faces))
     data.GetPointData().SetNormals(named(point_normals(points.astype(float), faces).astype(np.float32), "Normals"))
     data.GetPointData().AddArray(named(points[:, 0] * 2, "amount"))
-    # An array that survives every filter of VTK.
+    # This array survives every filter of VTK, so it identifies points in the result.
     data.GetPointData().AddArray(named(np.arange(len(points), dtype=float), "number"))
     for attributes, count in ((data.GetPointData(), len(points)), (data.GetCellData(), len(faces))):
         ids = vtkIdTypeArray()
@@ -118,8 +118,8 @@ def mesh(points, faces):
 
 
 class Steps(VTKPythonAlgorithmBase):
-    """A source with time steps; `make(time)` returns the data of each. It records the times, pieces and ghost levels
-    that it was asked for. If it cannot cut pieces, VTK asks it for the first piece alone."""
+    """A source with time steps; `make(time)` returns the data of each step. The source records the times, pieces and
+    ghost levels that it was asked for. If it cannot cut pieces, VTK asks it only for the first piece."""
 
     def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False, times=TIMES):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)
@@ -145,7 +145,7 @@ class Steps(VTKPythonAlgorithmBase):
 
 
 def numbers(data):
-    """Returns the numbers that these points have in the whole mesh."""
+    """Returns the numbers that the points of a piece have in the whole mesh."""
     return np.rint(vtk_to_numpy(data.GetPointData().GetArray("number"))).astype(int)
 
 

@@ -1,7 +1,7 @@
-"""Run by `mpirun -n N`: every rank interpolates its piece of a mesh under vtkMPIController, and compares the normals
-with those of the whole mesh, which it computes by itself. `transmit`: only rank 0 has the data, and sends the
-pieces to the others. `extract`: every rank reads the data and takes its piece. The exit code is 0 if all bits are
-equal."""
+"""Tests pieces on several ranks; run by `mpirun -n N`. Every rank interpolates its piece of a mesh under
+vtkMPIController, and compares the normals with those of the whole mesh, which it computes by itself. With the
+argument `transmit`, only rank 0 has the data, and sends the pieces to the others. With `extract`, every rank reads the
+data and takes its piece. The exit code is 0 if all bits are equal."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""The lines of Python in docs/simulation.md run, and give true normals."""
+"""Tests that the lines of Python in docs/simulation.md run, and give true normals."""
 
 import re
 import unittest

@@ -1,4 +1,4 @@
-"""vtkChronormalInterpolator beside vtkTemporalInterpolator and exact normals: any time, any data, pieces, errors."""
+"""Tests vtkChronormalInterpolator against vtkTemporalInterpolator and exact normals: times, data, pieces and errors."""
 
 import unittest
 

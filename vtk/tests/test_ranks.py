@@ -1,4 +1,5 @@
-"""On two and three ranks of MPI, pieces under vtkMPIController have the bits of the whole mesh, at seams too."""
+"""Tests that on two and three ranks of MPI, pieces under vtkMPIController have the bits of the whole mesh, at seams
+too."""
 
 import os
 import subprocess

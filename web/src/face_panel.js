@@ -20,8 +20,8 @@ const letterOf = (i) => String.fromCharCode(97 + (i % 26));
  * @param player from makePlayer()
  * @param {{outline(corners: number[]): void}} view gets the corners of the face that is shown
  * @param {((way: {from: number[][], to: number[][]}) => Promise<object>) | undefined} compute asks the program for the
- *   figures of a face that moves straight from one triangle to another. Without a program it is undefined, and the panel
- *   shows the figures that are stored in the report
+ *   figures of a face that moves straight from one triangle to another. Without a program it is undefined, and the
+ *   panel shows the figures that are stored in the report
  */
 export function makeFacePanel(report, player, view, compute) {
   const stored = report.figures ?? [];

@@ -220,8 +220,8 @@ export function truthOf(part) {
   };
 }
 
-/** Copies an array of numbers. This loop is always fast, while set() of typed arrays is five times slower if the types of
- * the arrays differ. */
+/** Copies an array of numbers. This loop is always fast, while set() of typed arrays is five times slower if the types
+ * of the arrays differ. */
 export function copy(from, to) {
   for (let i = 0; i < from.length; ++i) to[i] = from[i];
 }

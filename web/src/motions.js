@@ -6,8 +6,8 @@ export function valueAt({ at: values }, at) {
   return values[from] + (at - from) * (values[to] - values[from]);
 }
 
-/** Returns the place at which the time or the weight has a value. If two samples have this value, the result is the later
- * sample. */
+/** Returns the place at which the time or the weight has a value. If two samples have this value, the result is the
+ * later sample. */
 export function placeOf({ at: values }, value) {
   let low = 0, high = values.length - 1;
   while (low < high) {

@@ -3,7 +3,8 @@
 
 #include "chronormal/chronormal.h"
 
-// A triangle turns by 90 degrees about the x axis: half way its normal is (0, -1, 1), of unit length.
+// Tests the package with a triangle that turns by 90 degrees about the x axis. Half way, its normal is (0, -1, 1),
+// scaled to length 1.
 int main() {
   using namespace chronormal;
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
