@@ -1,9 +1,9 @@
-# Sourced by ./run: makes the files of a release, in dist/.
+# Makes the files of a release, in dist/. ./run sources this file.
 
-# The steps in order. Each may be named alone: ./run dist program sums.
+# The steps in their order. A user may name single steps: ./run dist program sums.
 dist_steps=(source program others wheel deb npm page core site blender sbom sums)
 
-# dist STEP...: makes the steps, or all steps if none is named.
+# dist STEP...: makes the named steps, or all steps if none is named.
 dist() {
   local step begin
   for step; do
@@ -16,7 +16,7 @@ dist() {
     say "this folder is no clone of the repository, but a release is made from a commit; clone the repository first"
     return 1
   fi
-  # The time of all files in archives, so that an archive that is made again has the same bytes.
+  # This is the time of all files in archives, so that an archive has the same bytes when it is made again.
   export SOURCE_DATE_EPOCH
   [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit; the archive has the files of the commit"
   mkdir -p "$dist"
@@ -37,7 +37,7 @@ dist_packages() {
   install_packages run dist "${sections[@]}"
 }
 
-# pack FOLDER FILE: makes an archive; equal files give equal bytes.
+# pack FOLDER FILE: makes an archive of a folder. Equal files give equal bytes.
 pack() {
   local as=(--sort=name --owner=0 --group=0 --numeric-owner --mtime="@$SOURCE_DATE_EPOCH")
   tar -C "$(dirname "$1")" "${as[@]}" -cf - "$(basename "$1")" | gzip -9n >"$2"
@@ -48,7 +48,7 @@ dist_source() {
   git -C "$root" archive --format=tar --prefix="$name/" HEAD | gzip -9n >"$dist/$name.tar.gz"
 }
 
-# build_dist TARGET: builds in build/dist, with libraries that are compiled from their sources.
+# build_dist TARGET: builds a target in build/dist, with libraries that are compiled from their sources.
 build_dist() {
   fetch_sources "$root/build/wasm-sources"
   build_report_page
@@ -56,7 +56,8 @@ build_dist() {
   cmake --build "$root/build/dist" --target "$1" >&2
 }
 
-# Builds the program for every Linux on this kind of machine. It needs no libraries, not even a C library.
+# dist_program: builds the program for every Linux on this kind of machine. The program needs no libraries, not even a C
+# library.
 dist_program() {
   dist_packages python
   build_dist chronormal_cli
@@ -64,8 +65,8 @@ dist_program() {
   pack "$folder" "$dist/$(basename "$folder").tar.gz"
 }
 
-# unpacked_program FOLDER STRIP PROGRAM ARTEFACT: sets `folder`, and fills it with the program and what goes with it. The
-# program of this machine writes the manual page and completions.
+# unpacked_program FOLDER STRIP PROGRAM ARTEFACT: sets `folder`, and fills it with the program and the files that belong
+# to it. The program of this machine writes the manual page and completions.
 unpacked_program() {
   local writer=$root/build/dist/chronormal
   folder=$1
@@ -79,7 +80,7 @@ unpacked_program() {
   /usr/bin/python3 "$root/tools/dist/components.py" licences "$4" "$folder/THIRD_PARTY"
 }
 
-# Builds the program for Linux on 64-bit ARM, and the program and the C library for Windows.
+# dist_others: builds the program for Linux on 64-bit ARM, and the program and the C library for Windows.
 dist_others() {
   local build
   dist_packages python cross
@@ -97,8 +98,8 @@ dist_others() {
   /usr/bin/python3 "$root/tools/dist/zip_folder.py" "$folder" "$dist/$(basename "$folder").zip"
 }
 
-# Builds the Python package for Debian's Python and for this machine's version of the C library or a newer one, as its
-# tag says.
+# dist_wheel: builds the Python package for Debian's Python. Its tag says that it needs this machine's version of the C
+# library or a newer one.
 dist_wheel() {
   dist_packages python
   build_dist _chronormal
@@ -113,7 +114,7 @@ dist_wheel() {
   cp "$build/wheel"/*.whl "$dist"
 }
 
-# Builds Debian's package from the archive of sources alone, in build/source.
+# dist_deb: builds Debian's package from the archive of sources alone, in build/source.
 dist_deb() {
   dist_packages
   build_report_page
@@ -148,10 +149,10 @@ dist_page() {
   cp "$root/build/web/chronormal.html" "$dist/chronormal-$version.html"
 }
 
-# Writes the library as two files.
+# dist_core: writes the library as two files.
 dist_core() { /usr/bin/python3 "$root/tools/two_files.py" "$dist"; }
 
-# Makes the site: the pages and the reference of the headers, for a disk or a server.
+# dist_site: makes the site, which has the pages and the reference of the headers, for a disk or a server.
 dist_site() {
   dist_packages site
   local name=chronormal-$version-site
@@ -160,11 +161,11 @@ dist_site() {
   pack "$root/build/dist/$name" "$dist/$name.tar.gz"
 }
 
-# blender_system ARCHITECTURE: prints the name of this kind of machine in the Blender add-on.
+# blender_system ARCHITECTURE: prints the name that the Blender add-on has for this kind of machine.
 blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64 | arm64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
 
-# Packs the add-on for Blender with the program for each kind of machine whose archive is in dist/, including archives
-# that were built on other machines.
+# dist_blender: packs the add-on for Blender. It contains the program for each kind of machine whose archive is in
+# dist/, including archives that were built on other machines.
 dist_blender() {
   local archive machine folder unpacked=$root/build/dist/blender
   local programs=()
@@ -184,7 +185,7 @@ dist_blender() {
   /usr/bin/python3 "$root/tools/dist/blender_addon.py" "$dist/chronormal-blender-$version.zip" "${programs[@]}"
 }
 
-# Lists the authors of the code in these files.
+# dist_sbom: lists the authors of the code in the files of the release.
 dist_sbom() {
   dist_packages
   local list=$dist/chronormal-$version.spdx.json

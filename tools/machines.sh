@@ -1,5 +1,5 @@
-# Sourced by ./test: compiles the two files of the core by several compilers, and runs in emulators the programs for other
-# systems, to demand the same bytes everywhere.
+# Compiles the two files of the core by several compilers, and runs the programs for other systems in emulators. The
+# results must have the same bytes everywhere. ./test sources this file.
 
 # compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares their
 # results with the results of the library of build/release.
@@ -9,7 +9,8 @@ compile_two_files() {
     -P tests/install/two_files/run.cmake
 }
 
-# test_machine SYSTEM EMULATOR...: builds the program for a system (a preset), and compares it with that of build/release.
+# test_machine SYSTEM EMULATOR...: builds the program for a system (a preset), and compares its results with those of
+# the program in build/release.
 test_machine() {
   local system=$1 suffix=
   shift

@@ -1,5 +1,5 @@
-# This file is sourced by ./run and ./test. It installs the packages that tools/packages.txt and the package-lock.json
-# of tests/viewers and web list, as far as the machine lacks them.
+# Installs the packages that tools/packages.txt and the package-lock.json of tests/viewers and web list, as far as the
+# machine lacks them. ./run and ./test source this file.
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
 
@@ -12,8 +12,8 @@ listed_packages() {
   ' "$root/tools/packages.txt"
 }
 
-# update_lists APT-GET...: runs `apt-get update`, and waits while another program holds its lock. apt-get itself waits
-# only when it installs.
+# update_lists APT-GET...: runs `apt-get update`, and waits while another program holds its lock. By itself, apt-get
+# waits only for the lock of an installation.
 update_lists() {
   local deadline=$((SECONDS + 300)) said
   until said=$("$@" update 2>&1); do
@@ -24,7 +24,7 @@ update_lists() {
   done
 }
 
-# install_packages SECTION...: prints nothing if all packages are installed.
+# install_packages SECTION...: installs the packages of these sections. Prints nothing if all of them are installed.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "this is not Debian; install the packages of tools/packages.txt under the names that they have on your system"
@@ -46,8 +46,8 @@ install_packages() {
     as_root=(sudo)
   fi
   say "installing ${missing[*]}"
-  # Another process may hold the locks of dpkg or of the lists for a while. apt-get waits at most five minutes, and says
-  # so.
+  # Another process may hold the locks of dpkg or of the lists for a while. apt-get waits at most five minutes, and
+  # prints that it waits.
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300)
   if ! { update_lists "${apt[@]}" && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"; } </dev/null >&2; then
     say "the packages could not be installed, and apt-get says why above; check that there is a network, that this is Debian 12,"
@@ -62,7 +62,7 @@ has_node() {
 }
 
 # install_npm FOLDER: installs the npm packages that the package-lock.json of FOLDER lists, which is tests/viewers (the
-# tests in real glTF viewers) or web (the pages). Prints nothing if none is missing.
+# tests in real glTF viewers) or web (the pages). Prints nothing if all are installed.
 install_npm() {
   local folder=$root/$1
   local installed=$folder/node_modules/.installed

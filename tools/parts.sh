@@ -1,10 +1,10 @@
-# Sourced by ./test and .ci/run: the parts of ./test --full, the functions that build and test for them, and the table
-# at the end.
+# Defines the parts of ./test --full, the functions that build and test for them, and the table at the end. ./test and
+# .ci/run source this file.
 
-# Each part has a line: its name; the minutes that it takes from scratch on two idle cores; the sections of
-# tools/packages.txt that it needs besides [run] and [test] ("-" for none); and a pattern of files ("-" for none): a
-# change of such a file makes .ci/run run the part at once, whatever its turn. The minutes are printed beside the
-# measured ones; no part fails because of them.
+# Each part has a line with four fields: its name; the minutes that it takes from scratch on two idle cores; the
+# sections of tools/packages.txt that it needs besides [run] and [test] ("-" for none); and a pattern of files ("-" for
+# none). If a change touches such a file, .ci/run runs the part at once, even if it is not the turn of this part. The
+# minutes are printed beside the measured ones; no part fails because of them.
 parts_table='
 data        3   -                 -
 slow        4   -                 ^tests/(faults/|support/cpu_time)|^src/io/bytes/output_file
@@ -52,15 +52,14 @@ count_jobs() {
   jobs=$(awk 'NR == 2 { for (i = 1; i <= 2; ++i) { split($i, t, /[ms]/); s += 60 * t[1] + t[2] } print int(s) }' build/times)
 }
 
-# part NAME COMMAND...: runs a part and records its time. The first part that fails ends the script, after the table is
-# printed.
+# part NAME COMMAND...: runs a part and records its time. If the part fails, prints the table and ends the script.
 part() {
   local name=$1 begin=$SECONDS jobs before status=0
   shift
   count_jobs
   before=$jobs
   say "== $name"
-  # Runs in a subshell, so that the first error ends the part.
+  # The part runs in a subshell, so that its first error ends the part.
   set +e
   (set -e; "$@")
   status=$?
@@ -82,7 +81,7 @@ configure() {
   cmake --preset "$preset" -DCHRONORMAL_ALL_TESTS=ON "$@" >/dev/null
 }
 
-# configure_and_build PRESET [TARGET...]: runs CMake, and builds.
+# configure_and_build PRESET [TARGET...]: runs CMake, and builds these targets, or all.
 configure_and_build() {
   local preset=$1
   shift
@@ -90,16 +89,16 @@ configure_and_build() {
   cmake --build --preset "$preset" ${1+--target "$@"}
 }
 
-# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, keeps ctest's output in build/PRESET/NAME.log, and records the
-# numbers of tests.
+# run_ctest PRESET NAME [CTEST-ARGUMENT...]: runs tests, keeps the output of ctest in build/PRESET/NAME.log, and records
+# the numbers of tests that passed and failed.
 run_ctest() {
   local preset=$1 name=$2 status=0
   shift 2
   rm -rf "build/$preset/results"
   ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$(nproc)" "$@" |
     tee "build/$preset/$name.log" || status=$?
-  # Matches "99% tests passed, 2 tests failed out of 61". These are test programs; report_results counts the tests
-  # inside.
+  # This pattern matches "99% tests passed, 2 tests failed out of 61". The numbers count test programs; report_results
+  # counts the tests inside them.
   sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" >>build/counts.txt
   report_results "build/$preset/results" || status=1
   return "$status"
@@ -120,7 +119,7 @@ report_results() {
   [ -z "$wrong" ] || { say "tests were skipped for reasons that are not true on this machine: $wrong"; return 1; }
 }
 
-# wrong_reasons: prints a pattern of reasons that do not hold on this machine, so that no test may be skipped for them.
+# wrong_reasons: prints a pattern of reasons that do not hold on this machine. No test may be skipped for such a reason.
 wrong_reasons() {
   printf '^$'  # matches no reason
   [ -z "${CHRONORMAL_DATA-}" ] || printf '|set CHRONORMAL_DATA'
@@ -128,7 +127,7 @@ wrong_reasons() {
   [ ! -c /dev/full ] || printf '|no /dev/full'
 }
 
-# show_counts NAME...: prints the numbers of tests that Node's test runner counted in these runs.
+# show_counts NAME...: prints the numbers of tests that the test runner of Node.js counted in these runs.
 show_counts() {
   local name
   for name; do
@@ -148,7 +147,7 @@ print_parts() {
 }
 minutes() { awk -v s="$1" 'BEGIN { printf "%.1f", s / 60 }'; }
 
-# finish_parts: prints the table, and the sum of all tests.
+# finish_parts: prints the table of the parts, and the number of all tests.
 finish_parts() {
   print_parts
   if [ -s build/counts.txt ]; then

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""Writes chronormal_core.h and chronormal_core.cpp into a folder: the library as far as normals of meshes in motion
-need it, for projects that want two files and a compiler.
+"""Writes chronormal_core.h and chronormal_core.cpp into a folder, for projects that want two files and a compiler. They
+contain the parts of the library that normals of meshes in motion need.
 
     tools/two_files.py FOLDER
 
-The text comes from include/ and src/: the headers named in ROOTS, the headers that they include, the sources of all
-of these, and so on, each once, in the order in which they include each other. Include guards, includes of each
-other, and code for Google Highway are left out: kernels are plain C++ (src/simd/plain_lanes.h). The single file has
-only one unnamed namespace and one namespace of kernels, so the script ends with an error if two sources use the
-same private name for different things.
+The text comes from include/ and src/: the headers named in ROOTS, the headers that these include, the sources of all
+these headers, and so on. Each file is written once, after the files that it includes. Include guards, includes of other
+files of the library, and code for Google Highway are left out: kernels are plain C++ (src/simd/plain_lanes.h). The
+single file has only one unnamed namespace and one namespace of kernels, so the script ends with an error if two sources
+use the same private name for different things.
 """
 import pathlib
 import re
@@ -18,9 +18,9 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 ROOTS = [
     "chronormal/normals/control_normals.h", "chronormal/normals/mesh_normals.h"
 ]
-# Headers that no other header includes, but whose sources are needed.
+# The headers that no other header includes, but whose sources are needed.
 MORE = ["normals/groups/weld.h"]
-# The macros that this script evaluates; conditions on others are left to the compiler.
+# The macros whose values this script knows. Conditions on other macros are left to the compiler.
 DEFINED = {"CHRONORMAL_HIGHWAY": False, "CHRONORMAL_ALONE": True}
 TARGETS = {"HWY_SCALAR": 1, "HWY_EMU128": 2, "HWY_AVX2": 3, "HWY_AVX3": 4, "HWY_PLAIN": 5, "HWY_TARGET": 5, "HWY_ONCE": 1}
 
@@ -39,8 +39,8 @@ def floor_of(path):
 
 
 def sources_of_headers():
-    """Returns, for each header, the sources that define its functions. The first header that a source includes is its
-    own."""
+    """Returns a dict from each header to the sources that define its functions. A source belongs to the first header
+    that it includes."""
     sources = {}
     for path in sorted((ROOT / "src").rglob("*.cpp")):
         first = re.search(r'^#include "([^"]+)"', path.read_text(), re.M)
@@ -52,7 +52,7 @@ def sources_of_headers():
 
 
 def value_of(directive):
-    """Returns whether the condition of #if, #ifdef or #ifndef holds, or None if this script cannot evaluate it."""
+    """Returns the value of the condition of #if, #ifdef or #ifndef, or None if this script cannot evaluate it."""
     words = directive.split()
     if words[0] in ("#ifdef", "#ifndef"):
         known = DEFINED.get(words[1])
@@ -67,8 +67,8 @@ def value_of(directive):
 
 
 def decided(lines):
-    """Returns the lines without the branches whose conditions are known to be false."""
-    # Three values for each open condition: whether it is known, whether one of its branches was taken, and whether the
+    """Returns the lines of a file without the branches whose conditions are known to be false."""
+    # The stack has three values for each open condition: the condition is known, one of its branches was taken, and the
     # current branch is taken.
     result, stack = [], []
     for line in lines:
@@ -101,7 +101,7 @@ def decided(lines):
 
 
 def without_guard(lines):
-    """Returns the lines without the include guard of a header or an -inl.h."""
+    """Returns the lines of a file without its include guard. The file is a header or an -inl.h."""
     text = "\n".join(lines)
     guard = re.search(r"^#ifndef (CHRONORMAL_\w+_H_)\n#define \1\n", text, re.M)
     if guard is None:
@@ -116,8 +116,8 @@ def without_guard(lines):
 
 
 class File:
-    """A source or header that goes into the two files: its text, its includes of our headers, and its includes of
-    system headers."""
+    """A source or header that goes into the two files, with its text, its includes of headers of the library, and its
+    includes of system headers."""
 
     def __init__(self, path):
         self.path, self.includes, self.system = path, [], []
@@ -144,7 +144,7 @@ class Collection:
         self.files, self.order = {}, []
 
     def add(self, path):
-        """Adds a file, after the files that it includes."""
+        """Adds a file after the files that it includes, unless it was added before."""
         if path in self.files:
             return
         file = self.files[path] = File(path)

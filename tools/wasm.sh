@@ -1,5 +1,6 @@
-# Sourced by ./run and ./test: builds the program for other systems over Debian's sources of libraries, including a wasm
-# module by Debian's Emscripten, and makes the npm package from that. The package also needs tools/web.sh to be sourced.
+# Builds the program for other systems, with libraries from Debian's sources. One of these is a wasm module by Debian's
+# Emscripten, from which the npm package is made. ./run and ./test source this file; the package also needs
+# tools/web.sh.
 
 # fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] from Debian's
 # archive into FOLDER, unless they are already there.
@@ -25,8 +26,8 @@ LIST
   printf '%s\n' "$listed" >"$folder/.fetched"
 }
 
-# build_cross PRESET [TARGET...]: builds the program and the C library for another system (cmake/PRESET.cmake), in
-# build/PRESET, and these targets.
+# build_cross PRESET [TARGET...]: builds the program, the C library and these targets for another system
+# (cmake/PRESET.cmake), in build/PRESET.
 build_cross() {
   local preset=$1
   shift
@@ -36,7 +37,7 @@ build_cross() {
   cmake --build "$root/build/$preset" --target chronormal_cli chronormal_c "$@" >&2
 }
 
-# build_wasm PRESET [TARGET...]: configures and builds in build/PRESET.
+# build_wasm PRESET [TARGET...]: configures and builds these targets in build/PRESET.
 build_wasm() {
   local preset=$1
   shift
@@ -45,7 +46,7 @@ build_wasm() {
   build_report_page || return 1  # the page that `chronormal report` needs
   mkdir -p "$build"
   (
-    # Uses Debian's builds of the system libraries, which exist for exceptions too.
+    # Debian's builds of the system libraries are used. They also exist with support for exceptions.
     export NODE_PATH=/usr/share/nodejs EM_NODE_JS
     EM_NODE_JS=$(command -v node)
     unset CMAKE_CXX_COMPILER_LAUNCHER

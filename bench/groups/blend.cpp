@@ -129,7 +129,8 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// The sum that engines compute: the unit normals of the base plus the weighted sparse deltas of each target, normalised.
+// The sum that engines compute: the unit normals of the base plus the weighted sparse deltas of each target. The
+// result is normalised.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {

@@ -65,8 +65,8 @@ void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::s
 std::uint64_t ReadPlain(const std::byte* from, std::size_t bytes) { return Read<false>(from, bytes); }
 std::uint64_t ReadAhead(const std::byte* from, std::size_t bytes) { return Read<true>(from, bytes); }
 
-// Copies in one of four ways. Ways 0 and 3 use ordinary stores, and ways 1 and 2 use stores that bypass the caches. Ways
-// 2 and 3 also prefetch.
+// Copies in one of four ways. Ways 0 and 3 use ordinary stores, and ways 1 and 2 use stores that bypass the caches.
+// Ways 2 and 3 also prefetch.
 void Copy(int way, const std::byte* from, std::byte* to, std::size_t bytes) {
   if (way == 0) Stream<false, false, false>(from, nullptr, to, bytes);
   if (way == 1) Stream<false, true, false>(from, nullptr, to, bytes);

@@ -4,8 +4,8 @@
     components.py sbom VERSION FOLDER         prints a list of all files in FOLDER and their components, as SPDX 2.3
 
 A component is a Debian source package or an npm package. Its code is in an artefact if the compiler read one of its
-headers for the artefact (Ninja records the names of headers). A shared library is a component if the linker says
-that it is needed.
+headers for the artefact (Ninja records the names of headers). A shared library is a component if the linker lists it
+as needed.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ BUILD = ROOT / "build"
 SOURCES = BUILD / "wasm-sources"
 
 LIBRARIES = ["chronormal", "chronormal_io"]
-# The artefacts: the pattern of the file in dist/, its build, its targets, and its description.
+# The artefacts: the pattern of the file in dist/, the build, the targets, and the description.
 ARTEFACTS = {
     "arm64": ("chronormal-*-linux-arm64.tar.gz", "arm64", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "program": ("chronormal-*-linux-*.tar.gz", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
@@ -42,12 +42,15 @@ ARTEFACTS = {
     "site": ("chronormal-*-site.tar.gz", None, [], "ARCHIVE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
-WITH_PAGE = ("program", "arm64", "windows", "deb", "npm", "page")  # with the components of the pages of web/
+# artefacts that contain the components of the pages of web/
+WITH_PAGE = ("program", "arm64", "windows", "deb", "npm", "page")
 
-# The artefacts whose programs the add-on for Blender contains, by their folders in it; "program" has all other folders.
+# The artefacts whose programs the add-on for Blender contains. The keys are folders in the add-on; programs in all
+# other folders are those of "program".
 BLENDER_PROGRAMS = {"linux-arm64": "arm64", "windows-x64": "windows"}
 
-# The SPDX names of Debian's names of licences; and the packages whose `copyright` has no licence for all files.
+# The names that SPDX has for Debian's names of licences; and the licences of packages whose `copyright` names no
+# licence for all files.
 SPDX_NAMES = {
     "Apache-2": "Apache-2.0",
     "Apache-2.0": "Apache-2.0",
@@ -64,12 +67,12 @@ SPDX_LICENCES = {
     "gcc-12-cross": "GPL-3.0-or-later WITH GCC-exception-3.1",
     "gcc-mingw-w64": "GPL-3.0-or-later WITH GCC-exception-3.1",
     "glibc": "LGPL-2.1-or-later",
-    "cross-toolchain-base": "LGPL-2.1-or-later",  # glibc, for another machine
-    "emscripten": "(MIT OR NCSA) AND (Apache-2.0 WITH LLVM-exception)",  # including musl and libc++
+    "cross-toolchain-base": "LGPL-2.1-or-later",  # glibc for another machine
+    "emscripten": "(MIT OR NCSA) AND (Apache-2.0 WITH LLVM-exception)",  # includes musl and libc++
     "llvm-toolchain-14": "Apache-2.0 WITH LLVM-exception",
     "python3.11": "PSF-2.0",
 }
-NO_CODE = {"linux-libc-dev", "linux-libc-dev-arm64-cross"}  # they have only the numbers of system calls
+NO_CODE = {"linux-libc-dev", "linux-libc-dev-arm64-cross"}  # the packages have only the numbers of system calls
 
 
 def run(*command, **options):
@@ -77,7 +80,7 @@ def run(*command, **options):
 
 
 def owners(paths):
-    """Returns the binary packages that own these files, or files of these patterns."""
+    """Returns the binary packages that own the files with these paths or patterns of paths."""
     if not paths:
         return set()
     found = subprocess.run(["dpkg", "-S", *sorted(paths)], capture_output=True, text=True)
@@ -89,7 +92,8 @@ def owners(paths):
 
 
 class Component:
-    """A Debian source package or an npm package: name, version, licence, the file that names its authors, URL."""
+    """A Debian source package or an npm package, with its name, version, licence, URL, and the file that names its
+    authors."""
 
     def __init__(self, name, version, copyright):
         self.name, self.version, self.copyright = name, version, copyright
@@ -136,7 +140,7 @@ def headers_of(build, targets):
 
 
 def shared_libraries(artefact):
-    """Returns patterns of the files of the shared libraries that the binaries in an archive need."""
+    """Returns patterns of the paths of the shared libraries that the binaries in an archive need."""
     needed = set()
     with tempfile.TemporaryDirectory() as folder:
         if artefact.suffix == ".deb":
@@ -151,11 +155,13 @@ def shared_libraries(artefact):
         needed -= {path.name for path in Path(folder).rglob("*.so*")}
     known = dict(re.findall(r"^\s*(\S+) \(libc6,x86-64.*=> (\S+)$", run("/sbin/ldconfig", "-p"), re.M))
     paths = [Path(os.path.realpath(known[name])) for name in needed]
-    return {f"*/{path.parent.name}/{path.name}" for path in paths}  # below /lib or /usr/lib, which are the same folder
+    # The folders /lib and /usr/lib are the same, so the pattern fits both.
+    return {f"*/{path.parent.name}/{path.name}" for path in paths}
 
 
 def components_of(kind, artefact=None):
-    """Returns the components that are compiled in, and the components of the shared libraries that are needed."""
+    """Returns two lists: the components that are compiled in, and the components of the shared libraries that are
+    needed."""
     if kind == "blender":
         with zipfile.ZipFile(artefact) as archive:
             systems = {name.split("/")[2] for name in archive.namelist() if "/bin/" in name}

@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def write_zip(out: Path, files: dict[str, Path]) -> None:
-    """Writes files by their names in the zip."""
+    """Writes a zip. The keys of `files` are the names in the zip."""
     when = time.gmtime(int(os.environ.get("SOURCE_DATE_EPOCH", 315532800)))[:6]  # a zip cannot store a time before 1980
     with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:
         for name, path in sorted(files.items()):

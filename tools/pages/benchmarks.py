@@ -1,6 +1,6 @@
 """Makes the tables and pictures of docs/benchmarks.md from bench/results/*.json, which `./run bench --json` measured.
 
-If a run lacks a row, the script ends with a KeyError, so that no baseline can go missing.
+If a run lacks a row, the script ends with a KeyError, so that a missing baseline is noticed.
 """
 
 import json
@@ -13,7 +13,7 @@ MAIN = "epyc-zen4-2cores"
 
 
 class Run:
-    """The results of one machine."""
+    """The results that were measured on one machine."""
 
     def __init__(self, name):
         self.data = json.loads((RESULTS / f"{name}.json").read_text())
@@ -43,7 +43,7 @@ def normals(page, run):
         cells = []
         for group, name in zip(("faces", "vertices"), names):
             for size, order in SIZES:
-                # This row would take minutes, so it is not measured.
+                # Measuring this row would take minutes, so it is left out.
                 missing = name.startswith("CGAL") and group == "vertices" and order == "shuffled"
                 cells.append("-" if missing else text(run.ns(group, name, size, order)))
         rows.append([title, *cells])
@@ -67,8 +67,8 @@ def machines(page):
 
 
 def frames(page, run):
-    """Writes a table of the number of frames per segment from which on preparing curves takes less time than computing
-    normals anew in each frame."""
+    """Writes a table of break-even points: the number of frames per segment from which on preparing curves takes less
+    time than computing the normals anew in each frame."""
     def cell(group, size, curves, anew):
         saved = run.ns(group, anew, size) - run.ns(group, f"{curves} to float3", size)
         return "never" if saved <= 0 else str(math.ceil(run.ns(group, f"prepare {curves}", size) / saved))

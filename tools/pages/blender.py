@@ -71,7 +71,7 @@ def in_view():
 
 
 def save(image, name):
-    """Saves an image as JPEG, as it is on the screen."""
+    """Saves an image as JPEG, with the colours that it has on the screen."""
     settings = bpy.context.scene.render.image_settings
     settings.file_format, settings.quality = "JPEG", 88
     bpy.context.scene.view_settings.view_transform = "Standard"
@@ -87,7 +87,7 @@ def save_window(name):
 
 
 def wait():
-    """Gives the window time to draw itself, since regions slide in."""
+    """Draws the window again and waits, since regions of the window slide in."""
     for area in window().screen.areas:
         area.tag_redraw()
 
@@ -101,7 +101,7 @@ def check():
 
 
 def open_tab():
-    """Clicks the tab of the panel, below the tabs Item, Tool and View."""
+    """Clicks the tab of the add-on's panel, which is below the tabs Item, Tool and View."""
     region = next(region for region in view().regions if region.type == "UI")
     at = {"x": region.x + region.width - 12, "y": region.y + region.height - 166}
     window().event_simulate("MOUSEMOVE", "NOTHING", **at)
@@ -117,8 +117,8 @@ def open_export():
 
 
 def shown_heads(o):
-    """Returns three meshes at the current frame: with the normals of the plain file, of the corrected file, and of
-    Blender."""
+    """Returns three meshes at the current frame: one with the normals of the plain file, one with those of the
+    corrected file, and one with those of Blender."""
     look, truth = sys.modules[f"{ADDON}.look"], sys.modules[f"{ADDON}.truth"]
     scene = bpy.context.scene
     frames, now = look.frames_of(scene), truth.values_now(o)

@@ -1,5 +1,5 @@
-// Draws the pictures of docs/viewers.md and README.md that a page of `chronormal report` shows, in headless Chromium, and prints the figures
-// of their captions.
+// Draws the pictures of docs/viewers.md and README.md, which show a page of `chronormal report`, in headless Chromium.
+// Prints the figures for their captions.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_DATA=FOLDER node tools/pages/gallery.mjs docs
 import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
@@ -10,9 +10,9 @@ import { openPages } from '../../tests/viewers/web_page.mjs';
 
 const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 
-// The subjects and their cameras: `from` is the direction of the camera, `near` its distance as a share of the distance
-// at which the whole mesh is seen, `at` the point that it looks at, in shares of the box of the mesh. The moment is the
-// one with the largest mean error.
+// The meshes and their cameras. `from` is the direction of the camera, and `near` its distance as a share of the
+// distance at which the whole mesh is seen. `at` is the point at which the camera looks, in shares of the box of the
+// mesh. The picture shows the moment with the largest mean error.
 const SUBJECTS = [
   { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },
   { name: 'suzanne', input: [data('rigs/blender_suzanne_two_keys.glb')], from: [0.45, 0.2, 1], near: 0.72, at: [0.5, 0.5, 0.5], scale: 45 },
@@ -20,7 +20,8 @@ const SUBJECTS = [
   { name: 'twist', input: ['--sample', 'twist'], from: [0.6, 0.45, 1], near: 0.8, at: [0.5, 0.5, 0.5], scale: 45 },
 ];
 
-// Runs in the page: draws three panes, with rendered normals, true normals and the error, and the text above them.
+// Draws three panes, with rendered normals, true normals and the error, and the text above them. This function runs in
+// the page.
 function drawPicture({ from, near, at, scale }) {
   const { player, view, setMode } = globalThis.chronormal, { motion } = player, WIDTH = 400, HEIGHT = 430, HEAD = 26;
   const best = motion.mean.reduce((found, value, i) => (value > motion.mean[found] && motion.segment?.[i] !== 0xffffffff ? i : found), 0);

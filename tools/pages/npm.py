@@ -2,8 +2,8 @@
 
     CHRONORMAL_DATA=FOLDER npm.py PROGRAM PACKAGE TARBALL README
 
-Each measurement is a process of its own. Its time is the sum over all processors, including the start: the package
-has one thread, the program has one for each processor.
+Each measurement runs in a process of its own. Its time is the sum over all processors, including the start, since the
+package has one thread and the program has one for each processor.
 """
 
 import gzip
@@ -18,7 +18,7 @@ SUZANNE, FACE = DATA / "rigs/blender_suzanne_two_keys.glb", DATA / "rigs/ict_cap
 STRESS, DANCE = DATA / "gltf/MorphStressTest/glTF/MorphStressTest.gltf", DATA / "sequences/rumba_13"
 OUT = ["-o", "out.glb"]
 
-# The calls that are measured: their words, the arguments, and the number of runs, of which the fastest counts.
+# The calls that are measured: their name, their arguments, and the number of runs, of which the fastest counts.
 CASES = [
     ("`--version`: the start alone", ["--version"], 5),
     ("`audit` of MorphStressTest", ["audit", STRESS], 3),
@@ -31,7 +31,8 @@ CASES = [
 ]
 
 
-# Starts the command from a small process, since a process counts the memory of its parent at the fork as its own.
+# The command is started from this small process, because a process also counts the memory that its parent had at the
+# fork.
 MEASURE = """
 import os, sys
 nothing = os.open(os.devnull, os.O_WRONLY)
@@ -43,7 +44,7 @@ print(used.ru_utime + used.ru_stime, 1024 * used.ru_maxrss)
 
 
 def measured(command, folder):
-    """Returns the seconds that a command takes, summed over all processors, and the largest memory in bytes."""
+    """Returns the seconds that a command takes, summed over all processors, and its largest memory in bytes."""
     words = [sys.executable, "-S", "-E", "-c", MEASURE, *map(str, command)]
     return [float(word) for word in subprocess.run(words, cwd=folder, check=True, capture_output=True, text=True).stdout.split()]
 

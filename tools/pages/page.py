@@ -1,8 +1,8 @@
-"""Keeps the figures and pictures of a page of docs/ up to date, for the other files of this folder.
+"""Keeps the figures and pictures of a page of docs/ up to date, for the other scripts of this folder.
 
 A page is written by hand, except for its tables, which are between <!-- NAME --> and <!-- end -->. Page.says()
-checks the figures in its prose. `tools/make_page NAME` writes tables and pictures anew; with --check it changes
-nothing. Both exit with 1 if the page differs from the measurements.
+checks the figures in the prose of the page. `tools/make_page NAME` writes tables and pictures anew. With --check, it
+changes nothing. In both cases, the exit code is 1 if the page differs from the measurements.
 """
 
 import os
@@ -31,7 +31,7 @@ def grouped(value, decimals=0):
 
 
 def scientific(value, decimals=0):
-    """Formats a number like 3.1e-6; a number from 1 to 10 has no exponent."""
+    """Formats a number like 3.1e-6. A number from 1 to 10 gets no exponent."""
     digits, exponent = f"{value:.{decimals}e}".split("e")
     return digits if int(exponent) == 0 else f"{digits}e{int(exponent)}"
 
@@ -65,10 +65,10 @@ def save(figure, path):
 
 
 def looks_alike(path, other):
-    """Tells whether two pictures are equal up to rounding."""
+    """Returns True if two pictures are equal up to rounding."""
     if path.suffix == ".svg":
         number = re.compile(r"-?\d+\.\d+")
-        # Removes names that are made from hashes.
+        # Matplotlib makes some names from hashes, which differ from run to run. They are removed here.
         one, two = (re.sub(r"#?\b[mpCD][0-9a-f]+(?:_\d+)?\b", "", file.read_text()) for file in (path, other))
         if number.sub("", one) != number.sub("", two):
             return False
@@ -90,7 +90,7 @@ class Page:
         self.faults += 1
 
     def table(self, name, heads, rows):
-        """Inserts a table into the page."""
+        """Replaces the table between <!-- name --> and <!-- end --> in the page."""
         place = re.search(f"(?<=<!-- {name} -->\n).*?(?=<!-- end -->)", self.text, re.S)
         if place is None:
             return self.fault(f"it has no place <!-- {name} -->")
@@ -100,13 +100,13 @@ class Page:
         self.text = self.text[:place.start()] + now + self.text[place.end():]
 
     def says(self, *sentences):
-        """Fails unless the page has these sentences; line breaks do not matter."""
+        """Reports a fault unless the page has these sentences; line breaks do not matter."""
         for sentence in sentences:
             if " ".join(sentence.split()) not in " ".join(self.text.split()):
                 self.fault(f"it must say: {sentence}")
 
     def requires(self, holds, claim):
-        """Fails unless a claim holds that the prose of the page states in words."""
+        """Reports a fault unless `holds` is true. `claim` is the statement in the page that depends on it."""
         if not holds:
             self.fault(f"it no longer holds that {claim}")
 

@@ -14,9 +14,10 @@ import chronormal as cn
 import numpy as np
 from page import BLACK, BLUE, GREEN, GREY, ORANGE, PROGRAM, PURPLE, RED, SKY, Page, grouped, percent, plt, ratio, scientific
 
-MORPHS = ["cloth", "bend", "twist", "eversion"]  # from mild to dramatic, in the order of the columns of every table
+MORPHS = ["cloth", "bend", "twist", "eversion"]  # from mild to dramatic; the columns of every table have this order
 COLOURS = dict(zip([*MORPHS, "soup"], [BLUE, GREEN, ORANGE, RED, PURPLE]))
-# Table 1 of the paper: sums of angles for morphs of 15,300, 44,700, 35,180 and 21,040 faces.
+# Table 1 of the paper: the sums of angles in degrees for the morphs, which have 15,300, 44,700, 35,180 and 21,040
+# faces.
 PAPER = {"linear": ("Linear", [18916, 55756, 44078, 20061]), "quadratic": ("Quadratic", [4820, 15792, 9681, 5425]),
          "cubic": ("Cubic", [1906, 6444, 3640, 1572]), "polynomial": ("t-variant cross product", [0, 0, 0, 0]),
          "slerp": ("Vector SLERP", [19427, 57999, 44972, 20861]),
@@ -39,7 +40,7 @@ def degrees_between(a, b):
 
 
 class Part:
-    """Some faces of a motion: the file for the program, and their exact normals."""
+    """Some faces of a motion, as a file for the program and with their exact normals."""
 
     def __init__(self, positions, faces):
         positions, faces = np.asarray(positions, np.float32), np.asarray(faces)
@@ -49,7 +50,7 @@ class Part:
         self.corners = positions.astype(float)[:, faces]  # (keyframes, faces, 3, 3)
 
     def normals(self, t, segment=0):
-        """Returns n(t) of every face: the cross product of two edges."""
+        """Returns n(t) of every face, which is the cross product of two edges."""
         a, b, c = np.moveaxis((1 - t) * self.corners[segment] + t * self.corners[segment + 1], 1, 0)
         return np.cross(b - a, c - a)
 
@@ -93,8 +94,8 @@ def random_order(faces, count):
 
 
 def some(name, pairs):
-    """Returns random faces of a morph, so many that there are `pairs` pairs of a face and a segment, or all faces if
-    there are fewer pairs."""
+    """Returns a part of a morph with random faces. Their number gives about `pairs` pairs of a face and a segment. If
+    the morph has fewer pairs, returns all its faces."""
     motion = cn.read(sample=name)
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)
     count = pairs // (len(positions) - 1)
@@ -115,7 +116,7 @@ def lagrange(part, degree, t, segment=0):
     return value
 
 
-# Section 1 of docs/paper.md.
+# The next functions make section 1 of docs/paper.md.
 
 def measure_table1(page):
     measured = {}
@@ -171,7 +172,8 @@ def draw_ratios(page, theirs, ours):
 
 
 def measure_parts(page, ours):
-    """Measures where the error of slerp comes from: a wrong path, or a wrong speed along the path."""
+    """Measures how much of the error of slerp comes from a wrong path, and how much from a wrong speed along the
+    path."""
     rows = []
     for name in MORPHS:
         part, path, speed = some(name, 4000), [], []
@@ -194,7 +196,7 @@ def measure_parts(page, ours):
               f"is worse than linear there ({ratio(ours[MATRIX][0])})", f"frames gain only {percent(1 - ours[OPTIMAL][0], 1)}")
 
 
-# Section 2 of docs/paper.md.
+# The next functions make section 2 of docs/paper.md.
 
 def measure_table2(page):
     schemes = ["recompute", "linear", "quadratic", "cubic", "polynomial", "rational", "slerp", "decasteljau:4", MATRIX, TIMED]
@@ -210,7 +212,7 @@ def measure_table2(page):
     page.requires(found["decasteljau:4"]["operations"]["trigonometric"] == 6 + 6, "de Casteljau takes 6 sines and 6 arc tangents")
 
 
-# Section 3 of docs/paper.md.
+# The next functions make section 3 of docs/paper.md.
 
 PLAYED = ["polynomial", "linear", "quadratic", "cubic", "slerp", OPTIMAL, "circle"]
 
@@ -241,11 +243,11 @@ def measure_drift(page):
               f"by up to {scientific(max(arcs[0]))} after 10,000 steps, and by {scientific(max(arcs[1]))} if")
 
 
-# Section 4 of docs/paper.md.
+# The next functions make section 4 of docs/paper.md.
 
 def zeros_of_squared_length(part):
-    """Returns the complex t at which n(t).n(t) = 0, four for each face, and which of the four limits the convergence
-    (Runge 1901)."""
+    """Returns the complex values of t at which n(t).n(t) = 0, four for each face. Also returns which of the four limits
+    the convergence (Runge 1901)."""
     c0, m, n1 = part.normals(0), 2 * part.normals(0.5) - (part.normals(0) + part.normals(1)) / 2, part.normals(1)
     c1, c2 = 2 * (m - c0), c0 - 2 * m + n1
     quartic = np.stack([dot(c2, c2), 2 * dot(c1, c2), dot(c1, c1) + 2 * dot(c0, c2), 2 * dot(c0, c1), dot(c0, c0)], axis=1)
@@ -315,8 +317,8 @@ def segments_of(part):
 
 
 def largest_distance(part, degree):
-    """Returns the largest distance of the polynomial from the unit normal, before the polynomial is normalised:
-    Runge's theory is about this distance."""
+    """Returns the largest distance of the interpolating polynomial from the unit normal, before the polynomial is
+    normalised. Runge's theory is about this distance."""
     times = np.arange(1, 197) / 197
     return np.max([np.linalg.norm(lagrange(part, degree, t) - part.exact(t), axis=1) for t in times], axis=0)
 
@@ -339,7 +341,7 @@ def draw_lens(page, at, grows):
 
 
 def draw_oscillation(page, soup, at, found):
-    """Draws the face whose zero is nearest to 0.5 + 0.1i, and the mean error of all morphs against the degree."""
+    """Draws the face whose zero is nearest to 0.5 + 0.1i, and the mean error of all morphs over the degree."""
     shown = np.abs(at.real + 1j * np.abs(at.imag) - (0.5 + 0.1j)).argmin()
     face, t = soup.face(shown), np.linspace(0, 1, 401)
     exact = np.array([face.exact(x)[0] for x in t])
@@ -360,7 +362,7 @@ def draw_oscillation(page, soup, at, found):
               f"has it at {at[shown].real:.2f} + {abs(at[shown].imag):.2f} i")
 
 
-# Section 5 of docs/paper.md.
+# The next functions make section 5 of docs/paper.md.
 
 CHOICES = {"slerp": (BLACK, "x"), "quaternion:edge": (SKY, "s"), "quaternion:polar": (PURPLE, "v"), MATRIX: (BLUE, "s"), OPTIMAL: (RED, "D"),
            "circle": (GREEN, "o"), TIMED: (ORANGE, "^")}
@@ -410,7 +412,8 @@ def measure_frames(page):
 
 
 def draw_angle(page):
-    """Draws the mean error of one face of median linear error against the angle phi (eq. 6 and 7 of docs/theory.md)."""
+    """Draws the mean error over the angle phi (eq. 6 and 7 of docs/theory.md), for one face of each morph: the face
+    whose linear error is the median."""
     (figure, axes), t, disagreement = plt.subplots(1, 3, figsize=(9, 3.6), layout="constrained"), np.linspace(0, 1, 201), 0
     for name, ax in zip(("cloth", "twist", "eversion"), axes):
         part = some(name, 2000)
@@ -447,11 +450,11 @@ def draw_angle(page):
     page.says(f"agree to {scientific(disagreement)} degrees")
 
 
-# Section 6 of docs/paper.md.
+# The next functions make section 6 of docs/paper.md.
 
 def quaternions_of(tangent, binormal, normal):
-    """Returns the quaternions of matrices by the largest of the four squares. A matrix that is not a rotation gives the
-    values that common implementations give."""
+    """Returns the quaternions of matrices, computed from the largest of the four squares. For a matrix that is not a
+    rotation, the result is the one that common implementations give."""
     a, b, c = tangent.T, binormal.T, normal.T
     squares = np.stack([1 + a[0] + b[1] + c[2], 1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2]])
     x, y, z, xy, xz, yz = b[2] - c[1], c[0] - a[2], a[1] - b[0], b[0] + a[1], c[0] + a[2], c[1] + b[2]
@@ -530,10 +533,11 @@ def measure_slips(page):
               f"on soup it is at {soup[TIMED]} behind `quadratic` at {soup['quadratic']}", f"({soup['circle']} against {soup[OPTIMAL]})")
 
 
-# Section 7 of docs/paper.md.
+# The next functions make section 7 of docs/paper.md.
 
 def view_against(towards, along):
-    """Returns two directions on paper for an observer who looks against `towards`, with `along` to the right."""
+    """Returns two directions of the picture for an observer who looks against `towards`. The direction `along` points
+    to the right."""
     right = unit(along - dot(along, towards) * towards)
     return np.stack([right, np.cross(towards, right)], axis=1)
 

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/python.md by the code of that page."""
+"""Draws the pictures of docs/python.md with the code of that page."""
 
 import os
 import re
@@ -12,7 +12,7 @@ def main():
     page, names = Page("python"), {}
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        plt.rcdefaults()  # the style that a reader's own matplotlib has
+        plt.rcdefaults()  # the style that matplotlib has for a reader by default
         for block in re.findall(r"^```python\n(.*?)^```$", page.text, re.M | re.S):
             exec(compile(block, "docs/python.md", "exec"), names)
         drawn = sorted(Path(folder).glob("*.png"))

@@ -13,7 +13,7 @@ import chronormal as cn
 
 
 def sheet(faces):
-    """Returns a square sheet of about so many triangles with a wave that runs through it: (p0, p1, faces)."""
+    """Returns a square sheet of about `faces` triangles with a wave that runs through it: (p0, p1, faces)."""
     side = int(np.sqrt(faces / 2))
     y, x = np.divmod(np.arange((side + 1) ** 2), side + 1)
     x, y = x / side, y / side
@@ -25,7 +25,7 @@ def sheet(faces):
 
 
 def recompute(p0, p1, faces, t, add):
-    """Computes vertex normals at t in the usual NumPy way."""
+    """Computes vertex normals at t as NumPy users usually do."""
     p = (1 - t) * p0 + t * p1
     a, b, c = (p[faces[:, i]] for i in range(3))
     normals = add(faces, np.cross(b - a, c - a), len(p))
@@ -46,7 +46,7 @@ def add_by_bincount(faces, normals, count):
 
 
 def seconds(work, repeats):
-    """Returns the fastest and the median time of some runs, after one run that warms up."""
+    """Returns the fastest and the median time of some runs, in seconds, after one run that warms up the caches."""
     work()
     times = [time.perf_counter()]
     for _ in range(repeats):

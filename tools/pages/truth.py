@@ -1,6 +1,6 @@
-"""Measures for docs/truth.md the errors of normals between keyframes against a known motion, by `compare --truth`.
+"""Measures for docs/truth.md, by `compare --truth`, the errors of normals between keyframes against a known motion.
 
-Sequences by other people are measured if CHRONORMAL_DATA names their folder; otherwise their tables do not change.
+Sequences by other people are measured if CHRONORMAL_DATA names their folder. Otherwise their tables do not change.
 The true normals for the table of pixels are computed here, in double, from positions alone.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 from page import PROGRAM, Page, scientific
 
 TURN = 2 * np.pi / 3  # total angle of the ball and of the top of the column, in radians
-IN_EACH = 8  # steps per segment with known positions, all of which except the ends are compared
+IN_EACH = 8  # number of steps per segment whose positions are known; all except the ends are compared
 ROWS = {"linear": "`linear` (nlerp)", "slerp": "`slerp`", "quadratic": "`quadratic`", "decasteljau:4": "`decasteljau:4`",
         "quaternion:optimal": "`quaternion:optimal`", "polynomial": "`polynomial`: exact on straight paths",
         "catmull-rom": "exact on curves through the keyframes (`catmull-rom`)", "hermite": "exact on curves with known velocities (`hermite`)"}
@@ -23,7 +23,8 @@ SCHEMES = [name for name in ROWS if name not in ("catmull-rom", "hermite")]
 
 
 def grid(around, up, place):
-    """Returns a closed tube with vertices at place(part around, part up): positions (n, 3) and faces (m, 3)."""
+    """Returns a closed tube: positions (n, 3) and faces (m, 3). Its vertices are at place(u, v), where u is the
+    fraction around the tube and v the fraction upwards."""
     positions = np.array([place(j / around, i / up) for i in range(up + 1) for j in range(around)])
     i, j = np.divmod(np.arange(up * around), around)
     a, b = i * around + j, i * around + (j + 1) % around
@@ -42,7 +43,8 @@ def column(around, up):
     return x, 2 * up - 1, z
 
 
-# The mesh of each motion, and the speed at which each vertex turns around y.
+# The mesh of each motion, and a function that returns the speed at which each vertex turns around y, in radians per
+# unit of time.
 MOTIONS = {"turn": (grid(48, 24, ball), lambda p: TURN + 0 * p[:, 1]), "twist": (grid(48, 48, column), lambda p: TURN * (p[:, 1] + 1) / 2)}
 
 
@@ -60,7 +62,7 @@ def run(*words):
 
 
 def compared(path, every):
-    """Returns the average error of each row in degrees, and the bend of the path."""
+    """Returns a dict with the average error of each row in degrees, and the bend of the path as text."""
     result = json.loads(run("compare", path, "--truth", every, "--elements", "vertices", "--json", "--schemes", ",".join(SCHEMES)))
     found = {row["scheme"] if row["path"] == "linear" else row["path"]: row["mean_degrees"] for row in result["rows"]}
     of_faces = json.loads(run("compare", path, "--truth", every, "--elements", "faces", "--json", "--schemes", "quaternion:matrix"))
@@ -69,7 +71,8 @@ def compared(path, every):
 
 
 def degrees(value):
-    return f"{value:.3f}" if value >= 0.01 else f"{value:.4f}" if value >= 1e-4 else "< 0.0001"  # near the rounding of float32
+    # Smaller errors would be close to the rounding of float32.
+    return f"{value:.3f}" if value >= 0.01 else f"{value:.4f}" if value >= 1e-4 else "< 0.0001"
 
 
 def put(page, name, heads, columns):
@@ -90,7 +93,7 @@ def known(page, name):
 
 
 def as_sequence(folder, path, *moments):
-    """Writes a motion at some moments as a sequence. Returns its file, positions, times and faces."""
+    """Writes a motion at some moments as a sequence. Returns the file, and its positions, times and faces."""
     file = Path(folder) / f"{path.stem}.npz"
     run("sample", path, *moments, "--force", "-o", file)
     arrays = np.load(file)
@@ -100,7 +103,7 @@ def as_sequence(folder, path, *moments):
 
 
 def shown(path, name, times):
-    """Returns the normals of a scheme at these times: (times, vertices, 3)."""
+    """Returns the normals of a scheme at these times: an array (times, vertices, 3)."""
     out = run("sample", path, "--scheme", name, "--no-weld", "-o", "-", "--times", ",".join(map(repr, map(float, times))))
     return np.load(io.BytesIO(out)).astype(float)
 
@@ -119,7 +122,8 @@ def exact(positions, faces):
 
 
 def pixels_of(positions, faces, view, size=512):
-    """Returns the pixels that show a face, seen along z: the face, and its weights (p, 3)."""
+    """Returns the pixels in which a face is visible, seen along z: for each of p pixels the face, and the weights (p,
+    3) of its corners."""
     left, bottom, width = view
     screen = np.column_stack([(positions[:, :2] - (left, bottom)) / width * size, positions[:, 2]])
     depth, face_at, weights = np.full((size, size), -np.inf), np.full((size, size), -1), np.zeros((size, size, 3))
@@ -140,14 +144,14 @@ def pixels_of(positions, faces, view, size=512):
 
 
 def levels(normals, faces, pixels):
-    """Returns grey levels from 0 to 255 (sRGB) of a matte surface with one light."""
+    """Returns the grey levels, from 0 to 255 (sRGB), of a matte surface with one light."""
     light = unit(np.einsum("pc,pcd->pd", pixels[1], normals[faces[pixels[0]]])) @ unit(np.array([0.4, 0.5, 0.77]))
     light = 0.1 + 0.9 * np.maximum(light, 0)
     return 255 * np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def screens(page, data):
-    """Measures the differences at t = 1/4 of each segment: in degrees at vertices, and in grey levels of pixels."""
+    """Measures the differences at t = 1/4 of each segment, in degrees at vertices and in grey levels of pixels."""
     rows = []
     for title, path, moments in [("dance", data / "sequences/rumba_13", ["--times", "keys"]),
                                  ("face", data / "rigs/ict_capture.glb", ["--animation", "0", "--times", "0:0.5:4"])]:

@@ -1,4 +1,4 @@
-"""Draws the pictures of docs/uses.md from answers of the package."""
+"""Draws the pictures of docs/uses.md from the answers that the Python package gives."""
 
 import chronormal as cn
 import numpy as np
@@ -13,8 +13,8 @@ def unit(vectors):
 
 
 def soup(motion, count):
-    """Returns random triangles whose corners move by up to `motion` times their size, and their unit normals at all
-    times."""
+    """Returns random triangles whose corners move by up to `motion` times the size of a triangle, and the unit normals
+    of the triangles at all times."""
     random = np.random.default_rng(3)
     start = random.uniform(-0.5, 0.5, (3 * count, 3))
     end = start + random.uniform(-motion, motion, (3 * count, 3))
@@ -26,7 +26,8 @@ def soup(motion, count):
 
 
 def flat(axis):
-    """Returns a flat map of the sphere around an axis, in which distances from the axis are angles in degrees."""
+    """Returns two functions of a flat map of the sphere around an axis. In this map, distances from the axis are angles
+    in degrees."""
     axis = unit(np.asarray(axis, float))
     right = unit(np.cross(np.eye(3)[np.abs(axis).argmin()], axis))
     up = np.cross(axis, right)
@@ -44,8 +45,8 @@ def flat(axis):
 
 
 def draw_cones(page):
-    """Draws a normal that leaves the cone of its two ends, with the cone of the interval; and counts the random
-    triangles whose normals leave it."""
+    """Draws a normal that leaves the cone of its two ends, and the cone of the whole interval. Counts the random
+    triangles whose normals leave the cone of their ends."""
     figure, (sphere, bars) = plt.subplots(1, 2, figsize=(9, 4.2), width_ratios=(1.1, 1), layout="constrained")
 
     def measured(motion, count):
@@ -55,7 +56,7 @@ def draw_cones(page):
         return curves, ends, angle(ends)[0], angle(ends).max(0), cn.cones(keyframes, faces), angle
 
     curves, ends, of_ends, farthest, found, _ = measured(0.6, 400)
-    # Choose a face that clearly leaves the cone of its ends, and whose own cone is not too wide for a picture.
+    # A good face for the picture clearly leaves the cone of its ends, and its own cone is not too wide.
     face = np.argmax(np.where((found["half_angle"] < 40) & (np.degrees(of_ends) > 8), farthest - of_ends, -1))
     seen, rim = flat(found["axis"][face])
     sphere.plot(*seen(rim(np.arcsin(found["sine"][face]))).T, color=EXACT, label="cone of the interval")
@@ -78,8 +79,8 @@ def draw_cones(page):
 
 
 def draw_facing(page):
-    """Draws a sphere that turns inside out, seen from far away: the intervals in which faces show their front, and the
-    silhouette at an instant."""
+    """Draws a sphere that turns inside out, seen from far away. The pictures show the intervals in which faces show
+    their front, and the silhouette at an instant."""
     viewer = np.array([4.0, -5.0, 2.0])
     motion = cn.read(sample="eversion")
     positions, faces = np.asarray(motion.positions), np.asarray(motion.faces)
@@ -117,8 +118,8 @@ def ball(rows, columns):
 
 
 def draw_contain(page):
-    """Draws a drop that falls and is squeezed, and dust that rises through it: the dust inside over time, and the
-    crossings of the surface."""
+    """Draws a drop that falls and is squeezed, and dust that rises through the drop. The pictures show the share of the
+    dust inside over time, and the crossings of the surface."""
     vertices, faces = ball(24, 48)
     x, y, z = vertices.T
     falls = np.stack([x * (0.7 + 0.3 * z), y * (0.7 + 0.3 * z), z + 1], axis=1)

@@ -1,4 +1,4 @@
-"""Bakes glTF files by other people in CHRONORMAL_DATA and judges what viewers render of them, for docs/viewers.md."""
+"""Bakes glTF files by other people in CHRONORMAL_DATA, and measures how viewers render them, for docs/viewers.md."""
 
 import os
 from pathlib import Path
@@ -9,7 +9,7 @@ from page import Page
 FILES = ["gltf/MorphPrimitivesTest/glTF/MorphPrimitivesTest.gltf", "gltf/AnimatedMorphSphere/glTF/AnimatedMorphSphere.gltf",
          "gltf/MorphStressTest/glTF/MorphStressTest.gltf", "gltf/RobotExpressive/RobotExpressive.glb", "rigs/blender_suzanne_two_keys.glb",
          "rigs/ict_capture.glb"]
-# Babylon.js and Bevy render the same as three.js, up to rounding.
+# Babylon.js and Bevy render the same normals as three.js, up to rounding.
 VIEWERS = {"three": "three.js, Babylon.js, Bevy", "playcanvas": "PlayCanvas", "godot": "Godot 4", "filament": "Filament", "gltfpack": "after gltfpack"}
 STATES = {None: "by default", "exact": "`exact`"}
 SAMPLES = 3

@@ -1,4 +1,5 @@
-"""Configures Sphinx for the site (tools/site/make): the pages of the repository as they are, with a navigation.
+"""Configures Sphinx for the site (tools/site/make), which shows the pages of the repository as they are, with a
+navigation.
 
 The source folder is the repository itself, so that links between pages, and from pages to files, mean what they mean
 there.
@@ -21,8 +22,8 @@ include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md
                     "docs/**.md"]
 myst_heading_anchors = 4
 highlight_language = "none"
-# The theme of Debian's package furo: dark and light, on phones, with a search that needs no server. Debian's style
-# sheet shows dark colours only by the button: sassc dropped the rules for systems that are set to dark.
+# The theme is furo, a package of Debian. It is dark or light, works on phones, and its search needs no server. In
+# Debian's style sheet, only the button makes it dark, because sassc dropped the rules for systems that are set to dark.
 html_theme = "furo"
 STYLES = (Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
 DARK = STYLES[STYLES.index('body[data-theme="dark"] {'):STYLES.index(".only-light {\n      display")]
@@ -46,7 +47,7 @@ GROUPS = {
 
 
 def navigation():
-    """Returns the tables of contents, which are hidden at the end of the first page."""
+    """Returns the tables of contents as text. They are hidden at the end of the first page."""
     placed = {page for pages in GROUPS.values() for page in pages}
     pages = [f"docs/{path.stem}" for path in sorted((ROOT / "docs").glob("*.md"))]
     groups = GROUPS | {"Results": [page for page in pages if page not in placed]}
