@@ -12,7 +12,7 @@
 namespace chronormal::cli {
 
 struct BlendArguments {
-  std::optional<std::size_t> rows;  ///< set by --blend
+  std::optional<std::size_t> rows;  ///< number of poses; set by --blend
   std::optional<std::size_t> active;
   std::size_t seed = 1;
 

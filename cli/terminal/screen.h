@@ -28,7 +28,8 @@ namespace chronormal::cli {
 /// Returns the text without any emphasis.
 [[nodiscard]] std::string plain(std::string_view text);
 
-/// Marks as heading every line of the text that begins at its first column and ends in a colon.
+/// Returns the text with emphasis for its headings. A heading is a line that begins in the first column and ends in a
+/// colon.
 [[nodiscard]] std::string with_headings(std::string_view text);
 
 }  // namespace chronormal::cli

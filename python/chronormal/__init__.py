@@ -446,8 +446,8 @@ def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None
 
     The arrays of the result are:
     segment, face   the place of the collapse
-    lower, upper    bounds of its t in the segment, in [0, 1]
-    time            its time in the motion
+    lower, upper    bounds of t at the collapse, in [0, 1]
+    time            the time of the collapse in the motion
     turns_over      True if the normal after the collapse is opposite to the normal before
     before, after   (rows, 3) the limits of the unit normal on both sides
     always_segment, always_face   faces that have no area in a whole segment

@@ -51,7 +51,7 @@ class EngineTest(unittest.TestCase):
         self.c.chronormal_curves_errors.argtypes = [c_void_p, c_double, Vectors, c_void_p]
         self.c.chronormal_curves_next.argtypes = [c_void_p, Vectors, Vectors]
         self.c.chronormal_blend_unit_normals.argtypes = [c_void_p, POINTER(c_double), Vectors, POINTER(c_size_t)]
-        # A vertex has a position, a normal and a texture coordinate, as in a vertex buffer.
+        # Each row of the buffer is a vertex with a position, a normal and a texture coordinate, as in engines.
         self.p0, self.p1, faces = sheet()
         self.faces = np.ascontiguousarray(faces, dtype=np.uint32)
         self.buffer = np.zeros((12, 8), dtype=np.float32)

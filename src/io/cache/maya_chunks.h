@@ -1,4 +1,4 @@
-/// Reads the chunks of .mc and .mcx files, and chooses a channel. Private to io.
+/// Reads the chunks of Maya caches (.mc and .mcx files), and chooses a channel of points. Private to io.
 #ifndef CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
 #define CHRONORMAL_IO_CACHE_MAYA_CHUNKS_H_
 

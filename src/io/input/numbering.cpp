@@ -23,7 +23,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// A number of any size: 0.DIGITS times ten to the power of `point`. A number without digits is 0.
+// A number of any size. Its value is 0.D times ten to the power of `point`, where D stands for the text `digits`. A
+// number without digits is 0.
 struct Number {
   bool is_negative = false;
   std::string digits;  // digits without zeros at the beginning and the end
@@ -148,7 +149,7 @@ double value_of(const Number& number) {
   return code == std::errc{} || number.point < 0 ? value : std::numeric_limits<double>::infinity();
 }
 
-// A set of names with the same texts between their numbers, and the numbers that distinguish these names.
+// A group of files whose names have the same texts between their numbers.
 struct Group {
   std::vector<std::size_t> files;
   // Indices of the numbers that differ between the files.

@@ -130,7 +130,7 @@ bool write_bytes(int descriptor, std::string_view bytes) noexcept {
     const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
     if (count > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(count));
-      // No system should report success for 0 bytes; this avoids an endless loop.
+      // write() should never return 0 here. Treating 0 as an error avoids an endless loop.
     } else if (count == 0) {
       errno = EIO;
       return false;

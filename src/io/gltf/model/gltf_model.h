@@ -87,7 +87,7 @@ struct Draco {
   Attributes attributes;
 };
 
-/// The place of an attribute of a primitive.
+/// The accessor of an attribute of a primitive, and the id of the attribute in a compressed mesh.
 struct AttributeSource {
   std::size_t accessor = 0;
   std::optional<std::size_t> draco = {};  ///< id of the attribute in the compressed mesh, if the mesh contains it
