@@ -46,7 +46,8 @@ std::vector<Size> parse_sizes(const std::string& list) {
   return sizes;
 }
 
-// Fails early if the file cannot be written, so that ten minutes of measurements are not lost.
+// Throws an error before the measurements if the file `json` cannot be written, so that ten minutes of work are not
+// lost.
 void check_writable(const std::string& json) {
   if (json.empty() || json == "-") return;
   if (!std::ofstream(json, std::ios::binary | std::ios::app))
@@ -65,7 +66,7 @@ Report measure(const SuiteOptions& options, const std::vector<Size>& sizes) {
   for (const bool shuffled : {false, true}) {
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       Size size = sizes[i];
-      // Small meshes fit into a cache, where their order does not matter.
+      // Small meshes fit into a cache, where their order does not matter, so they are not measured in random order.
       if (shuffled && size.elements < kShuffledFrom && i + 1 < sizes.size()) continue;
       size.shuffled = shuffled;
       run_faces(suite, size);

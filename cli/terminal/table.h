@@ -56,7 +56,7 @@ class Table {
   std::vector<std::vector<std::string>> rows_;
 };
 
-/// Returns the indices of the `most` largest values, in ascending order. If values are equal, the first ones are chosen.
+/// Returns the indices of the `most` largest values, in ascending order. The first of equal values are chosen.
 [[nodiscard]] std::vector<std::size_t> indices_of_largest(const std::vector<double>& values, std::size_t most);
 
 /// Formats an angle or a ratio with four decimals, or with an exponent if four decimals would lose all its digits:

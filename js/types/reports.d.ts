@@ -527,7 +527,7 @@ export interface InspectedGltf {
 /** The report of inspect(). For a glTF file without faces, it has only `input`, `notes`, `gltf` and `trouble`. */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
-  /** The numbers in the file names of a sequence, if they tell the files apart. */
+  /** Facts about the numbers in the file names of a sequence. Present if these numbers order the files. */
   files?: { count: number; first: number; last: number; least_step: number; most_step: number; are_seconds: boolean };
   /** Notes for people on how the input was read, in sentences. */
   notes: string[];

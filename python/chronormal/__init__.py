@@ -391,12 +391,12 @@ class ErrorTable:
 
     name: str  #: "mesh0" of a glTF file, else ""
     errors: _np.ndarray  # : (rows, columns) float32, degrees; NaN for samples that were not judged
-    subjects: _np.ndarray  #: (rows,) int64: the subject of the audit, or the segment of the motion
+    subjects: _np.ndarray  #: (rows,) int64: the index of the subject of the audit, or of the segment of the motion
     times: _np.ndarray  # : (rows,) float64, seconds; NaN in rows that belong to targets
     weights: _np.ndarray  # : (rows,) float64; NaN in rows that belong to animations and sequences
     positions: _np.ndarray  # : (V, 3) float32, at the first keyframe or in the base
     primitives: _np.ndarray = None  # : (V,) int64, the primitive of each vertex of a glTF mesh
-    vertices: _np.ndarray = None  # : (V,) int64, the number of each vertex in its primitive
+    vertices: _np.ndarray = None  # : (V,) int64, the index of each vertex in its primitive
 
     def __repr__(self):
         rows, columns = self.errors.shape

@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal::binary {
 
-/// Reads the number whose first byte is at `at`.
+/// Returns the number whose first byte is at `at`.
 template <class T>
 [[nodiscard]] T load(const char* at, std::endian order) noexcept {
   std::array<char, sizeof(T)> raw{};

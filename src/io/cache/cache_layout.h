@@ -33,7 +33,7 @@ struct CacheLayout {
   std::uint64_t begin = 0;
   std::size_t item_size = sizeof(float);  ///< bytes of a coordinate: 4 or 8
   std::endian order = std::endian::little;
-  Origin origin = {};  ///< the point from which positions are measured; other than (0, 0, 0) only for float64
+  Origin origin = {};  ///< the point from which positions are measured; (0, 0, 0) for float32
   /// the name of the array in a NumPy file; if given, errors name an element instead of a byte
   std::string array = {};
 

@@ -27,8 +27,8 @@ struct GltfDocument::State {
   // already have values are skipped.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);
-  // Releases memory that maps the files. Call it after reading an array; `vertices` is the number of vertices that were
-  // read.
+  // Releases the memory that holds pages of mapped files, if many vertices were read. Call it after reading the arrays
+  // of `vertices` vertices.
   void release(std::size_t vertices) const noexcept;
 
   std::optional<FileBytes> file;  // the file, if the document keeps it

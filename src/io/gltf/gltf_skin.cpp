@@ -131,7 +131,8 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
   const std::vector<gltf::InfluenceSource>& sets = source.influences;
   if (sets.empty())
     return invalid_input(state.bytes.place(pointer), "the mesh has a skin, but its vertices have no joints (JOINTS_0)");
-  // All sets of weights may use the same accessor, so a small file could ask for much memory.
+  // All sets of joints and weights may use the same accessor, so a small file could ask for much memory. The limit of
+  // expansion is therefore checked.
   constexpr std::uint64_t kOfVertex = 4 * (2 * sizeof(float) + sizeof(JointShare));
   const std::uint64_t most = std::numeric_limits<std::uint64_t>::max() / kOfVertex / sets.size();
   if (Status status = state.bytes.expansion().check(

@@ -23,9 +23,9 @@ namespace chronormal::inline internal {
 /// The deepest allowed nesting of arrays and objects. glTF itself needs about ten levels.
 inline constexpr std::size_t kDeepestJson = 256;
 
-/// A long list whose objects parse_json() passes on one by one, so that they are never all in memory. Every object in the
-/// array `key` of the root is passed to `take` with its index, and then dropped. Items that are not objects stay in the
-/// array.
+/// A long list whose objects parse_json() passes on one by one, so that they are never all in memory. Every object in
+/// the array `key` of the root is passed to `take` with its index, and then dropped. Items that are not objects stay in
+/// the array.
 struct JsonItems {
   std::string_view key;
   std::function<void(std::size_t index, const nlohmann::json& item)> take;

@@ -272,7 +272,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     }
     if (!node.is_object())
       return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
-    // The missing levels on the way to the value are added as one text.
+    // If objects on the way to the value are missing, they are added together with the value as one text.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();
     add_member(node, token, std::move(made));

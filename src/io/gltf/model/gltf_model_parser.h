@@ -41,8 +41,8 @@ class Parser {
     kJoints,  ///< joints of vertices, and their weights
     kJointWeights,
     kInverseBinds,
-    kMovedNode,  ///< translations and scales over time
-    kTurnedNode  ///< rotations over time
+    kMovedNode,  ///< translations or scales of nodes over time
+    kTurnedNode  ///< rotations of nodes over time
   };
 
   /// Parses a part whose faults matter only if other data need the part. Returns the first complaint of parse(), which
