@@ -80,7 +80,7 @@ int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   return static_cast<int>(std::lround(sum / (4 * 3.14159265358979323846)));
 }
 
-// Compares the sums of crossings with winding numbers from solid angles, for some points at several times.
+// Checks, for some points at several times, that the sum of crossings equals the winding number from solid angles.
 void verify(const Scene& scene) {
   const Windings start = scene.windings(0);
   const std::size_t step = 1 + scene.segment.topology->face_count() / 200;

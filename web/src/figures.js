@@ -102,7 +102,7 @@ export function cornersInPicture({ from, to }, { centres, size }, view) {
   }));
 }
 
-/** Converts a displacement in the picture into a displacement in space. */
+/** Converts a displacement (dx, dy) of the picture into a displacement in space, parallel to the picture. */
 export const liftedFrom = (dx, dy, { size }, { right, up }) => plus(right.map((c) => (c * dx * size) / TRIANGLE.reach), (-dy * size) / TRIANGLE.reach, up);
 
 /** Draws Figure 1: the face on its path, its exact normal at a sample, and the normals of the selected schemes. */

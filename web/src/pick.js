@@ -1,5 +1,5 @@
-// Finds the first triangle that a ray meets. This gives the vertex under the pointer, and directions from which a
-// vertex is visible.
+// Finds the first triangle that a ray meets. The page uses this to find the vertex under the pointer, and directions
+// from which a vertex is visible.
 
 /**
  * Finds the nearest triangle that a ray meets. Positions are (V x 3).

@@ -40,7 +40,7 @@ struct MayaCacheDescription {
     std::string name;
     std::string interpretation;       ///< "positions", "normals", ...
     bool is_regular = false;          ///< true if there is a sample every `step` ticks from start to end
-    std::int32_t step = 0;            ///< > 0 if is_regular
+    std::int32_t step = 0;            ///< ticks from one sample to the next; above 0 if is_regular
     std::int32_t start = 0, end = 0;  ///< first and last time, in ticks; start <= end if is_regular
   };
 

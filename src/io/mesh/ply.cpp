@@ -261,7 +261,7 @@ class BodyReader {
     const Element& element = header_.elements[e];
     // Such an element takes no bytes, however large its count is.
     if (element.properties.empty()) return Success{};
-    // The counts have been checked against the size of the file, so the memory is limited by this size, too.
+    // The counts have been checked against the size of the file, so a small file cannot ask for much memory here.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
     if (e == header_.face_element) faces_.reserve_triangles(static_cast<std::size_t>(element.count));
     for (std::uint64_t row = 0; row < element.count; ++row) {

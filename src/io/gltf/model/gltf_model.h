@@ -39,7 +39,7 @@ struct Compression {
   enum class Mode { kAttributes, kTriangles, kIndices };
   enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
 
-  std::size_t buffer = 0, offset = 0, length = 0;  ///< place of the compressed bytes
+  std::size_t buffer = 0, offset = 0, length = 0;  ///< buffer, offset and length of the compressed bytes
   std::size_t stride = 0, count = 0;               ///< size of an element in bytes, and number of elements
   /// True for KHR_meshopt_compression. The compressed bytes may then have a later version than our decoder understands.
   bool is_khr = false;

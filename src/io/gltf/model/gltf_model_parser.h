@@ -23,7 +23,7 @@ class Parser {
 
   /// Parses a node. May be called before the document is complete.
   void parse_node(std::size_t index, const nlohmann::json& value);
-  /// Parses everything except nodes, and checks the nodes against it.
+  /// Parses all parts of the document except nodes, and checks the nodes against these parts.
   Result<Model> parse(const nlohmann::json& document);
 
  private:
