@@ -19,8 +19,8 @@ inline void check_error(const Error& error) {
   require(!error.message.empty(), "an error has a message");
 }
 
-/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a cache of finite
-/// numbers with at most one position per byte.
+/// Aborts unless `result` is correct for an input of byte_count bytes: either an error with a code, a place and a
+/// message, or a cache of finite numbers with at most one position per byte of the input.
 inline void check_cache_invariants(const Result<PositionCache>& result, std::size_t byte_count) {
   if (!result) return check_error(result.error());
   const PositionCache& cache = result.value();
@@ -33,8 +33,8 @@ inline void check_cache_invariants(const Result<PositionCache>& result, std::siz
   }
 }
 
-/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a valid motion of
-/// at most most_per_byte x byte_count positions.
+/// Aborts unless `result` is correct for an input of byte_count bytes: either an error with a code, a place and a
+/// message, or a valid motion of at most most_per_byte * byte_count positions.
 inline void check_motion_invariants(const Result<Motion>& result, std::size_t byte_count, std::size_t most_per_byte) {
   if (!result) return check_error(result.error());
   const Motion& motion = result.value();

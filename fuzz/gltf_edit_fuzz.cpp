@@ -1,10 +1,11 @@
-// Fuzz target of edits of glTF files: lines of changes, an empty line, and a document, JSON or GLB.
+// Fuzz target of edits of glTF files. An input has lines of changes, an empty line, and a document, which is JSON or
+// GLB:
 //
 //     set /meshes/0/weights [0, 1]
 //     append /extras/list null
 //
-// An input that is not a glTF file becomes the extras of a small glTF file. An edit must either be refused, or give
-// JSON in which all tokens outside of the edited pointers are unchanged, and the last change has its value.
+// A document that is not a glTF file becomes the extras of a small glTF file. An edit must either be refused, or give
+// JSON that differs from the source only in the values at the edited pointers. The last change must be in the result.
 #include "chronormal/io/gltf_document.h"
 
 #include <algorithm>
@@ -46,9 +47,9 @@ std::string_view json_of(std::string_view file) {
 
 void check(const std::string& source, const std::vector<Change>& changes, const std::string& prefix) {
   const auto document = chronormal::GltfDocument::read(source, "fuzz.gltf");
-  // The reader takes a zero byte as the end of the JSON and ignores the rest.
+  // The reader ends the JSON at a zero byte and ignores the rest, so documents with a zero byte are skipped.
   if (!document || json_of(source).find('\0') != std::string_view::npos) return;
-  // Impossible changes are left out; the others are made one after the other.
+  // Removes impossible changes from the list and makes the other changes one after the other.
   std::vector<Change> possible;
   std::string result;
   for (const Change& change : changes) {

@@ -17,7 +17,7 @@
 
 namespace chronormal::fuzz {
 
-/// The results of reading everything in a file.
+/// The result of reading everything in a file: what was found, and the errors.
 class GltfReading {
  public:
   std::vector<Error> errors;    ///< in the order in which they occurred
@@ -121,7 +121,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
   reading.require(!error.message.empty(), "an error has a message");
   const std::string_view place = error.place;
   reading.require(place.starts_with(name), "an error names the file");
-  // An error of a file without anything to read names only the file.
+  // If a file has nothing to read, the place of the error is only the name of the file.
   if (place == name) return reading.no_moves.push_back(error);
   const std::string_view rest = place.substr(std::min(place.size(), name.size()));
   reading.require(rest.starts_with(", /") || rest.starts_with(", byte "), "an error has a JSON pointer or a byte");
@@ -178,7 +178,7 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
       reading.require(mesh.has_value(), "a track drives a mesh");
       if (mesh) detail::check_keys(track, document.meshes()[*mesh].target_count, keys.value(), reading);
     }
-    // If another animation has this number as its name, that animation is read twice.
+    // If the name of another animation is this number, the option selects that animation, which is then read twice.
     options.animation = std::to_string(a);
     read_motion();
   }

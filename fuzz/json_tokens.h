@@ -14,9 +14,10 @@ namespace chronormal::fuzz {
 
 inline constexpr char kHidden = '\x01';
 
-/// A bracket, a comma, a colon, a name or a scalar, with the blanks before it and the JSON pointer of the value that it
-/// belongs to. Brackets belong to their own value; commas, names and colons belong to the value after them. If a later
-/// member has the same name and hides this one, the name begins with kHidden in the pointer.
+/// A bracket, a comma, a colon, a name or a scalar, with the blanks before it. `pointer` is the JSON pointer of the
+/// value that the token belongs to. Brackets belong to their own value; commas, names and colons belong to the value
+/// after them. If a later member of the same object has the same name, the pointer of the earlier member has kHidden in
+/// front of the name.
 struct JsonToken {
   std::string pointer;
   std::string_view text;
@@ -86,7 +87,8 @@ class JsonTokens {
     for (const char c : name) result += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
     return result;
   }
-  // Returns the name of the member that begins here, and leaves its tokens for later.
+  // Returns the name of the member that begins here. Does not add its tokens to the list, so the member can be read
+  // again.
   std::string peek_name() {
     const std::size_t from = at_, count = tokens_.size();
     if (next() == ',') ++at_;
@@ -137,8 +139,9 @@ class JsonTokens {
   std::vector<JsonToken> tokens_;
 };
 
-/// Returns the first difference between two documents outside the values at the pointers, or "" if there is none. The
-/// name, colon and comma of a replaced value are compared as well, but those of an added value are not.
+/// Returns the first difference between two documents outside the values at the pointers, or "" if there is no such
+/// difference. Also compares the name, the colon and the comma before a replaced value, but not those before an added
+/// value.
 [[nodiscard]] inline std::string difference_beside(const JsonTokens& before, const JsonTokens& after,
                                                    const std::vector<std::string>& pointers) {
   if (!before.ok() || !after.ok()) return before.ok() ? "the result is no JSON" : "the source is no JSON";

@@ -21,8 +21,8 @@ inline void require(bool condition, const char* what) {
   std::abort();
 }
 
-/// Aborts unless the result of reading byte_count bytes is an error with code, place and message, or a mesh that
-/// validate() accepts as both keyframes of a motion.
+/// Aborts unless `result` is correct for an input of byte_count bytes: either an error with a code, a place and a
+/// message, or a mesh. validate() must accept a motion whose two keyframes are this mesh.
 inline void check_mesh_invariants(Result<MeshFrame> result, std::size_t byte_count) {
   if (!result) {
     require(result.error().code == ErrorCode::kInvalidInput, "the code of an error is kInvalidInput");

@@ -1,5 +1,5 @@
-// Fuzz target of the OBJ reader: for any bytes, the result is an error with a place, or a mesh that is valid and no
-// larger than the bytes can describe. Its shading belongs to the same mesh.
+// Fuzz target of the OBJ reader: for any bytes, the result is an error with a place, or a valid mesh that is no larger
+// than the bytes can describe. If the shading is read too, it must belong to the same mesh.
 #include "io/mesh/obj.h"
 #include "mesh_invariants.h"
 

@@ -1,5 +1,5 @@
-// Fuzz target of the readers of parts, and of the records that journals keep: for any bytes, the result is an error
-// with a message, or a result that can be printed.
+// Fuzz target of the reader of parts, which are the results of shards, and of the records of a journal. For any bytes,
+// the result is an error with a message, or a result that can be printed.
 #include "workflow/json/parts.h"
 
 #include <string>
@@ -9,7 +9,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string bytes(reinterpret_cast<const char*>(data), size);
-  // A line feed separates the two parts.
+  // A line feed in the input separates two parts.
   const std::size_t line = bytes.find('\n');
   std::vector<chronormal::Part> parts = {{"first.json", bytes.substr(0, line)}};
   if (line != std::string::npos) parts.push_back({"second.json", bytes.substr(line + 1)});

@@ -1,5 +1,5 @@
-// Fuzz target of the PLY reader: for any bytes, the result is an error with a place, or a mesh that is valid and no
-// larger than the bytes can describe.
+// Fuzz target of the PLY reader: for any bytes, the result is an error with a place, or a valid mesh that is no larger
+// than the bytes can describe.
 #include "io/mesh/ply.h"
 #include "mesh_invariants.h"
 

@@ -1,4 +1,5 @@
-// Runs a fuzz target on files, so that compilers without libFuzzer replay its seeds under any sanitizer.
+// Runs a fuzz target on the files that are given as arguments. The tests replay seeds in this way, with compilers that
+// lack libFuzzer and under any sanitizer.
 
 #include <cstddef>
 #include <cstdint>

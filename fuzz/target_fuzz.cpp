@@ -1,5 +1,5 @@
-// Fuzz target of the reader of MakeHuman targets, as text and gzipped: for any bytes, the result is an error with a
-// place, or deltas that fit the base.
+// Fuzz target of the reader of MakeHuman targets, plain or compressed by gzip: for any bytes, the result is an error
+// with a place, or deltas whose vertices exist in the base mesh.
 #include "io/mesh/make_human_target.h"
 
 #include <cmath>
