@@ -229,7 +229,7 @@ TEST_F(AuditCli, json_is_one_object_with_schema_2) {
   EXPECT_EQ(json["authored_offsets"][0]["vertices"], 4);
 }
 
-// The notes on standard error are also in the JSON, for programs that do not read standard error.
+// Notes on standard error must also be in the JSON, for programs that do not read standard error.
 TEST_F(AuditCli, notes_on_a_file_are_in_the_json_of_audit_and_bake) {
   test::GltfBuilder builder = test::hinge().file();
   builder.json["extensionsRequired"] = {"FOO_bar"};
@@ -320,7 +320,8 @@ TEST_F(AuditCli, motion_of_which_no_pair_can_be_judged_passes_no_gate) {
   EXPECT_EQ(run_shell(std::string(kProgram) + " merge part.json", folder_.path(), "").exit_code, 4);
 }
 
-// A sheet that folds upon itself has no normal along the fold, and both of its halves are drawn.
+// A sheet folds until both halves lie on each other. There is then no normal along the fold, although both halves are
+// still drawn.
 TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
   const auto sheet = [](const std::string& x) {
     return "v 0 0 0\nv 0 1 0\nv -1 0 0\nv " + x + " 0 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 2//1 1//1 4//1\n";
@@ -356,7 +357,7 @@ TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   };
   folder_.write("big.obj", big);
   folder_.write("small.obj", small(".009", "0"));
-  // At this distance from the origin, float32 keeps only a point or a line of the triangle.
+  // At this distance from the origin, rounding to float32 collapses the triangle to a point or a line.
   folder_.write("far.obj", small(".009", "100000"));
   for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
     const std::string arguments = "big.obj small.obj " + rule;
@@ -386,7 +387,7 @@ TEST_F(AuditCli, long_tables_are_cut_and_json_is_not) {
 }
 
 TEST_F(AuditCli, long_tables_show_the_worst) {
-  // Every third of 20 targets folds the hinge completely, and the others fold it by a tenth.
+  // Every third of the 20 targets folds the hinge completely, and the other targets fold it by a tenth.
   test::ShadedMesh mesh = test::hinge();
   const auto slight = [&] {
     test::ShadedMesh::Target target = mesh.targets[0];
@@ -400,8 +401,8 @@ TEST_F(AuditCli, long_tables_show_the_worst) {
   const std::string text = text_of("many.glb --samples 2");
   const std::string table = text.substr(0, text.find("... and 4 more"));
   for (int i = 0; i < 20; ++i) {
-    // The table shows 16 rows and prefers earlier rows among equal errors: all 7 targets with an error of 90 degrees,
-    // and 9 of the others.
+    // The table shows 16 rows: all 7 targets with an error of 90 degrees, and 9 of the other targets. Among equal
+    // errors, the table prefers earlier targets.
     const bool is_shown = i % 3 == 0 || i < 14;
     EXPECT_EQ(table.find("\ntarget " + std::to_string(i) + " ") != std::string::npos, is_shown) << i << "\n" << table;
   }
@@ -414,7 +415,7 @@ std::string last_line(const std::string& text) {
 }
 
 TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
-  // Twenty targets lack normals and most have errors of a few degrees. An earlier mesh has smaller errors.
+  // Twenty targets lack normals, and most targets have errors of a few degrees. An earlier mesh has smaller errors.
   const auto slight = [](float share) {
     test::ShadedMesh::Target target = test::hinge().targets[0];
     for (float& c : target.positions) c *= share;
@@ -441,7 +442,7 @@ TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
 }
 
 TEST_F(AuditCli, targets_together_are_a_fault_of_their_own_where_they_are_worse_than_alone) {
-  // Two targets fold by 14 degrees each, and together by 27.
+  // Two targets fold the hinge by 14 degrees each, and by 27 degrees together.
   test::ShadedMesh mesh = test::hinge();
   for (float& c : mesh.targets[0].positions) c *= 0.125F;
   mesh.targets[0].positions[9] = 0;
@@ -474,8 +475,8 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");
     ASSERT_EQ(result.exit_code, 0) << result.err;
   };
-  // Without an animation, the weight of the target is not driven, so the target can have only one delta, before and
-  // after a bake.
+  // Without an animation, nothing drives the weight of the target. A bake then cannot use correction targets, and gives
+  // the target a single delta for each vertex.
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
   sheet.targets[0].normals.clear();
   test::GltfBuilder builder = sheet.file();
@@ -488,12 +489,12 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"were baked before", "that no animation moves"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The file was baked with one delta although correction targets could be driven.
+  // The first bake used a single delta, although an animation could drive correction targets.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The file was baked for all viewers, while fewer viewers would allow smaller errors.
+  // The first bake was for all viewers. A bake for fewer viewers would allow smaller errors.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --for"});
@@ -508,7 +509,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("moved.glb", bytes);
   advice = last_line(text_of("moved.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file again"});
-  // The error is measured by a rule that bake does not correct for.
+  // The rule lerp, by which the error is measured here, is not one that bake corrects.
   expect_words(last_line(text_of("hinge.glb --rule lerp")), {"leave --rule out to see what bake can do"});
   // A tolerance below one degree also lowers the limit for "nothing to do".
   expect_words(last_line(text_of("baked.glb --tolerance 0.1")),
@@ -542,7 +543,7 @@ TEST_F(AuditCli, several_gltf_files_are_a_row_each) {
   EXPECT_EQ(json["files"][1]["input"]["name"], "models/m10.glb");
   EXPECT_EQ(json["files"][1]["worst_degrees"], 90.0);
   EXPECT_EQ(json["files"][0]["judged"], 0);
-  // A folder counts as a list, even if it contains only one file.
+  // A folder counts as a list of files, even if it contains only one file.
   EXPECT_EQ(Json::parse(run("models/deep --json").out)["files"].size(), 1U);
 }
 
@@ -582,13 +583,14 @@ TEST_F(AuditCli, gltf_files_and_keyframes_are_not_mixed) {
 }
 
 TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
-  // A wide face and a narrow, leaning face meet at vertex 0: by angle its normal is parallel to (0, -s, 1 + c).
+  // A wide face and a narrow, leaning face meet at vertex 0. Weighted by angle, the normal of vertex 0 is parallel to
+  // (0, -s, 1 + c).
   test::ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -8, 8, 8};
   const float r = std::sqrt(0.5F);
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, r, 0, r};
-  // The two corners at vertex 0 have equal angles, and so do those at vertex 2.
+  // The corners of the two faces have equal angles at vertex 0, and also at vertex 2.
   for (const std::size_t v : {0U, 2U}) {
     const float x = r, z = 1 + r, length = std::sqrt(x * x + z * z);
     mesh.normals[3 * v] = x / length;

@@ -1,4 +1,4 @@
-// Tests `bake` for scripts and people: files, a report, exit codes.
+// Tests `bake` for scripts and people: the files that it writes, its report, and its exit codes.
 
 #include <gtest/gtest.h>
 
@@ -77,13 +77,14 @@ TEST_F(BakeCli, what_was_baked_before_takes_its_images_along) {
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(bytes_of("folder/twice.glb").find("image.png"), std::string::npos);
   EXPECT_NE(bytes_of("folder/twice.glb").find(" and so on"), std::string::npos);
-  // In the same folder, a bake of the baked file writes the same bytes again.
+  // A bake of the file once.glb, which was baked already, writes the same bytes again if the result is in the same
+  // folder.
   EXPECT_EQ(run("once.glb -o again.glb").exit_code, 0);
   EXPECT_TRUE(bytes_of("again.glb") == bytes_of("once.glb"));
 }
 
 TEST_F(BakeCli, hard_edges_of_a_sequence_are_those_that_its_files_show) {
-  // Vertices 1 and 2 are the ridge of a roof and have a normal for each side.
+  // Vertices 1 and 2 are on the ridge of a roof. Each has two normals, one for each side of the roof.
   const std::string faces = "vn -1 0 1\nvn 1 0 1\nf 1//1 2//1 3//1\nf 3//2 2//2 4//2\n";
   folder_.write("roof_0.obj", "v -1 0 0\nv 0 0 1\nv 0 1 1\nv 1 0 0\n" + faces);
   folder_.write("roof_1.obj", "v -1 0 0\nv 0 0 2\nv 0 1 2\nv 1 0 0\n" + faces);
@@ -167,13 +168,13 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
-// Files above 64 MiB are read one keyframe at a time, and their stored normals are not kept.
+// The program reads files above 64 MiB one keyframe at a time, without keeping their stored normals.
 TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
   constexpr std::size_t kLine = 1 << 20, kLines = 24;
   const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";
   std::string room;
   for (std::size_t i = 0; i < kLines; ++i) room += comment;
-  // The stored normals of keyframe 1 are wrong. Only an audit of the file itself can find this.
+  // The stored normals of keyframe 1 are wrong, which only an audit of the file itself can find.
   for (const int k : {0, 1, 2}) {
     std::string mesh = bytes_of("f_" + std::to_string(k) + ".obj");
     mesh = mesh.substr(0, mesh.find('f')) + (k == 1 ? "vn 1 0 0\n" : "vn 0 0 1\n") +
@@ -214,7 +215,8 @@ TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
 }
 
 TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
-  // The deltas times the squares of the weights exceed float32, so these bakes are written only with --force.
+  // The products of the deltas and the squares of the weights exceed the range of float32, so these bakes are written
+  // only with --force.
   std::size_t worse = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     test::GltfBuilder builder = test::hills_document(1, seed);
@@ -266,7 +268,7 @@ TEST_F(BakeCli, a_result_that_is_better_in_one_respect_and_worse_in_another_is_t
                   ", but worse in its worst error (" + figure("worst_degrees_after") + " degrees, before " +
                       figure("worst_degrees_before") +
                       "); these errors include single sliders, which --animations-only does not correct\n"});
-    // The tables of viewers name the poses that they cover.
+    // The heading of a table of viewers must name the poses whose errors the table shows.
     const std::string both = "in the animations of the file, and with each slider alone:",
                       tracks = "in the animations of the file (--animations-only does not correct single sliders";
     const std::string text = run("talk.glb -o out.glb --force --animations-only --for three").out;
@@ -295,7 +297,8 @@ TEST_F(BakeCli, what_drives_extra_targets_is_in_the_file_and_beside_it_where_tha
   expect_words(both.out, {"drivers.json says how to drive the correction targets\n"});
   EXPECT_EQ(Json::parse(bytes_of("drivers.json"))["meshes"][0]["chronormal"], mark);
   EXPECT_TRUE(bytes_of("other.glb") == bytes_of("face.glb"));
-  // The file is not overwritten, and the drivers of a baked file are still reported.
+  // The program does not overwrite the file drivers.json. If the input was baked before, the program still reports the
+  // drivers.
   expect_error("still.glb -o third.glb --encode exact --drivers drivers.json", 1, "drivers.json");
   ASSERT_EQ(run("face.glb -o copy.glb --drivers again.json").exit_code, 0);
   EXPECT_EQ(bytes_of("again.json"), bytes_of("drivers.json"));

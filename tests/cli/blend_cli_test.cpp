@@ -1,5 +1,4 @@
-// Tests the parts of compare --blend that scripts depend on: text, JSON and CSV, the compared normals, and refused
-// requests.
+// Tests what scripts depend on in compare --blend: text, JSON and CSV, the compared normals, and refused requests.
 
 #include <gtest/gtest.h>
 

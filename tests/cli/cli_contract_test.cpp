@@ -1,5 +1,5 @@
-// Tests the behaviour that scripts depend on: exit codes, the texts on stdout and stderr, the JSON, and that files are
-// never half written. Runs the program itself.
+// Tests the behaviour that scripts depend on: exit codes, the text on stdout and stderr, the JSON, and that files are
+// written completely or not at all. The tests run the program itself.
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ class Cli : public testing::Test {
   }
   ~Cli() override { fs::remove_all(folder_); }
 
-  // Runs `chronormal ARGUMENTS` in a separate folder.
+  // Runs `chronormal ARGUMENTS` in the folder of this test.
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& input = "") const {
     return run_shell(std::string(kProgram) + " " + arguments, folder_.string(), input);
   }
@@ -58,7 +58,7 @@ class Cli : public testing::Test {
     write("b.obj", "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
   }
 
-  // Returns the names that the help of the program lists.
+  // Returns the names of the commands that the help of the program lists.
   [[nodiscard]] std::vector<std::string> command_names() const {
     std::vector<std::string> commands;
     bool are_listed = false;
@@ -163,7 +163,8 @@ TEST_F(Cli, help_and_version_have_short_ways) {
 
 TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("compare a.obj b.obj --shcemes linear"), 2, {"'--shcemes'; did you mean --schemes?"});
-  // The suggestion is the same if a required option is missing, or if the mistake is in the option's name.
+  // The program makes the same suggestion if a required option is missing too, or if the mistyped option has a value
+  // after "=".
   expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
   expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
   expect_error(run("compare a.obj b.obj --colour-of-the-sky"), 2, {"'--colour-of-the-sky'\n"});
@@ -212,8 +213,8 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// Arguments with which an option is valid, by the name of the option. needs_of() adds the other arguments that a
-// command needs.
+// For each option, arguments with which the option is valid. needs_of() returns the other arguments that a command
+// needs.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
@@ -359,7 +360,8 @@ TEST_F(Cli, every_option_that_help_lists_is_taken) {
       const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
       const auto use = special != kUses.end() ? special : usual;
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
-      // An option that belongs to one query names this query in the table, as in {"query --points", "contain ..."}.
+      // If an option belongs to only one query, the key in the table names that query, as in {"query --points",
+      // "contain ..."}.
       const std::string question =
           command == "query" && special == kUses.end() && !name.starts_with("--help") ? "collapse " : "";
       const ProcessResult result = run(command + " " + question + use->second + needs_of(command, use->second));
@@ -394,7 +396,7 @@ TEST_F(Cli, colours_are_for_terminals) {
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " -o table.txt").out, "");
   EXPECT_EQ(read("table.txt"), piped.out);
-  // Terminal codes for emphasis take no columns in a table, and names from files cannot contain such codes.
+  // Codes that emphasise text in a terminal take up no columns in a table. Names from files cannot contain such codes.
   std::string plain;
   bool is_mark = false;
   for (const char c : forced.out) {
@@ -453,7 +455,7 @@ TEST_F(Cli, a_name_that_is_too_long_stands_above_its_row) {
 TEST_F(Cli, what_an_error_quotes_from_a_file_is_safe_to_print) {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"extensionsUsed":["E"],"extensionsRequired":["\u001b[31mE\n"]})";
-  // An extension that nothing uses is an error only for --strict, and otherwise a note.
+  // An unused extension is an error only with --strict. Otherwise, the program prints a note.
   for (const bool strict : {true, false}) {
     const ProcessResult result = run(strict ? "inspect --strict -" : "inspect -", gltf);
     EXPECT_EQ(result.exit_code, strict ? 3 : 0);
@@ -477,7 +479,7 @@ TEST_F(Cli, wrong_usage_is_exit_2_with_a_hint) {
   expect_error(run("compare a.obj b.obj --schemes linear,nlerp"), 2, {"nlerp", "quaternion:optimal"});
   expect_error(run("compare a.obj b.obj --schemes ''"), 2, {"--schemes", "empty name"});
   expect_error(run("compare a.obj b.obj --schemes linear,"), 2, {"--schemes", "empty name"});
-  // An empty value, or a value that is not a number, is an error of its own: the option does not count as missing.
+  // If a value is empty or not a number, the message must complain about the value, not about a missing option.
   for (const char* const option :
        {"audit a.obj --tolerance", "audit a.obj --samples", "audit a.obj --fps", "compare a.obj b.obj --samples",
         "compare a.obj b.obj --blend", "compare a.obj b.obj --crease", "sample a.obj --crease",
@@ -571,7 +573,8 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
-  // The error of linear interpolation by hand: the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and at 3/4.
+  // The error of linear interpolation, computed by hand, is the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and
+  // at t = 3/4.
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
   for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }
@@ -721,7 +724,7 @@ TEST_F(Cli, a_face_that_shrinks_is_right_in_sequence_too) {
   for (const Json& row : json["schemes"]) {
     EXPECT_LT(row["max_degrees"].get<double>(), 1e-4);
     EXPECT_EQ(row["missing"], 0);
-    EXPECT_TRUE(row["relative_to_linear"].is_null());  // the error of linear is only rounding
+    EXPECT_TRUE(row["relative_to_linear"].is_null());  // the error of "linear" itself is only rounding error
   }
 }
 
@@ -761,7 +764,8 @@ TEST_F(Cli, long_work_shows_on_a_terminal_its_pace_and_the_time_that_is_left) {
   const std::string line = shown.substr(begin + 1, end - begin - 1);
   EXPECT_TRUE(line.starts_with("sampling [") && line.ends_with(" left")) << line;
   EXPECT_LE(line.size(), 80U) << line;
-  // At the printed rate, the remaining samples take the printed time, except for the rounding of both numbers.
+  // At the printed rate, the remaining samples take the printed time. The difference must be no larger than the
+  // rounding of both printed numbers allows.
   const double rate = std::stod(line.substr(line.find("%, ") + 3));
   double seconds = 0;
   for (std::size_t at = line.find("/s, ") + 4; line.compare(at, 4, "left") != 0;) {

@@ -1,5 +1,5 @@
-// Checks that each figure of `compare` is under its own name in the table, the JSON and the CSV, by comparison with
-// figures computed by hand.
+// Checks that `compare` prints each figure under its own name in the table, the JSON and the CSV. The expected figures
+// were computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -21,10 +21,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// Three triangles move in the first of two segments. One has no area. The normal of one turns over at t = 1/4. The
-// normal of one turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at t = 1/2. There
-// are 3 x 2 x 3 samples, of which 6 have no exact normal. Linear interpolation has two errors: the one above, and 180
-// degrees where opposite normals cancel.
+// Three triangles move in the first of two segments. The first has no area. The normal of the second turns over at t =
+// 1/4. The normal of the third turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at
+// t = 1/2. There are 3 x 2 x 3 samples, of which 6 have no exact normal. Linear interpolation has two errors: the error
+// of the third triangle, and 180 degrees where opposite normals cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {
@@ -111,7 +111,7 @@ TEST_F(CompareFigures, latex_has_the_figures_of_both_tables) {
     EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
 }
 
-// Returns the cells of a row of LaTeX or of the text table. The row begins with a name.
+// Returns the cells of the row that begins with this name, in LaTeX or in the text table.
 std::vector<std::string> cells_after(const std::string& text, const std::string& name, char separator) {
   const std::size_t begin = text.find('\n' + name + ' ');
   if (begin == std::string::npos) {
@@ -156,7 +156,7 @@ TEST_F(CompareFigures, latex_and_operations_have_the_numbers_of_json_each_in_its
                                                                   {"circle", "\\texttt{circle}"}};
   std::string schemes;
   for (const auto& [scheme, name] : names) schemes += (schemes.empty() ? "" : ",") + scheme;
-  // Makes motions with different figures. The name of the first has characters that are special in LaTeX.
+  // Makes motions with different figures. The name of the first motion has characters that are special in LaTeX.
   fs::create_directory(folder_.path() + "/a_b 10%");
   fs::copy(folder_.path() + "/1.obj", folder_.path() + "/a_b 10%/1.obj");
   fs::copy(folder_.path() + "/2.obj", folder_.path() + "/a_b 10%/2.obj");
@@ -214,7 +214,7 @@ TEST_F(CompareFigures, a_weighting_is_that_of_the_figures_and_not_of_their_name_
   std::map<double, std::string> sums;
   for (const std::string weighting :
        {"area", "angle", "uniform", "area-angle", "max", "inverse-edges", "inverse-roots"}) {
-    // There are two triangles of different shapes around each of two vertices, so every weighting gives another sum.
+    // Two triangles of different shapes meet at each of two vertices, so every weighting gives a different sum.
     folder_.write("h0.obj", "v 0 0 0\nv 3 0 0\nv 0 1 0\nv 4 2 1\nf 1 2 3\nf 3 2 4\n");
     folder_.write("h1.obj", "v 0 0 0\nv 3 0 1\nv 0 2 0\nv 4 2 -3\nf 1 2 3\nf 3 2 4\n");
     const std::string own =
@@ -252,7 +252,7 @@ TEST_F(CompareFigures, certificates_stand_beside_what_was_sampled) {
   EXPECT_FALSE(Json::parse(output("--json"))["schemes"][0].contains("certified"));
   for (const Json& row : rows) {
     const Json& certified = row["certified"];
-    // A face that turns over has no bound below 180 degrees, and there are two segments of three faces.
+    // The error bound of the face that turns over is 180 degrees. The motion has two segments of three faces.
     EXPECT_EQ(certified["upper_degrees"], 180) << row;
     EXPECT_GE(certified["upper_degrees"], row["max_degrees"]);
     EXPECT_EQ(certified["upper_at"]["segment"], 0);

@@ -18,7 +18,8 @@ using Json = nlohmann::json;
 
 class CompareTruth : public testing::Test {
  protected:
-  // Writes two triangles that turn by `angle` radians from frame to frame, about an axis outside of both.
+  // Writes `frames` OBJ files of two triangles. From file to file, both triangles turn by `angle` radians about an axis
+  // outside of them.
   void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;
@@ -67,7 +68,7 @@ TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
     std::getline(lines, line);
     const std::string names = row["path"].get<std::string>() + "," + row["scheme"].get<std::string>() + ",";
     EXPECT_NE(line.find(names), std::string::npos) << line;
-    if (row["mean_degrees"] < 0.01) continue;  // the table prints fewer digits, with a power of ten
+    if (row["mean_degrees"] < 0.01) continue;  // small means have an exponent, and fewer digits, in the table
     char mean[32];
     std::snprintf(mean, sizeof mean, "%.4f", row["mean_degrees"].get<double>());
     EXPECT_NE(table.out.find(mean), std::string::npos) << names << mean << '\n' << table.out;

@@ -1,5 +1,5 @@
-// Tests the program with hostile files and systems: strange names, endless inputs, limits, and messages that must say
-// what is wrong.
+// Tests the program with hostile files and systems: strange names of files, endless inputs, and files that declare too
+// much. Messages must say what is wrong.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -42,7 +42,7 @@ class HostileCli : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Describes the first character that would control a terminal, or returns "".
+// Describes the first character of a text that would control a terminal, or returns "" if there is none.
 std::string find_unsafe(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
@@ -55,7 +55,7 @@ std::string find_unsafe(std::string_view text) {
   return "";
 }
 
-// Names that a file system accepts; the second is not UTF-8.
+// Names of files that the file system accepts. The second name is not valid UTF-8.
 const std::vector<std::string> kNames = {"esc\x1b[31m csi\u009b31m rtl\u202etxt two\nlines del\x7f", "raw\xff\x9b"};
 
 TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
@@ -114,7 +114,7 @@ TEST_F(HostileCli, names_of_files_are_printed_without_what_a_terminal_obeys) {
       EXPECT_EQ(find_unsafe(result.out), "") << arguments << "\n" << result.out;
       EXPECT_EQ(find_unsafe(result.err), "") << arguments << "\n" << result.err;
     }
-    // JSON restores names that are UTF-8 exactly.
+    // A name that is valid UTF-8 must be in the JSON unchanged.
     if (name != kNames.back()) {
       EXPECT_EQ(Json::parse(run("inspect " + two + " --json").out)["input"]["name"], name + "_0.obj");
     }
@@ -174,7 +174,7 @@ TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_
 }
 
 TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
-  // A shell ignores SIGINT for its background jobs, and SIGHUP if told to, as nohup does.
+  // A shell ignores SIGINT for background jobs. It ignores SIGHUP too if `trap` says so, as the command nohup does.
   const ProcessResult result =
       run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
           "trap '' HUP; ");
@@ -265,7 +265,7 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
 }
 
-// An output never replaces another output or an input, even under a different name for the same file.
+// An output must never replace an input or another output, even if the two names of the file differ.
 TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -298,14 +298,15 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
     for (std::size_t i = 0; i < inputs.size(); ++i)
       EXPECT_EQ(test::read_whole(folder_ / inputs[i]), before[i]) << arguments;
   }
-  // The old file is replaced by a new one that has all of its content.
+  // A bake may replace its own input: a new file with the complete content replaces the old file.
   EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);
-  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // refused because of its extension
+  // the extension is not that of an archive
+  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
 }
 
-// Messages to a pipe without a reader are lost, and do not change the exit code. If data was to go to the pipe, the
-// program ends like other programs in front of `head`.
+// If nobody reads a pipe, messages to the pipe are lost and the exit code does not change. If data should go to the
+// pipe, the program ends as other programs do in front of `head`.
 TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -328,7 +329,8 @@ TEST_F(HostileCli, a_reader_that_is_gone_ends_only_what_was_to_be_read) {
   EXPECT_EQ(test::read_whole(folder_ / "err.txt"), "");
 }
 
-// A library that is loaded before the program may set another rounding mode. The output must not change.
+// A library that is loaded into the process may set another rounding mode before the program starts. The output must
+// not change.
 TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   if (std::string(kProgram).ends_with("_sanitized"))
     GTEST_SKIP() << "the layer would replace the malloc of a sanitizer";
@@ -349,7 +351,7 @@ TEST_F(HostileCli, the_rounding_mode_of_a_viewer_changes_no_byte) {
   }
 }
 
-// Makes a GLB of mesh_count meshes that share a grid of 3,600 vertices and its targets.
+// Makes a GLB with mesh_count meshes, all of which share a grid of 3,600 vertices and its targets.
 std::string grid_of_targets(int mesh_count, int target_count) {
   test::GltfBuilder builder;
   std::vector<float> positions, lift;
@@ -375,7 +377,7 @@ std::string grid_of_targets(int mesh_count, int target_count) {
   return builder.glb();
 }
 
-// 127 kB must not expand to 455 MB: an answer has a row for every face of every target.
+// The answer has a row for every face of every target, so a file of 127 kB would give an answer of 455 MB.
 TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
   folder_.write("many.glb", grid_of_targets(1, 150));
   for (const std::string arguments :
@@ -386,21 +388,21 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
   EXPECT_EQ(run("query cones many.glb --max-expansion 10000").exit_code, 0);
 }
 
-// The table of each mesh is small enough, but all tables together are too large.
+// The table of errors of one mesh is small enough, but the tables of all meshes together are too large.
 TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
   folder_.write("many.glb", grid_of_targets(60, 5));
   expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
-  // The file has no normals, so nothing is judged, which gives a different error.
+  // Such a large expansion is allowed here. The file has no normals to judge, which is another error.
   expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing could be judged"});
 }
 
 TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
   expect(run("inspect /proc/self/mounts", "timeout 20 "), 3, {"mounts"});
-  // Only root can open the log of the kernel.
+  // Only root can open the log of the kernel, /proc/kmsg.
   if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "never end"});
 }
 
-// Large results are on the heap, so a stack of 256 kB is enough.
+// A stack of 256 kB is enough, since the program keeps large arrays on the heap.
 TEST_F(HostileCli, a_small_stack_is_enough) {
   if (std::string(kProgram).ends_with("_sanitized")) GTEST_SKIP() << "a sanitizer needs more";
   folder_.write("a.obj", kFirst);
@@ -414,8 +416,8 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// The files claim a terabyte, of which almost nothing was written. Only p.ply and q.ply have the length that their
-// headers state.
+// The headers of the files promise a terabyte, of which almost nothing was written. Only p.ply and q.ply are as long as
+// their headers say.
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =

@@ -1,4 +1,5 @@
-// Tests `inspect` for scripts and people: facts, problems in words, the JSON, and exit codes.
+// Tests `inspect` for scripts and people: the facts about a file, the problems that it reports, the JSON, and the exit
+// codes.
 
 #include <gtest/gtest.h>
 
@@ -167,7 +168,7 @@ TEST_F(InspectCli, columns_are_aligned_below_their_titles_even_with_accents) {
     if (line.starts_with("0  ") || line.starts_with("1  ")) rows.push_back(line);
   }
   ASSERT_EQ(rows.size(), 2U);
-  EXPECT_EQ(rows[0].size(), rows[1].size() + 2);  // two accented letters take two bytes each
+  EXPECT_EQ(rows[0].size(), rows[1].size() + 2);  // the name has two accented letters of two bytes each
 }
 
 TEST_F(InspectCli, errors_and_output_are_as_in_other_commands) {

@@ -1,5 +1,5 @@
-// Tests `--shard` and `merge`: the merged results of many machines equal the result of one machine. Also tests the
-// choice of keyframes.
+// Tests `--shard` and `merge`: the merged results of several machines must equal the result of one machine. Also tests
+// how keyframes are chosen.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace {
 
 class Merge : public testing::Test {
  protected:
-  // Writes a strip of two triangles that folds over six keyframes.
+  // Writes six keyframes of a strip of two triangles that folds.
   Merge() {
     for (int k = 0; k < 6; ++k) {
       const std::string height = std::to_string(0.1 * k * k);
@@ -49,7 +49,7 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_NE(merged.err.find("the worst error is beyond the tolerance that the shards were made with"),
             std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
-  // The format is recognised by content, not by name.
+  // merge recognises the format of a part by its content, not by its name.
   std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");
   ASSERT_EQ(run("merge sample3.npy sample1.npy sample2.part -o merged.npy").exit_code, 0);
   EXPECT_TRUE(file("merged.npy") == file("one.npy"));
@@ -68,8 +68,8 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
 }
 
-// First, two inputs have the same names, sizes and times but different content. Then, one frame changes between two
-// shards.
+// First, the shards are from two inputs with the same names, sizes and times but different content. Then, one frame of
+// the input changes between two shards.
 TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
   const std::string changed = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0.25\nf 1 2 3\nf 2 4 3\n";
   const std::string before = file("w_3.obj");

@@ -1,5 +1,5 @@
-// Checks that numbers that are not finite are not printed as numbers. These inputs cause infinities and NaN during the
-// computation, and every command prints the results in all output formats.
+// Checks that infinities and NaN are never printed as numbers. The inputs cause infinities and NaN during the
+// computation, and every command prints its results in all output formats.
 
 #include <gtest/gtest.h>
 
@@ -21,14 +21,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tells whether a text contains NaN or infinity in place of a number. Sentences may name NaN.
+// Tells whether a text contains NaN or infinity in place of a number. Sentences that mention NaN do not count.
 bool has_no_number(const std::string& text) {
   static const std::regex kSentence("zero, infinite or NaN|NaN or infinite");
   static const std::regex kWord("(^|[^a-z])-?(nan|inf)([^a-z]|$)", std::regex::icase);
   return std::regex_search(std::regex_replace(text, kSentence, ""), kWord);
 }
 
-// Makes a hinge with normal deltas and an animation of its two weights.
+// Makes a hinge with normal deltas, and an animation of the weights of its two targets.
 test::GltfBuilder moved_hinge(float normal, const std::vector<float>& times, const std::vector<float>& weights) {
   test::ShadedMesh mesh = test::hinge();
   for (float& c : mesh.normals) c *= normal;
@@ -110,7 +110,7 @@ TEST(Numbers, the_measure_finds_words_that_are_no_numbers) {
     EXPECT_FALSE(has_no_number(text)) << text;
 }
 
-// fmt::format would print "nan", so in the program only cli/terminal/format.h may call it.
+// fmt::format would print "nan", so the program may call fmt::format only in cli/terminal/format.h.
 TEST(Numbers, are_formatted_in_one_place) {
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(kSourceFolder) / "cli")) {

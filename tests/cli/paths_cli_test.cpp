@@ -1,4 +1,4 @@
-// Tests --path: the reports of commands on curved motions, their warnings, and refused requests.
+// Tests the option --path, which curves the motion: the reports of the commands, their warnings, and refused requests.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,8 @@ using Json = nlohmann::json;
 
 class Paths : public testing::Test {
  protected:
-  // Writes two triangles that turn by `angle` radians from frame to frame, and lean over by `lean`.
+  // Writes five frames of two triangles that turn by `angle` radians from frame to frame. The triangles also lean over:
+  // y grows by lean * frame^2 * x.
   void write_turn(double angle, double lean = 0.1) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -40,7 +41,8 @@ class Paths : public testing::Test {
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
     }
   }
-  // Writes a triangle that turns in the same way, with velocities multiplied by a factor, for one frame per second.
+  // Writes frames of a triangle that turns in the same way, one frame per second, with the true velocities multiplied
+  // by `factor`.
   void write_turn_with_velocities(double angle, double factor) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -84,7 +86,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
             std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");
-  // Every command works on the straight pieces of the curves.
+  // Every command computes with the same straight pieces that approximate the curves.
   const auto pieces = json("inspect 'f*.obj' --path catmull-rom:0.5 --json")["input"]["keyframes"].get<int>() - 1;
   EXPECT_GT(pieces, 4);
   EXPECT_EQ(json("compare 'f*.obj' --path catmull-rom:0.5 --json --no-times")["input"]["segments"], pieces);
@@ -100,10 +102,10 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
 }
 
 TEST_F(Paths, that_bend_a_little_too_much_are_not_said_to_bend_by_the_limit) {
-  write_turn(2 * std::asin(0.502), 0);  // a curve that turns by an angle bends by the sine of half the angle
+  write_turn(2 * std::asin(0.502), 0);  // the bend of a turn is the sine of half its angle
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:1").err.find("which bend by 0.51 of their length (at most 0.50"),
             std::string::npos);
-  write_turn(std::asin(1) / 1.5, 0);  // 60 degrees, except for rounding
+  write_turn(std::asin(1) / 1.5, 0);  // a turn by 60 degrees, except for rounding
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom:1").err.find("too far apart"), std::string::npos);
 }
 
@@ -119,8 +121,8 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
 }
 
 // Compares the rendered normals between keyframes with the normals of the curves through the keyframes. The tolerance
-// covers the error of the straight pieces and the error of the keys together. Vertices whose faces nearly cancel are
-// left out, since a bound for the normals of faces is no bound for their sum.
+// includes the error of the straight pieces and the error of the keys. Vertices whose face normals nearly cancel are
+// skipped, since a bound for the normals of faces is not a bound for the direction of their sum.
 TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
   constexpr std::uint64_t kSeed = 20261127;
   constexpr std::size_t kSide = 8;
@@ -213,7 +215,7 @@ TEST_F(Paths, all_warn_of_velocities_that_are_not_those_of_the_motion) {
           << command << factor << result.err;
     }
   }
-  // The velocities are meant for 24 frames per second, but the frames are read as one second apart.
+  // The velocities in the files are for 24 frames per second, but the program assumes one frame per second.
   write_turn_with_velocities(0.3, 24);
   EXPECT_NE(run("compare 'v*.ply' --path hermite").err.find("vertices would go 24.1 times"), std::string::npos);
   EXPECT_EQ(run("compare 'v*.ply' --fps 24 --path hermite").err.find("vertices would go"), std::string::npos);

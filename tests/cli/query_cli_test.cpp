@@ -1,4 +1,4 @@
-// Tests `query` for scripts and people: tables, JSON, arrays, and exit codes of wrong calls.
+// Tests `query` for scripts and people: tables, JSON, arrays, and the exit codes of invalid calls.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@ using Json = nlohmann::json;
 
 class QueryCli : public testing::Test {
  protected:
-  // Writes two triangles of a square. The last vertex crosses the diagonal and returns on the same path: face 1 turns
-  // over at t = 1/2 of both segments, and face 0 stands still.
+  // Writes a square of two triangles in three keyframes. The last vertex crosses the diagonal and returns on the same
+  // path. Face 1 turns over at t = 1/2 of both segments, and face 0 stands still.
   QueryCli() {
     for (const auto& [name, corner] : {std::pair{"a.obj", "1 1 0"}, {"b.obj", "0 0 0"}, {"c.obj", "1 1 0"}})
       folder_.write(name, std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nv ") + corner + "\nf 1 2 3\nf 2 4 3\n");
@@ -34,7 +34,7 @@ class QueryCli : public testing::Test {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   }
-  // Compares the values within a tolerance that is wider than the brackets around the times.
+  // Expects equal numbers, except for 1e-12. This tolerance is wider than the brackets around the computed times.
   static void expect_near(const Json& values, const std::vector<double>& wanted) {
     ASSERT_EQ(values.size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(values[i].get<double>(), wanted[i], 1e-12) << i;
@@ -70,7 +70,7 @@ TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {
   expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements vertices --silhouettes", "--silhouettes");
   const Json vertices = json_of("facing a.obj b.obj --direction 0,0,1 --elements vertices");
   EXPECT_EQ(vertices["summary"]["vertices"], 4);
-  // The vertex that crosses the diagonal belongs only to face 1, which turns over at t = 1/2.
+  // The vertex that crosses the diagonal, vertex 3, belongs only to face 1, which turns over at t = 1/2.
   const Json &of = vertices["arrays"]["vertex"], &to = vertices["arrays"]["to"];
   ASSERT_EQ(of.size(), 4U);
   expect_near(Json::array({to[3]}), {0.5});
@@ -111,7 +111,8 @@ TEST_F(QueryCli, arrays_are_those_of_json) {
 }
 
 TEST_F(QueryCli, faces_show_their_front_in_intervals) {
-  // Face 1 is seen from above until t = 1/2 of the first segment, and from t = 1/2 of the second one.
+  // A viewer above sees the front of face 1 until t = 1/2 of the first segment, and again from t = 1/2 of the second
+  // segment.
   const Json above = json_of("facing a.obj b.obj c.obj --direction 0,0,1").at("arrays");
   EXPECT_EQ(above.at("segment"), Json({0, 0, 1, 1}));
   EXPECT_EQ(above.at("face"), Json({0, 1, 0, 1}));
@@ -129,8 +130,8 @@ TEST_F(QueryCli, faces_show_their_front_in_intervals) {
 }
 
 TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
-  // The eye passes the plane z = 0 at time 1, so that face 0 is hidden from then on, and face 1 shows its front in the
-  // first and the second quarter.
+  // The eye passes through the plane z = 0 at time 1, so face 0 is hidden after time 1. Face 1 shows its front in the
+  // first and the second quarter of the motion.
   const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
   EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));

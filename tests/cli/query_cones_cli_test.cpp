@@ -19,7 +19,8 @@ using Json = nlohmann::json;
 
 class QueryCones : public testing::Test {
  protected:
-  // Writes a triangle that a hinge on the x axis lifts by a right angle, and one that stands still beside it.
+  // Writes two keyframes of two triangles. The first triangle turns by a right angle about the x axis, and the second
+  // stands still.
   QueryCones() {
     folder_.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n");
     folder_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n");
@@ -50,7 +51,7 @@ TEST_F(QueryCones, have_a_row_for_each_segment_and_face) {
   EXPECT_EQ(arrays.at("axis")[1], Json({0.0, 0.0, 1.0}));
   EXPECT_EQ(json.at("summary").at("whole_sphere"), 0);
   EXPECT_EQ(arrays.size(), 5u);
-  // The first half of the motion turns the face by less than half of the angle.
+  // In the first half of the motion, the face turns by less than half of the whole angle.
   EXPECT_LT(json_of("cones a.obj b.obj --to 0.5").at("arrays").at("half_angle")[0].get<double>(), 30);
 }
 
@@ -65,7 +66,7 @@ TEST_F(QueryCones, of_meshlets_are_as_meshoptimizer_has_them) {
     EXPECT_EQ(arrays.at(std::string("meshlet_") + name).shape, std::vector<std::size_t>{rows}) << name;
   for (const char* const name : {"cone_apex", "cone_axis", "cone_axis_s8"})
     EXPECT_EQ(arrays.at(std::string("meshlet_") + name).shape, (std::vector<std::size_t>{rows, 3})) << name;
-  // Every face is in one meshlet, and none has more than 32.
+  // Every face is in one meshlet, and no meshlet has more than 32 faces.
   const auto faces = arrays.at("member_face").as<std::int64_t>(),
              meshlets = arrays.at("member_meshlet").as<std::int64_t>();
   std::vector<int> seen(faces.size()), size(rows);
@@ -103,7 +104,8 @@ TEST_F(QueryCones, shutter_has_the_mean_of_every_face_and_of_the_whole_span) {
   const Json json = json_of("shutter a.obj b.obj a.obj");
   const Json& arrays = json.at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1, 1}));
-  // n(t) = (0, -t, 1 - t): by symmetry the mean unit normal is at 45 degrees, and the mean of n is (0, -1, 1) / 2.
+  // n(t) = (0, -t, 1 - t). By symmetry, the mean of the unit normals points at 45 degrees between -y and z. The mean of
+  // n(t) is (0, -1, 1) / 2.
   EXPECT_EQ(arrays.at("mean")[0], Json({0.0, -0.5, 0.5}));
   const double y = arrays.at("mean_unit")[0][1].get<double>(), z = arrays.at("mean_unit")[0][2].get<double>();
   EXPECT_NEAR(y, -z, 1e-9);
@@ -111,8 +113,8 @@ TEST_F(QueryCones, shutter_has_the_mean_of_every_face_and_of_the_whole_span) {
   EXPECT_NEAR(arrays.at("length")[0].get<double>(), std::hypot(y, z), 1e-12);
   EXPECT_LT(arrays.at("ends_off")[0].get<double>(), 1e-5);
   EXPECT_NEAR(arrays.at("length")[1].get<double>(), 1, 1e-7);
-  // The motion returns to its start, so both end normals of the span are equal, and interpolation between them misses
-  // the motion.
+  // The motion returns to its start, so the normals at both ends of the motion are equal. Interpolation between the two
+  // ends therefore misses the motion.
   EXPECT_EQ(arrays.at("span_face"), Json({0, 1}));
   EXPECT_NEAR(arrays.at("span_ends_off")[0].get<double>(), 45, 1e-5);
   EXPECT_NEAR(arrays.at("span_mean_unit")[0][2].get<double>(), z, 1e-9);

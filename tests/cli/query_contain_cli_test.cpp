@@ -1,5 +1,5 @@
-// Tests `query contain` for scripts and people: resting and moving points, arrays, and reasons for refusing a mesh or a
-// file.
+// Tests `query contain` for scripts and people: points at rest and in motion, the arrays, and the reasons why a mesh or
+// a file is refused.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 
 class QueryContainCli : public testing::Test {
  protected:
-  // Writes a tetrahedron that doubles its size and shrinks back.
+  // Writes three keyframes of a tetrahedron that doubles its size and shrinks back.
   QueryContainCli() {
     const std::string faces = "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     const std::string small = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\n", large = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 0 0 4\n";
@@ -50,7 +50,7 @@ TEST_F(QueryContainCli, points_that_rest_are_inside_and_pass_the_surface_at_time
   EXPECT_EQ(arrays.at("crossing_segment"), Json({0, 1}));
   EXPECT_EQ(arrays.at("crossing_face"), Json({2, 2}));
   EXPECT_EQ(arrays.at("crossing_inward"), Json({true, false}));
-  // The points cross the face x + y + z = 3 at t = 1/2 of a segment that takes two seconds.
+  // The points cross the face x + y + z = 3 at t = 1/2 of both segments, each of which takes two seconds.
   EXPECT_NEAR(arrays.at("crossing_time").at(0).get<double>(), 1, 1e-12);
   EXPECT_NEAR(arrays.at("crossing_time").at(1).get<double>(), 3, 1e-12);
   for (const Json& x : arrays.at("crossing_normal").at(0)) EXPECT_NEAR(x.get<double>(), 0.57735026918962584, 1e-12);
@@ -60,7 +60,8 @@ TEST_F(QueryContainCli, points_that_move_do_so_from_the_first_keyframe_to_the_la
   const Json arrays = arrays_of("a.obj b.obj c.obj --points move.npy");
   EXPECT_EQ(arrays.at("inside"), Json({false}));
   EXPECT_EQ(arrays.at("crossing_inward"), Json({true, false}));
-  // x = -1 + 4 time: the point enters at x = 0, and leaves where x + 1 = 2 + 2 time or, later, 6 - 2 time.
+  // The point is at x = -1 + 4 s after s seconds. It enters the tetrahedron at x = 0. The slanted face meets it where x
+  // + 1 = 2 + 2 s or, in the second segment, 6 - 2 s.
   EXPECT_NEAR(arrays.at("crossing_time").at(0).get<double>(), 0.25, 1e-12);
   EXPECT_NEAR(arrays.at("crossing_time").at(1).get<double>(), 1, 1e-12);
 }

@@ -1,4 +1,5 @@
-// Tests `report` for scripts and people: the page, its data, the table, the JSON, and the message if there is no page.
+// Tests `report` for scripts and people: the page and its data, the table, the JSON, and the message if the page is
+// missing.
 
 #include <gtest/gtest.h>
 

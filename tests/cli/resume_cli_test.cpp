@@ -1,5 +1,6 @@
-// Tests `--resume`: a run that failed continues where it stopped, with the same bytes; a journal of another run is
-// refused. In this file, a limit on the size of files ends the runs; tests/faults/killed_test.cpp kills them.
+// Tests `--resume`: a run that failed must continue where it stopped and write the same bytes, and the journal of
+// another run is refused. In this file, runs fail because of a limit on the size of files. In
+// tests/faults/killed_test.cpp, runs are killed.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 
 class Resume : public testing::Test {
  protected:
-  // Writes a strip of triangles that folds over nine keyframes.
+  // Writes nine keyframes of a strip of triangles that folds.
   Resume() {
     for (int k = 0; k < 9; ++k) {
       std::string text;
@@ -32,14 +33,15 @@ class Resume : public testing::Test {
   [[nodiscard]] ProcessResult run(const std::string& arguments, const std::string& before = "") const {
     return run_shell(before + std::string(kProgram) + " " + arguments, folder_.path());
   }
-  // Runs with a limit on the size of files, in blocks of 512 bytes or, in some shells, 1,024 bytes.
+  // Runs the program with a limit on the size of the files that it writes. A block of the limit has 512 bytes or, in
+  // some shells, 1,024 bytes.
   [[nodiscard]] ProcessResult cut(const std::string& arguments, const std::string& blocks = "4") const {
     return run(arguments, "ulimit -f " + blocks + "; ");
   }
   [[nodiscard]] std::string file(const std::string& name) const { return test::read_whole(folder_ / name); }
   [[nodiscard]] bool exists(const std::string& name) const { return fs::exists(folder_ / name); }
 
-  // Ends a run too early with the limit, and resumes it.
+  // Ends a run early by the limit, resumes the run, and compares the result with that of an undisturbed run.
   void check(const std::string& command, const std::string& undisturbed, const std::string& blocks = "4") const {
     const std::string out = " --resume -o out";
     ASSERT_EQ(run(command + undisturbed + " -o whole").exit_code, 0);
@@ -106,7 +108,7 @@ TEST_F(Resume, a_journal_of_another_run_is_refused_with_what_differs) {
   EXPECT_EQ(file("out.journal"), journal);
   EXPECT_EQ(file("out.partial"), partial);
   fs::remove(folder_ / "out.journal");
-  EXPECT_EQ(run(command).exit_code, 0);  // starts again, and replaces the rest of the unfinished run
+  EXPECT_EQ(run(command).exit_code, 0);  // starts again, and replaces what the unfinished run left
 }
 
 TEST_F(Resume, files_of_other_people_are_not_touched) {
@@ -124,7 +126,8 @@ TEST_F(Resume, files_of_other_people_are_not_touched) {
 }
 
 TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
-  // A row of the first command, and a record of the others, are too large for the limit.
+  // Even the first thing that each command writes is too large for the limit: a row of the first command, a journal
+  // record of the other commands.
   for (const std::string command :
        {"sample --sample twist --times 0,1 --format npy", "compare --sample twist", "audit --sample twist"}) {
     const ProcessResult failed = cut(command + " --resume -o out", command.starts_with("sample") ? "4" : "2");

@@ -1,5 +1,5 @@
-// Tests `sample` for scripts and people: arrays and meshes with normals, exit codes, and the normals of other tools, if
-// the environment variable CHRONORMAL_DATA names the folder of their files.
+// Tests `sample` for scripts and people: arrays of normals, meshes with normals, and exit codes. If the environment
+// variable CHRONORMAL_DATA names a folder of meshes from other tools, also compares their normals.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,8 @@ constexpr double kDegreesPerRadian = 57.29577951308232;
 class SampleCli : public testing::Test {
  protected:
   SampleCli() {
-    // Two quads fold to a right angle, with a seam between them: vertices 2 and 4 are one point, and so are 3 and 5.
+    // Two quads fold to a right angle along a seam: vertices 2 and 4 are at the same point, and so are vertices 3 and
+    // 5.
     folder_.write("a.obj",
                   std::string("v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 1 0 0\nv 1 1 0\nv 2 0 0\nv 2 1 0\n") + kFaces);
     folder_.write("b.obj",
@@ -49,7 +50,8 @@ class SampleCli : public testing::Test {
     EXPECT_EQ(result.out, "");
     EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
   }
-  // Returns the array that the arguments write to standard output, without any text on standard error.
+  // Returns the array that the program writes to standard output for these arguments. Fails if the program writes
+  // anything to standard error.
   [[nodiscard]] test::ArrayFile array_of(const std::string& arguments) const {
     const ProcessResult result = run(arguments + " -o -");
     EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.err;
@@ -69,8 +71,8 @@ TEST_F(SampleCli, vertices_across_a_seam_are_exact_by_hand) {
   const test::ArrayFile array = array_of("a.obj b.obj --times 0,0.5,1");
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, 8, 3}));
   const auto normals = array.as<float>();
-  // An edge of the second quad moves from (1, 0, 0) to (0, 0, 1), so the normal of this quad at t is (-t, 0, 1 - t). At
-  // the seam, the normal (0, 0, 1) of the first quad is added.
+  // An edge of the second quad moves from (1, 0, 0) to (0, 0, 1), so the normal of the second quad at t is (-t, 0, 1 -
+  // t). At the seam, the normals of both quads are added; that of the first quad is (0, 0, 1).
   for (const auto& [time, t] : {std::pair{0U, 0.0}, std::pair{1U, 0.5}, std::pair{2U, 1.0}}) {
     const double length = std::sqrt(t * t + (2 - t) * (2 - t));
     for (const std::size_t v : {2U, 3U, 4U, 5U}) {
@@ -91,7 +93,7 @@ TEST_F(SampleCli, elements_lengths_and_hard_edges) {
   const auto faces = array_of("a.obj b.obj --times 0.5 --elements faces --length area").as<float>();
   EXPECT_EQ(row(faces, 0), (std::array<float, 3>{0, 0, 2}));
   EXPECT_EQ(row(faces, 1), (std::array<float, 3>{-1, 0, 1}));
-  // The motion from b to a begins with an angle of 90 degrees.
+  // The motion from b to a starts with the quads folded by 90 degrees.
   const auto distinct = [this](const std::string& options) {
     const auto normals = array_of("b.obj a.obj --times 0 --elements corners " + options).as<float>();
     std::set<std::array<float, 3>> set;
@@ -107,8 +109,8 @@ TEST_F(SampleCli, elements_lengths_and_hard_edges) {
 }
 
 TEST_F(SampleCli, gltf_files_have_hard_edges_by_their_own_normals) {
-  // Two triangles with separate vertices meet at a right angle along x, and there is one target. Their normals at the
-  // seam are equal (smooth) or different (hard).
+  // Two triangles with separate vertices meet at a right angle along the x axis, and the mesh has one target. At the
+  // seam, the normals that the file stores are either equal (smooth) or different (hard).
   const auto distinct = [this](const std::vector<float>& normals) {
     test::GltfBuilder builder;
     const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, /**/ 0, 0, 0, 0, 0, -1, 1, 0, 0});
@@ -144,7 +146,7 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   EXPECT_EQ(tenths.size(), 21U);
   EXPECT_EQ(tenths.back(), 2) << "the last is the end itself";
   EXPECT_EQ(times_of("0.5:1:0.5"), (std::vector<double>{0.5}));
-  // In floating point, 3 x 0.1 is more than 0.3, and 0.3 / 0.1 is less than 3.
+  // In floating point, 3 x 0.1 is larger than 0.3, and 0.3 / 0.1 is smaller than 3.
   const auto thirds = times_of("0:0.1:0.3");
   EXPECT_EQ(thirds.size(), 4U);
   EXPECT_EQ(thirds.back(), 0.3);
@@ -218,7 +220,7 @@ TEST_F(SampleCli, a_name_that_several_targets_have_is_refused_with_their_numbers
   expect_error("twice.glb -o n.npy --weights smile=1", 2,
                "targets 0 and 1 all have the name 'smile'; give the number of one instead");
   EXPECT_EQ(array_of("twice.glb --weights 1=1").elements, array_of("twice.glb --weights 0,1").elements);
-  // A number that is also a target's name means the target with this name.
+  // If a number is also the name of a target, it selects the target with this name.
   builder.json["meshes"][0]["extras"]["targetNames"] = {"1", "smile"};
   folder_.write("number.glb", builder.glb());
   EXPECT_EQ(array_of("number.glb --weights 1=1").elements, array_of("number.glb --weights 1,0").elements);
@@ -235,7 +237,8 @@ TEST_F(SampleCli, keys_are_the_times_of_the_keyframes) {
   ASSERT_EQ(run_shell(std::string(kProgram) + " convert a.obj b.obj b.obj --fps 4 -o c.mdd", folder_.path()).exit_code,
             0);
   EXPECT_EQ(times_of("a.obj c.mdd"), (std::vector<double>{0, 0.25, 0.5}));
-  // A cubic spline is cut into many pieces, whose ends do not count as keys. A jump of the weights counts as one key.
+  // The program divides a cubic spline into many pieces, whose ends do not count as keys. A jump of the weights counts
+  // as one key.
   test::GltfBuilder builder = test::quad_document();
   const std::vector<float> times = {0.5F, 1, 3};
   builder.add_track(0, 0, times, std::vector<float>{0, 0, 0, 0, 9, 9, 0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 9, 9},
@@ -330,8 +333,8 @@ TEST_F(SampleCli, elements_without_a_normal_are_counted_on_stderr) {
   EXPECT_EQ(row(test::parse_npy(result.out).as<float>(), 3), (std::array<float, 3>{0, 0, 0}));
 }
 
-// The second face turns by 90 degrees: exact and linear normals follow the straight path of its edge, and slerp turns
-// evenly.
+// The second face turns by 90 degrees. Exact and linear normals follow the straight path of an edge of this face, while
+// slerp turns the normal at a constant speed.
 TEST_F(SampleCli, a_scheme_is_written_in_every_format) {
   const auto tangent_of = [&](const std::string& scheme) {
     const std::vector<float> normals =
@@ -369,7 +372,7 @@ TEST_F(SampleCli, steps_say_how_far_they_drift) {
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{17, 8, 3}));
   const test::ArrayFile of_targets = array_of("--base a.obj b.obj --scheme slerp --step 8 -q");
   EXPECT_EQ(of_targets.shape, (std::vector<std::size_t>{9, 8, 3}));
-  // Two shards together equal one run.
+  // The rows of two shards together must equal those of one run.
   const std::string steps = "a.obj b.obj a.obj --scheme slerp --step 100 ";
   ASSERT_EQ(run(steps + "-o all.npy").exit_code, 0);
   for (const char* const shard : {"1", "2"})
@@ -398,7 +401,7 @@ TEST_F(SampleCli, help_lists_weightings_and_examples) {
     EXPECT_NE(help.out.find(word), std::string::npos) << word;
 }
 
-// Returns the normals that an OBJ file stores for its corners.
+// Returns the normals that an OBJ file stores, one for each corner.
 std::vector<std::array<double, 3>> stored_normals(const fs::path& path) {
   std::vector<std::array<double, 3>> normals, of_corners;
   std::ifstream text(path);
@@ -424,8 +427,8 @@ class SampleCliGolden : public SampleCli {
     data_ = folder;
   }
 
-  // Returns the largest angle in degrees between the normals that `sample` writes for the corners of a file and the
-  // file's stored normals.
+  // Returns the largest angle, in degrees, between the normals that `sample` computes for the corners of a file and the
+  // normals that the file stores.
   [[nodiscard]] double largest_difference(const std::string& file, const std::string& options) const {
     const std::string path = (data_ / file).string();
     const auto expected = stored_normals(path);
@@ -447,7 +450,7 @@ class SampleCliGolden : public SampleCli {
         square_b += b[k] * b[k];
         cross += std::pow(double{a[i]} * b[j] - double{a[j]} * b[i], 2);
       }
-      if ((square_a > 0) != (square_b > 0)) return 180;  // exactly one of the two has no normal
+      if ((square_a > 0) != (square_b > 0)) return 180;  // exactly one of the two normals is zero
       worst = std::max(worst, std::atan2(std::sqrt(cross), dot) * kDegreesPerRadian);
     }
     return worst;
@@ -489,7 +492,7 @@ TEST_F(SampleCliGolden, another_weighting_or_no_hard_edges_are_not_met) {
 TEST_F(SampleCliGolden, trimesh_weighs_vertices_by_area) {
   const std::string path = (data_ / "golden/static/groups.obj").string();
   const auto normals = array_of(path + " --no-weld").as<float>();
-  // Each vertex of this file has one normal.
+  // In this file, all corners of a vertex have the same normal.
   std::ifstream text(path);
   const auto of_corners = stored_normals(path);
   std::size_t corner = 0, checked = 0;

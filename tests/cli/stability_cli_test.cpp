@@ -1,6 +1,6 @@
 // Tests that the command line stays stable (docs/stability.md): every option and JSON key that ever existed must still
-// exist. The lists are beside this test. tools/update_docs adds new options and keys; removing one needs a manual
-// change of the list, because programs may depend on it.
+// exist. The lists of options and keys are in files beside this test. tools/update_docs adds new names. Only a person
+// can remove a name, because other programs may depend on it.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ class Stability : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Compares the names with a list. When the documents are updated, adds new names to the list instead.
+// Checks that the names are exactly those of a list. If CHRONORMAL_UPDATE_DOCS is set, adds new names to the list
+// instead.
 void expect_listed(const Names& found, const std::string& file) {
   const std::filesystem::path path = std::filesystem::path(kSourceFolder) / "tests/cli" / file;
   Names listed;
@@ -69,8 +70,8 @@ TEST_F(Stability, no_command_and_no_option_vanishes) {
   expect_listed(found, "stable_options.txt");
 }
 
-// Adds the paths of all keys of a value, such as "audit viewers[].worst_at.vertex". An entry of `files` has the keys of
-// a report on one file.
+// Adds the paths of all keys of a JSON value to `found`, such as "audit viewers[].worst_at.vertex". An entry of `files`
+// has the same keys as a report on one file.
 void add_keys(const Json& json, const std::string& path, Names& found) {
   if (json.is_array())
     for (const Json& one : json) add_keys(one, path + "[]", found);

@@ -1,4 +1,4 @@
-// Tests the parts of --base that scripts depend on: targets, their folders, names, and refused requests.
+// Tests what scripts depend on in --base: targets and their folders, names, and refused requests.
 
 #include <gtest/gtest.h>
 
@@ -122,7 +122,7 @@ TEST_F(TargetsCli, convert_writes_the_base_and_the_targets_but_no_cache_of_them)
     expect_error(std::string("convert --base base.obj targets -o ") + name, 2, {name, "sequence"});
     EXPECT_FALSE(std::filesystem::exists(folder_ / name));
   }
-  // A single target stays a target, and does not become a sequence of two keyframes.
+  // A base and one target stay targets, and do not become a sequence of two keyframes.
   EXPECT_EQ(run("convert --base base.obj smile.obj -o out.npz").exit_code, 0);
   EXPECT_EQ(Json::parse(run("inspect out.npz --json").out)["kind"], "targets");
   expect_error("sample out.npz --times 0.5 -o n.npy", 2, {"--times", "blend shapes have no times", "--weights"});
@@ -159,7 +159,7 @@ TEST_F(TargetsCli, targets_become_morph_targets_of_a_glb_with_their_names) {
   EXPECT_EQ(mesh.target_names, (std::vector<std::string>{"lift", "packed", "smile"}));
   const GltfGeometry geometry = document.geometry(0, 0, {.shading = true}).value();
   EXPECT_EQ(geometry.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
-  // The shapes are the same as in the files above, so the schemes must have the same errors.
+  // The glTF file has the same shapes as the files above, so the schemes must have the same errors.
   const auto sum = [&](const std::string& input) { return json_of(input)["schemes"][0]["sum_degrees"].get<double>(); };
   EXPECT_NEAR(sum("face.glb"), sum("--base base.obj targets smile.obj"), 1e-3);
   EXPECT_EQ(run("bake face.glb baked.glb").exit_code, 0);

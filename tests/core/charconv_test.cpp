@@ -1,5 +1,6 @@
-// Tests conversions of numbers: <charconv> or its replacement must write the same text as the C library, and read the
-// same number back. This also runs under Node.js (cmake/bits.cmake), where the replacement is used.
+// Tests conversions between numbers and text: <charconv>, or the replacement of it, must write the same text as the C
+// library, and must read the same number back. The test also runs under Node.js (cmake/bits.cmake), where the
+// replacement is used.
 #include "core/charconv.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@
 namespace chronormal::charconv_test {
 namespace {
 
-// Returns numbers of all magnitudes, and the extremes.
+// Returns numbers of all magnitudes, including the smallest and the largest.
 std::vector<double> numbers() {
   std::vector<double> result = {0.0,
                                 -0.0,

@@ -1,4 +1,4 @@
-// Tests solutions by Cholesky factors, also for matrices that rounding has made indefinite.
+// Tests the solution of linear systems by Cholesky factors, also for matrices that rounding has made indefinite.
 
 #include "core/cholesky.h"
 
@@ -16,10 +16,10 @@ std::vector<Vec3d> solution(const std::vector<double>& matrix, double least, std
 }
 
 TEST(Cholesky, solves_a_system) {
-  // The number 7 fills places that must not be read.
+  // Entries of the matrix that must not be read have the value 7.
   const auto x = solution({4, 7, 7, 2, 5, 7, 2, 1, 6}, 1e-300, {{8, 0, 4}, {8, 4, 2}, {9, 1, 2}});
-  // The right-hand sides are A = (4 2 2; 2 5 1; 2 1 6) times (1, 1, 1), (-0.5, 1, 0.16666...) and (1, 0, 0), by hand;
-  // see the residuals below.
+  // The right-hand sides are A = (4 2 2; 2 5 1; 2 1 6) times (1, 1, 1), times (-0.5, 1, 0.16666...), and times (1, 0,
+  // 0). They were computed by hand; the residuals below check the solutions.
   const double a[3][3] = {{4, 2, 2}, {2, 5, 1}, {2, 1, 6}};
   const Vec3d right[3] = {{8, 0, 4}, {8, 4, 2}, {9, 1, 2}};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -31,8 +31,8 @@ TEST(Cholesky, solves_a_system) {
 }
 
 TEST(Cholesky, a_pivot_below_the_least_is_the_least) {
-  // The square of the second pivot is 1 - 1 = 0, or about -1e-16 with rounding. In both cases it is replaced by 1/4, so
-  // the matrix becomes (1 1; 1 1.25), whose inverse is (5 -4; -4 4).
+  // The square of the second pivot is 1 - 1 = 0, or about -1e-16 because of rounding. In both cases, 1/4 replaces the
+  // square, so the matrix becomes (1 1; 1 1.25), whose inverse is (5 -4; -4 4).
   for (const double corner : {1.0, 1 - 0x1p-53}) {
     const auto x = solution({1, 1, 1, corner}, 0.25, {{1, 0, 2}, {0, 1, 1}});
     EXPECT_EQ(x[0], (Vec3d{5, -4, 6})) << corner;

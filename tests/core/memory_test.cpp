@@ -104,7 +104,7 @@ TEST(AlignedArray, holds_count_values) {
 
 TEST(AlignedArray, more_than_there_can_be_throws) {
   if (test::is_sanitized()) GTEST_SKIP() << "the address sanitizer ends the program at such sizes";
-  // 2^61 doubles take 2^64 bytes, a number that overflows to 0. For one more double it overflows to 8.
+  // 2^61 doubles take 2^64 bytes, which overflows std::size_t to 0. The size of one more double overflows to 8.
   for (const std::size_t count : {std::size_t{1} << 61, (std::size_t{1} << 61) + 1, kLargest, kLargest / 8})
     EXPECT_THROW(AlignedArray<double>{count}, std::bad_alloc) << count;
 }

@@ -1,4 +1,4 @@
-// Compares the suggestion for a mistyped name with a search over all edits of the name.
+// Compares the suggestion for a mistyped name with the result of trying all edits of the name.
 #include "core/nearest.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace chronormal::nearest_test {
 namespace {
 
-// Returns all words that are one edit away from a word, with an alphabet of two letters.
+// Returns all words that one edit makes of a word. The alphabet is a and b.
 std::set<std::string> edited(const std::string& word) {
   std::set<std::string> words;
   for (std::size_t i = 0; i <= word.size(); ++i) {
@@ -31,7 +31,7 @@ TEST(Nearest, one_edit_is_a_distance_of_one) {
       EXPECT_EQ(edit_distance(word, other), word == other ? 0U : 1U) << other;
   }
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-  EXPECT_EQ(edit_distance("ca", "abc"), 3U);  // the distance is 3, since letters that were swapped are not edited again
+  EXPECT_EQ(edit_distance("ca", "abc"), 3U);  // not 2, since swapped letters are not edited again
 }
 
 TEST(Nearest, only_what_is_near_is_suggested) {

@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A counter of the threads that are inside at the same time. It keeps the largest count.
+// Counts the threads that are inside pass() at the same time, and keeps the largest count.
 class Crowd {
  public:
   void pass(std::chrono::microseconds time) {
@@ -55,7 +55,7 @@ TEST(ParallelFor, throws_what_the_body_throws) {
       if (i == 13) throw std::out_of_range("thirteen");
     };
     EXPECT_THROW(parallel_for(100, throwing), std::out_of_range);
-    // The pool still works afterwards.
+    // The pool of threads must still work after the exceptions.
     std::atomic<std::size_t> sum = 0;
     parallel_for(100, [&](std::size_t i) { sum += i; });
     EXPECT_EQ(sum, 4950u);
@@ -94,8 +94,8 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The other thread cannot finish its piece before this thread waits. While this thread waits, there is work for two
-  // threads.
+  // The other thread cannot finish its piece before this thread waits. While this thread waits, two threads have work
+  // to do.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;
@@ -125,7 +125,7 @@ TEST(ParallelFor, gives_every_thread_its_pieces_in_order) {
   EXPECT_EQ(disorders, 0u);
 }
 
-// Runs a random tree of loops, and returns a number that depends on every piece.
+// Runs a random tree of nested loops. Returns a number that depends on every piece of every loop.
 std::uint64_t run_tree(std::uint64_t seed, std::size_t depth,
                        const std::function<void(std::size_t, const std::function<void(std::size_t)>&)>& loop) {
   std::mt19937_64 random(seed);
@@ -195,7 +195,7 @@ TEST(ParallelFor, that_helps_with_a_loop_of_another_rounding_goes_on_with_its_ow
   EXPECT_EQ(std::fegetround(), FE_TONEAREST);
 }
 
-// Runs `body` in a child of fork(). Returns the exit code of the child.
+// Runs `body` in a child process made by fork(). Returns the exit code of the child.
 int exit_code_of_child(const std::function<int()>& body) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -211,7 +211,7 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   const ThreadLimit limit(4);
   std::atomic<bool> is_over = false;
   parallel_for(4, [](std::size_t) {});
-  std::thread busy([&] {  // this thread's loops go on while other threads fork
+  std::thread busy([&] {  // this thread runs loops while other threads fork
     const ThreadLimit others(3);
     while (!is_over) parallel_for(8, [](std::size_t) {});
   });
@@ -229,7 +229,8 @@ TEST(ParallelFor, in_a_child_of_fork_has_one_thread_and_does_all_pieces) {
   EXPECT_EQ(thread_count(), 4u);
 }
 
-// The child does not run the pieces that other threads had begun; the loop ends with an error.
+// A child process that is forked during a loop does not run the pieces that other threads had begun. In the child, the
+// loop ends with an error.
 TEST(ParallelFor, that_is_forked_in_the_middle_ends_as_interrupted_in_the_child) {
   const ThreadLimit two(2);
   const auto caller = std::this_thread::get_id();
@@ -300,7 +301,7 @@ TEST(ThreadLimit, belongs_to_the_thread_that_made_it) {
   EXPECT_EQ(elsewhere, without);
 }
 
-// Runs a nested loop that takes seconds unless it is interrupted.
+// Runs nested loops that take several seconds unless they are interrupted.
 void loop_for_long() {
   parallel_for(40, [](std::size_t) {
     parallel_for(40, [](std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(5)); });

@@ -11,7 +11,7 @@
 namespace chronormal::polynomial_test {
 namespace {
 
-// Evaluates the definition of the Bernstein form, term by term.
+// Evaluates a quartic in Bernstein form by the definition, term by term.
 double bernstein_sum(const Bernstein<double, 4>& b, double t) {
   double sum = 0;
   for (int k = 0; k <= 4; ++k)
@@ -87,7 +87,7 @@ RC_GTEST_PROP(Polynomial, roots_are_found_where_they_were_put, ()) {
     if (0 <= r && r <= 100) expected.push_back(r / 100.0);
   }
   const auto roots = roots_in_unit_interval(cubic_with_roots(a / 100.0, b / 100.0, c / 100.0));
-  // A root at an end is skipped, since rounding decides whether it is inside.
+  // Roots at 0 and 1 are skipped, since rounding decides whether they are inside the interval.
   RC_PRE(a != 0 && c != 100);
   RC_ASSERT(roots.count == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) RC_ASSERT(std::fabs(roots.t[i] - expected[i]) < 1e-12);

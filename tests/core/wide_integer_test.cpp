@@ -1,4 +1,4 @@
-// Compares wide integers with GMP.
+// Compares wide integers with the integers of GMP, a library for large numbers.
 
 #include "core/wide_integer.h"
 
@@ -75,7 +75,7 @@ TEST(WideInteger, is_multiplied_by_every_double_from_0_to_1) {
     product.add_product(factor, fraction);
     product.add_shifted(factor, fraction.scale);
     product.settle();
-    // The product is (t + 1) factor, in units of 2^-scale.
+    // The product is (t + 1) * factor, as an integer in units of 2^-scale.
     const mpq_class expected = (mpq_class(t) + 1) * value_of(factor) * (mpz_class(1) << fraction.scale);
     ASSERT_EQ(mpq_class(value_of(product)), expected) << t;
   }

@@ -1,11 +1,8 @@
-"""Runs a recipe of Conan 2 with replacements for Conan's classes, as far as the recipes in packaging/conan/ use
-them.
-
-    conan_stand_in.py RECIPE ARCHIVE VERSION FOLDER OPTION=VALUE...
-
-Debian's libraries stand in for Conan's packages. FOLDER has the sources and the build that tests/dist/vcpkg.cmake
-leaves, so that files are not compiled twice. The package is written to FOLDER/package. Then the recipe's
-test_package is built as package_info() describes, and run.
+"""Runs a recipe of Conan 2 with replacements for the classes of Conan that the recipes in packaging/conan/ use.
+conan_stand_in.py RECIPE ARCHIVE VERSION FOLDER OPTION=VALUE...  Debian's libraries replace Conan's packages. FOLDER
+has the sources and the build that tests/dist/vcpkg.cmake leaves, so files are not compiled twice. The script writes
+the package to FOLDER/package. It then builds the test_package of the recipe, as package_info() describes, and runs
+it.
 """
 
 import importlib.util
@@ -73,7 +70,7 @@ class CMakeToolchain:
 
 
 class CMakeDeps:
-    """Makes the files for find_package(), under the names that the project looks for."""
+    """Makes the files that find_package() reads, under the names that the project looks for."""
 
     def __init__(self, conanfile):
         self.conanfile, self.properties = conanfile, defaultdict(dict)

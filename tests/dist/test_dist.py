@@ -1,6 +1,5 @@
-"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.
-
-CHRONORMAL_DIST names the folder. Each skipped test prints its reason; a missing file is not a reason.
+"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.  The variable
+CHRONORMAL_DIST names the folder of the results. Each skipped test prints its reason. A missing file is an error.
 """
 
 import hashlib
@@ -27,8 +26,7 @@ ROOT = Path(__file__).resolve().parents[2]
 DIST = Path(os.environ.get("CHRONORMAL_DIST", ROOT / "dist"))
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 SEED = int(os.environ.get("CHRONORMAL_SEED", "20261126"))
-# The libraries of the system that a manylinux wheel may use (PEP 513 and its successors), as far as these wheels use
-# them.
+# The system libraries that the wheels use. PEP 513 and its successors allow all of them in a manylinux wheel.
 MANYLINUX = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "libpthread.so.0", "ld-linux-x86-64.so.2"}
 
 
@@ -47,7 +45,7 @@ def artefact(pattern):
 
 
 def random_glb(draw):
-    """Returns the bytes of a GLB: a bumpy sheet with one or two targets, all with normals, and an animation of
+    """Returns the bytes of a GLB: a bumpy sheet with one or two targets, all with normals, and an animation of the
     weights."""
     side, targets, keys = draw.randint(3, 12), draw.randint(1, 2), draw.randint(2, 4)
     arrays, views, accessors = b"", [], []
@@ -103,7 +101,7 @@ def random_glb(draw):
 
 
 class Unpacked(unittest.TestCase):
-    """Tests that unpack an artefact into a separate folder."""
+    """Tests that unpack an artefact of the release into a separate folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -156,7 +154,7 @@ class Program(Unpacked):
                 (self.root / "in.glb").write_bytes(random_glb(draw))
                 options = draw.choice([[], ["--for", "three"], ["--encode", "exact"], ["--tolerance", "0.1"]])
                 bake = ["bake", "in.glb", "--force", *options, "-o"]
-                said = self.alone(*bake, "static.glb", codes=(0, 4))  # exit code 4: the tolerance cannot be kept
+                said = self.alone(*bake, "static.glb", codes=(0, 4))  # exit code 4: the error exceeds the tolerance
                 other = run(self.folder / "deb/usr/bin/chronormal", *bake, "other.glb", codes=(0, 4), cwd=self.root)
                 self.assertEqual(said.replace("static.glb", "other.glb"), other)
                 written = [(self.root / name).read_bytes() for name in ("static.glb", "other.glb")]
@@ -179,7 +177,7 @@ class Source(Unpacked):
             files = sorted(member.name for member in opened if not member.isdir())
         tracked = run("git", "ls-tree", "-r", "--name-only", "-z", "HEAD", cwd=ROOT).split("\0")[:-1]
         self.assertEqual(files, sorted(f"chronormal-{VERSION}/{name}" for name in tracked))
-        # Runs the step itself, in a copy of the repository.
+        # Runs the release step in a copy of the repository.
         copy = self.folder / "clone"
         run("git", "clone", "-q", ROOT, copy)
         run(copy / "run", "dist", "source")
@@ -215,7 +213,7 @@ class Deb(Unpacked):
 
 
 class Others(Unpacked):
-    """The programs of systems that this machine only emulates; tests/machines runs them."""
+    """Tests the programs for systems that this machine can only emulate. tests/machines runs these programs."""
 
     def test_windows_gets_programs_that_need_only_windows(self):
         with zipfile.ZipFile(artefact("chronormal-*-windows-x64.zip")) as archive:
@@ -230,7 +228,8 @@ class Others(Unpacked):
         self.check_inside(unpacked / "chronormal.exe", "mingw-w64")
 
     def check_inside(self, program, library):
-        """The page of reports is inside the program, since the archive has no file of it. `library` is that of C."""
+        """Checks that the program has the page of reports inside, since the archive has no file of it. `library` is
+        the library for C."""
         page = (ROOT / "build/share/chronormal/report.html").read_bytes()
         self.assertTrue(page in program.read_bytes(), f"{program.name} has no page for reports")
         licences = {path.name for path in (program.parent / "THIRD_PARTY").iterdir()}
@@ -304,7 +303,7 @@ class Links(HTMLParser):
 
 
 class Site(Unpacked):
-    """Tests the pages and the reference of the headers, read from a disk."""
+    """Tests the site: its pages, and the reference of the headers. Reads them from the disk."""
 
     def setUp(self):
         super().setUp()
@@ -376,7 +375,7 @@ class Wheel(Unpacked):
         self.assertIn("zlib", {path.name for path in (self.folder / "chronormal/THIRD_PARTY").iterdir()})
 
     def test_computes_in_a_fresh_environment(self):
-        # The environment also has the system's packages, which include NumPy.
+        # The virtual environment also has the packages of the system, one of which is NumPy.
         run(sys.executable, "-m", "venv", "--system-site-packages", self.folder / "venv")
         python = self.folder / "venv/bin/python"
         run(python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", artefact("*.whl"))
@@ -394,7 +393,7 @@ class Lists(Unpacked):
         self.list = json.loads(artefact("*.spdx.json").read_text())
 
     def linked_with(self, pattern, relation):
-        """Returns names and versions of the components of an artefact."""
+        """Returns the names and versions of the components that the list has for an artefact."""
         packages = {package["SPDXID"]: package for package in self.list["packages"]}
         (this,) = [key for key, package in packages.items() if package.get("packageFileName") == artefact(pattern).name]
         linked = [packages[link["relatedSpdxElement"]] for link in self.list["relationships"]
@@ -462,20 +461,20 @@ class Lists(Unpacked):
 
 
 class Packaging(Unpacked):
-    """Tests the port and the recipe, run by replacements for vcpkg and Conan."""
+    """Tests the vcpkg port and the Conan recipe, with replacements for vcpkg and Conan."""
 
     def setUp(self):
         super().setUp()
         self.archive = artefact(f"chronormal-{VERSION}.tar.gz")
-        # The port and the recipe are compiled in one folder, which is only for this archive. Files of another archive
-        # could have the same times, and the build would not notice the difference.
+        # The port and the recipe are compiled in one folder, which is emptied if the archive changes. Files of another
+        # archive could have the same times, so the build would not notice the difference.
         self.build = ROOT / "build/packaging"
         known = self.build / "archive"
         if not known.exists() or known.read_bytes() != self.archive.read_bytes():
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # Users get io by default, but with io the build would take minutes longer.
+        # io is on for users by default. Here it is off by default, since compiling it takes minutes longer.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

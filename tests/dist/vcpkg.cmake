@@ -1,6 +1,6 @@
-# cmake -DARCHIVE=... -DPORT_FOLDER=... -DVERSION=... -DFEATURES=... -DFOLDER=... -P: runs a portfile of vcpkg with
-# replacements for the vcpkg functions that it calls, with Debian's libraries, and only for Release. The result is
-# installed to FOLDER/packages.
+# cmake -DARCHIVE=... -DPORT_FOLDER=... -DVERSION=... -DFEATURES=... -DFOLDER=... -P: runs a portfile of vcpkg, with
+# replacements for the functions of vcpkg that it calls. Uses Debian's libraries and builds only the configuration
+# Release. Installs the result to FOLDER/packages.
 cmake_minimum_required(VERSION 3.22)
 set(PORT chronormal)
 set(CURRENT_PACKAGES_DIR ${FOLDER}/packages)
@@ -72,7 +72,7 @@ function(vcpkg_cmake_configure)
   endif()
   run(${CMAKE_COMMAND} -G Ninja -S ${arg_SOURCE_PATH} -B ${FOLDER}/build -DCMAKE_BUILD_TYPE=Release
       -DBUILD_SHARED_LIBS=OFF -DCMAKE_INSTALL_LIBDIR=lib ${arg_OPTIONS})
-  # Fails if the project does not have one of the options.
+  # Fails if the project does not define one of the options that the port passes.
   file(STRINGS ${FOLDER}/build/CMakeCache.txt cache)
   foreach(option ${arg_OPTIONS})
     string(REGEX REPLACE "^-D([^=]*)=.*" "\\1" variable ${option})
@@ -87,8 +87,8 @@ function(vcpkg_cmake_install)
   run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${CURRENT_PACKAGES_DIR})
 endfunction()
 
-# Moves the files for find_package(). The folder of the package is then two levels above them instead of three, so their
-# path to this folder is adapted.
+# Moves the files for find_package() as vcpkg does. From the new place, the folder of the package is two levels up
+# instead of three, so the path in the files is adapted.
 function(vcpkg_cmake_config_fixup)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "CONFIG_PATH" "")
   file(GLOB files ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}/*)
@@ -116,7 +116,7 @@ endfunction()
 
 include(${PORT_FOLDER}/portfile.cmake)
 
-# At the end of a port, vcpkg itself checks for these files.
+# Fails if a file is missing for which vcpkg itself looks at the end of a port.
 foreach(file share/${PORT}/copyright share/${PORT}/usage share/${PORT}/chronormalConfig.cmake
              include/chronormal/chronormal.h)
   if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/${file})

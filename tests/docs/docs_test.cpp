@@ -1,10 +1,11 @@
 // Executes the documents: runs every command in them, and compares the output with the document.
 //
 // A block ```console holds commands ("$ ./run ...") with their output; "..." alone on a line stands for any lines. A
-// command that prints measured times uses --no-times, or shows no output. The output "?" is a placeholder that an
-// update fills in. A block ```cpp or ```js under a line <!-- examples/NAME.cpp --> is that file, which the tests run.
+// command that prints measured times uses --no-times, or its output is not shown. The output "?" is a placeholder that
+// an update fills in. A block ```cpp or ```js under a line <!-- examples/NAME.cpp --> must be a copy of that file,
+// which the tests run.
 //
-// With CHRONORMAL_UPDATE_DOCS=1 the blocks are rewritten instead (tools/update_docs).
+// If CHRONORMAL_UPDATE_DOCS=1, the blocks are rewritten instead (tools/update_docs).
 
 #include <gtest/gtest.h>
 
@@ -51,7 +52,7 @@ std::string read(const fs::path& path) {
   return text.str();
 }
 
-// Returns a document without its blocks of code, in which "](" is not a link.
+// Returns a document without its blocks of code, since "](" does not begin a link in code.
 std::string without_code(const std::string& text) {
   std::string prose;
   bool inside_code = false;
@@ -82,11 +83,11 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-// Runs a command in a separate folder for each document, with the program and the examples that were built with this
-// test. Tables may be as wide as a page.
+// Runs a command, with the program and the examples that were built together with this test, in the folder of the
+// document. Tables may be as wide as a page.
 ProcessResult run_documented(std::string command, const fs::path& folder) {
   command = replaced(command, "build/release", kBuildFolder);
-  // Without npm, the page of a report may be missing. The content of the page does not matter for this test.
+  // If npm has not built the page of reports, a placeholder replaces it: the content of the page does not matter here.
   if (command.starts_with("./run report ") && command.find(".html") != std::string::npos) {
     std::ofstream(folder / "page.html") << "<!--chronormal-data-->";
     command += " --template page.html";
@@ -95,7 +96,7 @@ ProcessResult run_documented(std::string command, const fs::path& folder) {
   return run_shell("export COLUMNS=128; { " + command + "\n} 2>&1", folder.string());
 }
 
-// Returns the part of a line between two texts, or "".
+// Returns the part of a line between the texts `before` and `after`, or "".
 std::string between(const std::string& line, const std::string& before, const std::string& after) {
   const std::size_t first = line.find(before);
   if (first == std::string::npos) return "";
@@ -157,7 +158,8 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-// Makes one test for each document, named by its path in the repository, so that documents are tested in parallel.
+// Makes one test for each document, which is named by its path in the repository. Documents can therefore be tested in
+// parallel.
 class Commands : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> documents_with_commands() {
@@ -208,7 +210,7 @@ void write_files_of_commands(const test::TemporaryFolder& folder) {
   for (const char* const name : {"face.glb", "intro.glb", "models/head.glb"}) folder.write(name, face.glb());
 }
 
-// Runs the indented commands. Their output depends on the reader's files, so documents do not show it.
+// Runs the indented commands of a page. The page does not show their output, which depends on the files of the reader.
 void run_indented_commands(const std::string& page, std::size_t at_least) {
   const test::TemporaryFolder folder;
   write_files_of_commands(folder);
@@ -231,7 +233,7 @@ TEST(Documents, every_indented_command_for_artists_runs) { run_indented_commands
 
 TEST(Documents, every_indented_command_for_simulation_runs) { run_indented_commands("docs/simulation.md", 5); }
 
-// Compares rows of docs/cpp.md about real faces with the output of `compare --blend`.
+// Compares rows of docs/cpp.md, about faces of people, with the output of `compare --blend`.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
 
 TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
@@ -257,7 +259,7 @@ TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
                          cell["end point"] + "|" + cell["least squares"] + "|" + cell["exact"] + "|");
     }
   }
-  // In the page, the cells have no trailing blanks, and only the first row of a group has its name.
+  // On the page, cells have no trailing blanks, and only the first row of a group shows the name of the group.
   Lines shown;
   std::string last;
   for (const std::string& line : lines_of(read(kRoot / "docs/cpp.md"))) {
@@ -282,13 +284,13 @@ INSTANTIATE_TEST_SUITE_P(Documents, RealFaces,
 TEST(Documents, with_commands_are_found) { EXPECT_GE(documents_with_commands().size(), 5u); }
 
 TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
-  std::map<std::string, int> quotes;  // number of quotes by language
+  std::map<std::string, int> quotes;  // number of quoted files by language
   for (const fs::path& path : documents()) {
     const Lines lines = lines_of(read(path));
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
       const std::string language = lines[i].starts_with("```") ? lines[i].substr(3) : "";
-      // A block on a page may be a part of a file that other tests run.
+      // In these languages, a block may be only a part of a file that other tests run.
       const bool may_be_a_part = language == "c" || language == "python";
       if (language != "cpp" && language != "js" && !(may_be_a_part && example.starts_with("examples/"))) continue;
       EXPECT_TRUE(example.starts_with("examples/"))
@@ -340,7 +342,8 @@ TEST(Documents, links_lead_to_files_and_headings) {
   EXPECT_GT(anchors, 5);
 }
 
-// Comments, messages and help mention pages, some with a heading or a section of the theory, which must exist.
+// Comments, messages and help texts mention pages, some with a heading or a section of docs/theory.md. All of these
+// must exist.
 TEST(Documents, that_sources_name_are_there) {
   static const std::regex kPage("docs/[a-z][a-z-]*[.]md(#[a-z0-9-]+)?(, section ([0-9]+))?");
   const std::string theory = read(kRoot / "docs/theory.md");

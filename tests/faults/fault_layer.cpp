@@ -1,5 +1,5 @@
-// A layer between the program and the system, in which the n-th call fails. LD_PRELOAD inserts it, so that the program
-// under test is the one that users have.
+// A layer between the program and the system, in which the n-th call fails. LD_PRELOAD inserts the layer, so the
+// program under test is exactly the program that users have.
 //
 //     CHRONORMAL_FAULT=write:3:28          the third write() fails with errno 28 (ENOSPC)
 //     CHRONORMAL_FAULT=write:3:28+         the third and all later write() fail
@@ -9,12 +9,12 @@
 //     CHRONORMAL_FAULT=A,B                 two faults A and B
 //     CHRONORMAL_ROUNDING=down             floating-point numbers are rounded down from the start, or "up", or to
 //                                          "zero"
-//     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets how many calls there were of each kind, and as
-//                                          "start" how many times memory was requested before the first other call
+//     CHRONORMAL_FAULT_COUNTS=FILE         at the end, FILE gets the number of calls of each kind and, as "start", the
+//                                          number of allocations before the first call of another kind
 //
-// Only calls after the start of main() count, since earlier calls belong to the libraries. A close() that fails closes
-// the file all the same, as on Linux, and an unlink() that fails removes it. fsync() does nothing but count, since no
-// power will be cut. The layer never allocates memory, and calls the kernel directly.
+// Only calls after the start of main() count, since earlier calls belong to the libraries. A close() that fails still
+// closes the file, as on Linux, and an unlink() that fails still removes the file. fsync() only counts its calls, since
+// no power is cut. The layer never allocates memory, and calls the kernel directly.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -140,7 +140,7 @@ __attribute__((destructor)) void write_counts() {
   (void)::syscall(SYS_close, file);
 }
 
-// Returns the fault of this call, or nullptr.
+// Counts a call, and returns the fault that it must have, or nullptr.
 const Fault* fault_at(int kind) {
   if (!is_armed) return nullptr;
   const long number = ++counts[kind], any = kind == kMalloc ? 0 : ++counts[kAny];
@@ -226,7 +226,7 @@ int ftruncate(int file, off_t size) noexcept {
 off_t lseek(int file, off_t at, int from) noexcept {
   return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
 }
-// Deletes a file, but may return an error: a program that cannot delete a file can do no more.
+// Deletes a file even if it returns an error. The test then finds no remains that the program had no way to delete.
 int unlink(const char* path) noexcept {
   const bool is_refused = fails(kUnlink);
   const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);

@@ -1,11 +1,12 @@
 // Makes every call of the program to the system fail once, and makes every allocation fail. After each fault, every
-// output must be either the old or the new one, without other traces, and the exit code must be documented. A layer
-// beneath the program (fault_layer.cpp) causes the faults; the program itself is unchanged.
+// output must be completely old or completely new, no other files may remain, and the exit code must be documented. A
+// layer beneath the program (fault_layer.cpp) causes the faults; the program itself is unchanged.
 //
-// ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all of them, except
-// for some faults of memory: until it has read its arguments, every command requests the same memory about 8,000 times,
-// to make the table of all options. `help` and `usage` fail at each of these, and the other commands at one in 20. A
-// command like `bake` that requests memory more than 3,000 times after that fails at about 3,000 of these places.
+// ./test --full slow runs a sample of the faults. `./test --full faults` (CHRONORMAL_FULL=1) runs all faults, except
+// for some allocations. Before a command has read its arguments, it makes the table of all options, with about 8,000
+// allocations that are the same for every command. In `help` and `usage`, each of these allocations fails once; in the
+// other commands, one in 20. If a command such as `bake` allocates more than 3,000 times after that, about 3,000 of
+// these allocations fail.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -40,18 +41,18 @@ namespace fs = std::filesystem;
 using Files = std::map<std::string, std::string>;  // contents by name
 
 constexpr const char* kOld = "what was there before\n";
-constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // the header of this file explains both
+constexpr std::size_t kStepInTable = 20, kMostPlaces = 3000;  // explained at the top of this file
 
 struct Command {
   std::string name;                    // becomes the name of the test
   std::string arguments;               // no argument may contain blanks
   std::vector<std::string> old = {};   // outputs that exist before the run, and are replaced
-  std::vector<std::string> kept = {};  // files that a failed run may leave for the next one
+  std::vector<std::string> kept = {};  // files that a failed run may leave for the next run
 
   friend void PrintTo(const Command& command, std::ostream* out) { *out << command.arguments; }
 };
 
-// The commands. Inputs are in the folder in/, outputs go to out/.
+// The tested commands. Their inputs are in the folder in/, and their outputs go to out/.
 const std::vector<Command> kCommands = {
     {"help", "bake --help"},
     {"usage", "compare --no-such-option"},
@@ -103,8 +104,9 @@ struct Outcome {
 // Returns the step from one tested fault to the next: 1 in the full test, otherwise `many`.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
-// Tells whether the program is sanitized. The fault layer and the address sanitizer both replace malloc, so these tests
-// cannot run with a sanitized program. A run by hand prints this; the sanitized shards leave these tests out.
+// Tells whether the program is compiled with a sanitizer. The fault layer and the address sanitizer both replace
+// malloc, so these tests cannot run with such a program. They are then skipped with a message; the tests of the
+// sanitized build leave them out.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {
@@ -146,7 +148,8 @@ class Faults : public testing::TestWithParam<Command> {
                 0);
   }
 
-  // Runs the command, which replaces its old outputs.
+  // Runs the command with a fault. Existing outputs of the command are put back first, so that the command replaces
+  // them.
   [[nodiscard]] Outcome run(const std::string& fault, const Streams& streams) const {
     fs::remove_all(folder_ / "out");
     fs::create_directory(folder_ / "out");
@@ -166,7 +169,7 @@ class Faults : public testing::TestWithParam<Command> {
 
   [[noreturn]] void become_program(const std::string& fault, const Streams& streams) const {
     ::alarm(60);  // ends the process if it hangs
-    // Resets signals that the test's caller may have ignored.
+    // Restores the default action of signals, which the caller of the test may have set to be ignored.
     for (const int signal : {SIGTERM, SIGINT, SIGHUP}) (void)std::signal(signal, SIG_DFL);
     if (::chdir(folder_.path().c_str()) != 0) ::_exit(99);
     const auto redirect = [](int stream, const std::string& name) {
@@ -193,14 +196,15 @@ class Faults : public testing::TestWithParam<Command> {
     ::_exit(98);
   }
 
-  // Tells whether a file may be kept for the next run. Such a file is useful only together with the journal, which is
-  // the last one in the list.
+  // Tells whether a failed run may keep a file for the next run. Such a file is useful only together with the journal,
+  // which is the last file in the list.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();
   }
 
-  // Checks that outputs are old or new, and that there are no other files. After a success all outputs must be new.
+  // Checks that each output has its old or its new content, and that there are no other files. After a success, all
+  // outputs must be new.
   void check_files(const Outcome& run, const std::string& what) const {
     for (const auto& [name, bytes] : run.files) {
       const auto wanted = expected_.files.find(name);
@@ -217,7 +221,8 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Checks a run with a fault. The run must either fail with exit code 1 and a message, or do all that was requested.
+  // Checks a run with a fault. The run must either fail with exit code 1 and a message, or do everything that was
+  // requested.
   void check(const Outcome& run, const std::string& what) const {
     check_files(run, what);
     if (run.exit_code == expected_.exit_code) {
@@ -230,7 +235,7 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Returns the number of allocations before a command other than `help` and `usage` reads its arguments.
+  // Returns the number of allocations before a command reads its arguments, or 0 for `help` and `usage`.
   [[nodiscard]] std::size_t mallocs_of_table() {
     constexpr std::size_t kMostOfArguments = 500;
     const std::size_t start = counts_["start"];
@@ -238,7 +243,7 @@ class Faults : public testing::TestWithParam<Command> {
     return is_whole || start < kMostOfArguments ? 0 : start - kMostOfArguments;
   }
 
-  // Makes one in `many` calls of a kind fail. With is_harmless, the faults must not change the exit code.
+  // Makes one in `many` calls of a kind fail. If is_harmless, the faults must not change the exit code.
   void check_each(const std::string& kind, const std::string& how, std::size_t many, bool is_harmless = false) {
     const std::size_t table = kind == "malloc" ? mallocs_of_table() : 0;
     const std::size_t most = table > 0 ? kMostPlaces : counts_[kind];
@@ -280,8 +285,9 @@ TEST_P(Faults, calls_that_fail_end_in_exit_1_and_no_trace) {
   check_each("lock", code(EWOULDBLOCK), 1);
 }
 
-// An output must be the old one or the new one after a power cut, too: the file is flushed before it gets its name, and
-// its folder after that. Some file systems cannot flush a folder, so only flushing the file must succeed.
+// After a power cut, too, an output must be the old or the new file. The program therefore flushes a new file before it
+// renames the file, and flushes the folder afterwards. Some file systems cannot flush a folder, so only the flush of
+// the file must succeed.
 TEST_P(Faults, every_output_and_its_folder_are_flushed) {
   const std::size_t of_journal = GetParam().kept.empty() ? 0 : 2;
   EXPECT_EQ(counts_["fsync"], 2 * expected_.files.size() + of_journal);
@@ -330,8 +336,8 @@ TEST_P(Faults, inputs_that_become_shorter_while_they_are_read_end_in_exit_1) {
   for (std::size_t n = 1; n <= counts_["mmap"]; ++n) {
     const std::string fault = "mmap:" + std::to_string(n) + ":short";
     const Outcome shrunk = run(fault, {});
-    // The program may go on: the file that becomes shorter may also be a result that is read again for judging, or a
-    // file in memory, which keeps its length.
+    // The run may also succeed: the file that becomes shorter may be a result that is read again to judge it, or a file
+    // in memory, whose length does not change.
     EXPECT_TRUE(shrunk.exit_code == 1 || shrunk.exit_code == expected_.exit_code) << fault << ": " << shrunk.err;
     for (const auto& [name, bytes] : shrunk.files)
       EXPECT_TRUE(expected_.files.count(name) == 1 || is_kept(name)) << fault << ": " << name;
@@ -354,7 +360,7 @@ TEST_P(Faults, streams_that_are_full_or_closed_change_exit_codes_only_where_data
   }
 }
 
-// First, calls fail while stderr accepts no output. Then, calls fail in pairs.
+// First, each call fails while stderr accepts no output. Then, two calls fail in one run.
 TEST_P(Faults, pairs_of_failures_leave_no_trace) {
   std::vector<std::string> single;
   for (const char* const kind : {"write", "fsync", "close", "rename", "open", "change", "truncate", "seek", "unlink"})

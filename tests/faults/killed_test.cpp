@@ -1,5 +1,6 @@
-// Kills a run with --resume at system calls, and starts it again. The result must equal the result of a run that was
-// not killed. ./test --full slow kills at random calls, and `./test --full faults` (CHRONORMAL_FULL=1) at each call.
+// Kills a run with --resume at a system call, and starts the run again. The result must equal that of a run that was
+// not killed. ./test --full slow kills runs at random calls, and `./test --full faults` (CHRONORMAL_FULL=1) at each
+// call.
 
 #include <gtest/gtest.h>
 
@@ -49,21 +50,22 @@ class Killed : public testing::TestWithParam<Command> {
     ASSERT_GT(calls_, 20U);
   }
 
-  // Runs the command. `layer` is the text in front of the path of the fault layer. If it is empty, the layer is not
-  // used.
+  // Runs the command. `layer` sets environment variables and ends with the name of the variable for the fault layer,
+  // whose path is appended. If `layer` is empty, runs without the fault layer.
   [[nodiscard]] ProcessResult run(const std::string& more, const std::string& layer = "") const {
     const std::string before = layer.empty() ? "" : layer + kFaultLayer + " ";
-    // A further command makes the shell run the program in a child process, so that it can report how the program ended.
+    // The second command, `exit`, makes the shell run the program in a child process. The shell can then report how the
+    // program ended.
     return run_shell(before + kProgram + " " + GetParam().arguments + more + "; exit $?", folder_.path());
   }
   [[nodiscard]] ProcessResult run_to(std::size_t call, int signal) const {
     return run(" --resume -q -o out",
                "CHRONORMAL_FAULT=any:" + std::to_string(call) + ":signal" + std::to_string(signal) + " LD_PRELOAD=");
   }
-  // Resumes until the run is done, and checks the files.
+  // Resumes the run until it is complete, and checks the files.
   void finish(const std::string& what) const {
     const ProcessResult done = run(" --resume -q -o out");
-    // If a run is killed after its journal was removed, it is complete: only its output exists.
+    // If the run was killed after it had removed its journal, the run was complete, and only its output exists.
     if (done.exit_code != 0) {
       EXPECT_NE(done.err.find("the file exists already"), std::string::npos) << what << ": " << done.err;
     }

@@ -1,6 +1,6 @@
 # cmake -DFROM=package|folder|fetch_content -DBUILD=... -DSOURCE=... -DVERSION=... -P: configures, builds and runs a
-# foreign project (CMakeLists.txt beside this file) that uses chronormal in one of these ways. For a package, the build
-# is first installed into a separate folder.
+# project of a user (CMakeLists.txt beside this file) that gets chronormal in one of these three ways. For `package`,
+# chronormal is first installed from BUILD into a separate folder.
 cmake_minimum_required(VERSION 3.22)  # without policies, "folder" below would mean the variable of that name
 set(folder ${BUILD}/consume_${FROM})
 file(REMOVE_RECURSE ${folder})
@@ -19,12 +19,12 @@ set(programs core)
 set(project ${SOURCE}/tests/install)
 if(FROM STREQUAL "package")
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${folder}/prefix)
-  # Moves the installation to another path, to check that no file in it contains its first path.
+  # Moves the installed files to another folder, to check that they do not depend on the path of the first folder.
   file(RENAME ${folder}/prefix ${folder}/moved)
   list(APPEND options -DCMAKE_PREFIX_PATH=${folder}/moved)
   list(APPEND programs engine core_by_pkg_config engine_by_pkg_config c_by_pkg_config c_by_component)
 elseif(FROM STREQUAL "folder")
-  # Takes the project in docs/cpp.md, which has this repository as a folder.
+  # Makes the project that docs/cpp.md shows, which includes this repository as a folder.
   set(project ${folder}/project)
   set(programs first_steps)
   file(READ ${SOURCE}/docs/cpp.md page)

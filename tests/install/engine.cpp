@@ -1,4 +1,4 @@
-// A program that knows only the function of plugin.cpp. It writes a file of three vertices and lets the plugin count
+// A program that calls only the function of plugin.cpp. It writes a file with three vertices, and the plugin counts
 // them.
 #include <cstdio>
 

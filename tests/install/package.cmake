@@ -28,7 +28,8 @@ foreach(file lib/libchronormal.a lib/libchronormal_c.so.0 lib/pkgconfig/chronorm
     message(FATAL_ERROR "the package has no ${file}")
   endif()
 endforeach()
-# npm makes the page of reports. The page may be missing in this build, but if it is there, it must be in the package.
+# The page of reports is made by npm and may be missing in this build. If the build has the page, the package must
+# contain it.
 if(EXISTS ${BUILD}/../share/chronormal/report.html)
   run(said ${FOLDER}/root/usr/bin/chronormal report --sample twist -o twist.html)
 endif()

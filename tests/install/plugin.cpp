@@ -1,4 +1,4 @@
-// A shared object that reads a file by chronormal, like an engine's plugin. It exports one function of C.
+// A shared library that reads a file with chronormal, like a plugin of a game engine. It exports one C function.
 #include "chronormal/chronormal_io.h"
 
 extern "C" __attribute__((visibility("default"))) long vertices_of(const char* path) {

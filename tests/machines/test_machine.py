@@ -1,11 +1,9 @@
 #!/usr/bin/env python3
-"""Compares the program for another system, which an emulator runs, with the program of this machine: bytes, texts and
-exit codes must be equal. ./test --full machines runs it for each system.
-
-    CHRONORMAL_PROGRAM  the program of this machine
-    CHRONORMAL_OTHER    the words that start the other one: "wine build/windows/chronormal.exe"
-    CHRONORMAL_BITS     the words that start the tests of bits (cmake/bits.cmake)
-    CHRONORMAL_SYSTEM   "windows" or "arm64"
+"""Compares the program for another system, which an emulator runs, with the program of this machine: files, texts and
+exit codes must be equal. ./test --full machines runs the script for each system.  CHRONORMAL_PROGRAM: the program of
+this machine. CHRONORMAL_OTHER: the words that start the other program, such as "wine build/windows/chronormal.exe".
+CHRONORMAL_BITS: the words that start the tests of equal bits (cmake/bits.cmake). CHRONORMAL_SYSTEM: "windows" or
+"arm64".
 """
 import os
 import pathlib
@@ -34,7 +32,8 @@ TRIANGLES = ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 1\
 
 
 def setUpModule():
-    """Starts Wine's server. If a tested program started it, the server would hold that program's pipes open."""
+    """Starts Wine's server. If a tested program started the server, the server would keep the pipes of that program
+    open."""
     if WINDOWS:
         quiet = {"env": ENVIRONMENT, "stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL,
                  "stderr": subprocess.DEVNULL}
@@ -53,7 +52,7 @@ def fixture(folder, *arguments):
 
 
 def windows_name(path):
-    """The name that Windows has for a path of this machine, on the disk that wine makes of its root."""
+    """Returns the Windows name of a path on this machine. Wine shows the root folder as drive Z."""
     return "Z:" + str(path).replace("/", "\\")
 
 
@@ -63,7 +62,8 @@ class Machine(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def check_same(self, *arguments, output=None, folder=None):
-        """Runs both programs in turn, and compares all that they say, and the file that they write."""
+        """Runs both programs, one after the other. Compares their texts, their exit codes, and the file that they
+        write."""
         results = []
         for program in ([PROGRAM], OTHER):
             ran = run([*program, *arguments], folder or self.folder)
@@ -87,14 +87,15 @@ class Machine(unittest.TestCase):
         fixture(self.folder, "convert", "--sample", "bumps", "-o", "bumps.glb")
 
     def in_terminal(self, words, **more):
-        """What a program prints where its streams are a terminal."""
+        """Returns what a program prints in a terminal."""
         pid, terminal = pty.fork()
         if pid == 0:
             os.chdir(self.folder)
             os.execvpe(words[0], words, {**ENVIRONMENT, "TERM": "xterm", **more})
         text, ended = b"", False
         while True:
-            # Wine keeps the terminal open after the program has ended.
+            # Wine keeps the terminal open after the program has ended, so the loop does not wait for the end of the
+            # stream.
             if not select.select([terminal], [], [], 0.5)[0]:
                 if ended:
                     break
@@ -110,7 +111,8 @@ class Machine(unittest.TestCase):
         os.close(terminal)
         if not ended:
             os.waitpid(pid, 0)
-        # Wine's console hides the cursor, writes blanks by erasing and moving, and ends lines twice.
+        # Wine's console hides the cursor, and writes blanks by erasing cells and moving the cursor. It also ends each
+        # line twice.
         shown = re.sub("\x1b\\[\\?25[lh]", "", text.decode(errors="replace"))
         return re.sub("\x1b\\[K\x1b\\[(\\d*)C", lambda move: " " * int(move[1] or 1), shown)
 
@@ -191,7 +193,7 @@ class Same(Machine):
         self.make_walk()
         fixture(self.folder, "convert", "walk_0.obj", "walk_1.obj", "-o", "walk.npz")
         whole = (self.folder / "walk.npz").read_bytes()
-        # CR, LF and Ctrl-Z are bytes like all others.
+        # In binary data, the program must not treat CR, LF and Ctrl-Z as special.
         self.assertTrue(b"\x1a" in whole and b"\n" in whole)
         with open(self.folder / "walk.npz", "rb") as file:
             ran = subprocess.run([*OTHER, "inspect", "-"], stdin=file, cwd=self.folder, env=ENVIRONMENT,
@@ -287,7 +289,8 @@ class Windows(Machine):
 
     def test_ctrl_c_removes_temporary_files(self):
         self.make_walk()
-        # Keys reach only programs that have a console.
+        # Only a program that has a console receives keys, so a helper starts the program in a console and presses
+        # Ctrl-C.
         shown = self.in_terminal(["wine", self.helper, "break", windows_name(pathlib.Path(OTHER[-1]).resolve()), "sample",
                                   "walk_0.obj", "walk_1.obj", "--times", "0:0.001:1", "-q", "-o", "normals.npz"])
         self.assertIn("C000013A", shown)
@@ -302,7 +305,7 @@ class Windows(Machine):
         shutil.copy(build / "chronormal_c.dll", self.tools)
         ran = run(["wine", program], self.folder)
         self.assertEqual(ran.returncode, 0, ran.stderr)
-        # The vertex rises by t. Its triangles have the normals (0, -t, 1) and (-t, 0, 1), whose sum is (-t, -t, 2).
+        # Vertex 2 rises by t. The normals of its two triangles are (0, -t, 1) and (-t, 0, 1), whose sum is (-t, -t, 2).
         self.assertEqual([re.sub(r"-(?=0\.0+\b)", "", line) for line in ran.stdout.decode().split("\r\n")],
                          ["t = 0.0: the normal of vertex 2 is (0.000, 0.000, 1.000)",
                           "t = 0.5: the normal of vertex 2 is (-0.236, -0.236, 0.943)",

@@ -14,7 +14,7 @@
 namespace chronormal::blend_set_test {
 namespace {
 
-// Makes a triangle and a separate vertex.
+// Makes a set with one triangle, and one vertex that no face uses.
 BlendSet small_set() {
   BlendSet set;
   set.topology = fixtures::make_triangles(4, {0, 1, 2});

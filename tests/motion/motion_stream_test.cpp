@@ -1,4 +1,5 @@
-// Tests MotionStream: which keyframes it holds, how many times it reads each of them, and errors of the reader.
+// Tests MotionStream: which keyframes it holds in memory, how many times it reads each keyframe, and how it reports
+// errors of the reader.
 #include "chronormal/motion/motion.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@
 namespace chronormal::motion_stream_test {
 namespace {
 
-// Makes a triangle whose first coordinate is the number of its keyframe.
+// Makes the outline of a motion with one triangle, without positions. In the source, all coordinates of a keyframe are
+// the number of the keyframe.
 Motion outline_of(std::size_t keyframes) {
   Motion outline;
   outline.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -61,7 +63,7 @@ TEST(MotionStream, holds_no_more_than_was_asked_for) {
       EXPECT_EQ(stream.motion().segment(s).to[2].z, static_cast<float>(s + 1));
     }
   }
-  EXPECT_EQ(source.reads, 24U);  // each pass reads every keyframe once
+  EXPECT_EQ(source.reads, 24U);  // each of the two passes reads every keyframe once
   EXPECT_FALSE(source.overlaps);
 }
 
@@ -83,7 +85,7 @@ TEST(MotionStream, a_watcher_is_told_of_what_is_there_and_of_all_that_is_read) {
     Source source;
     MotionStream stream = source.stream(12, kept);
     ASSERT_TRUE(stream.hold(2, 3).ok());
-    ASSERT_TRUE(stream.hold(3, 4).ok());  // keyframe 5 is read in advance
+    ASSERT_TRUE(stream.hold(3, 4).ok());  // also reads keyframe 5 in advance
     std::mutex mutex;
     std::vector<int> told(12);
     const auto count = [&](std::size_t k, std::span<const float> positions) -> Status {
@@ -131,7 +133,7 @@ TEST(MotionStream, one_keyframe_alone_reads_nothing_else) {
 TEST(MotionStream, an_error_comes_with_the_keyframe_that_has_it_and_the_others_stay_readable) {
   Source source;
   MotionStream stream = source.stream(20, 0);
-  for (std::size_t s = 8; s < 12; ++s) ASSERT_TRUE(stream.hold_segment(s).ok());  // now keyframe 13 is read in advance
+  for (std::size_t s = 8; s < 12; ++s) ASSERT_TRUE(stream.hold_segment(s).ok());  // also reads keyframe 13 in advance
   const Status status = stream.hold_segment(12);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().text(), "frame 13: unlucky");

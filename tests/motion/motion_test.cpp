@@ -1,4 +1,4 @@
-// Tests topologies, motions, the validation of data from outside, and the segment of a time.
+// Tests topologies, motions, the validation of data from outside, and the search for the segment of a time.
 
 #include <gtest/gtest.h>
 
@@ -120,7 +120,7 @@ TEST(Validate, refuses_segments_that_lead_nowhere) {
   expect_invalid(motion, "", "two keyframes");
 }
 
-// Makes keyframes at 2 s, 3 s and 5 s.
+// Makes a motion with keyframes at 2 s, 3 s and 5 s.
 Motion three_keyframes() {
   Motion motion = two_frames();
   motion.keyframes.push_back(motion.keyframes.back());

@@ -1,4 +1,5 @@
-// Compares curves through keyframes with textbook formulas, and their straight pieces with the curves.
+// Compares curves through keyframes with formulas from textbooks, and the straight pieces of the curves with the
+// curves.
 #include "chronormal/motion/paths.h"
 
 #include <gtest/gtest.h>
@@ -75,9 +76,10 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 
 // ---- pieces --------------------------------------------------------------------------------------------------------
 
-// Compares the normals of the pieces with the normals of the curve at times between the keyframes, for all faces or for
-// all vertices. Returns the largest angle in degrees. Subtracts twice the possible effect of rounding positions to
-// float32: once for the pieces, and once because the cutting accepts a piece that is within rounding.
+// Compares the normals of the straight pieces with the normals of the curve, at times between the keyframes, for all
+// faces or for all vertices. Returns the largest angle in degrees. Subtracts twice the angle that rounding positions to
+// float32 may cause: once because the pieces are rounded, and once because the library accepts a piece whose error is
+// only rounding.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {
@@ -107,8 +109,8 @@ double largest_error(const Motion& motion, const Motion& pieces, bool of_vertice
           }
           const double size = static_cast<double>(
               std::sqrt(exact[e][0] * exact[e][0] + exact[e][1] * exact[e][1] + exact[e][2] * exact[e][2]));
-          // A triangle has two edges and a quad has four. Each edge is at most 1.8 times as long as its largest
-          // component. The factors include a margin.
+          // A triangle contributes two edges and a quad four. An edge is at most 1.8 times as long as its largest
+          // component. The factors include a safety margin.
           rounding = 2 * 57.3 * 0x1p-24 * 16 * static_cast<double>(face.size() - 2) * widest * 1.2 * furthest / size;
         }
         largest = std::max(largest, test::angle_of(exact[e], found[e]) * 57.29577951308232 - rounding);
@@ -131,7 +133,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
       EXPECT_EQ(cut.cut.beyond, 0U);
       EXPECT_GT(cut.cut.pieces, before) << "a smaller tolerance takes more";
       before = cut.cut.pieces;
-      const double rounding = 2e-4;  // effect of rounding positions on edges of length 0.1
+      const double rounding = 2e-4;  // angle in degrees by which rounding positions may turn edges of length 0.1
       const double of_faces = largest_error(motion, cut.motion, false, given);
       EXPECT_LE(of_faces, tolerance + rounding);
       EXPECT_GT(of_faces, tolerance / 40) << "not many more pieces than it takes";
@@ -142,7 +144,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
   }
 }
 
-// The motions are random tetrahedra and quads that tumble, swell and wander; some are thin.
+// The motions are random tetrahedra and quads that tumble, grow and wander. Some of them are thin.
 TEST(Pieces, of_random_motions_are_within_the_tolerance) {
   const std::uint64_t seed = 20261127;
   RecordProperty("seed", std::to_string(seed));
@@ -213,7 +215,8 @@ TEST(Pieces, are_no_more_than_was_allowed) {
   EXPECT_EQ(cut_into_segments(motion, curve(), 0).value().cut.pieces, 2U);
 }
 
-// Between keyframes 1 and 2, vertex 2 passes close to the line through the other two vertices.
+// Between keyframes 1 and 2, vertex 2 passes close to the line through the other two vertices, so the face turns over
+// quickly.
 TEST(Pieces, a_face_that_turns_over_decides_nothing) {
   Motion motion;
   motion.topology = Topology::triangles(6, {0, 1, 2, 3, 4, 5}).value();
@@ -226,7 +229,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // Now vertex 2 passes through the line itself.
+  // Now vertex 2 passes exactly through the line.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();
@@ -273,7 +276,7 @@ TEST(Pieces, have_the_same_bits_on_any_number_of_threads_and_in_a_stream) {
   }
 }
 
-// Vertex 0 exceeds the largest float32 number and returns.
+// Between the keyframes, the curve of vertex 0 exceeds the largest float32 number.
 TEST(Pieces, that_leave_float32_are_an_error) {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();

@@ -51,8 +51,8 @@ bool is_simple(const std::vector<Place>& polygon) {
   return true;
 }
 
-// Puts a polygon on a plane in space: x and y become two of the coordinates, and the third one depends linearly on
-// them.
+// Puts a plane polygon into space: x and y become two of the three coordinates, and the third coordinate depends
+// linearly on x and y.
 std::vector<float> in_space(const std::vector<Place>& polygon, std::size_t axis) {
   std::vector<float> positions;
   for (const Place& p : polygon) {
@@ -71,8 +71,8 @@ std::vector<Triangle> cut(const std::vector<Place>& polygon, std::size_t axis = 
   return triangles_of_face(face, in_space(polygon, axis));
 }
 
-// Checks that the triangles all turn left and that their areas add up to the polygon's. Then they cover the polygon
-// exactly once, since the sum of their signed areas is the polygon's area.
+// Checks that all triangles are counterclockwise and that their areas add up to the area of the polygon. The sum of
+// signed areas is the area of the polygon for every cut, so the triangles then cover the polygon exactly once.
 void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
   const std::vector<Triangle> triangles = cut(polygon, axis);
   ASSERT_EQ(triangles.size(), polygon.size() - 2);
@@ -91,7 +91,8 @@ void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
 TEST(Triangles, convex_polygons_stay_fans) {
   EXPECT_EQ(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(cut({{0, 0}, {2, 0}, {3, 1}, {2, 2}, {0, 2}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
-  // A fan covers this polygon although its first corner is concave, so it is still cut into a fan.
+  // A fan from the first corner covers this polygon although that corner is concave, so the polygon is still cut into a
+  // fan.
   EXPECT_EQ(cut({{1, 1}, {4, 0}, {1, 4}, {0, 4}, {0, 0}}).front(), (Triangle{0, 1, 2}));
 }
 
@@ -114,8 +115,8 @@ TEST(Triangles, polygons_that_are_drawn_are_covered_once) {
   std::mt19937 random(kSeed);
   std::size_t tried = 0, concave = 0;
   while (tried < 400) {
-    // Random points on a small grid become a polygon by reversing parts until no two edges cross. Many points are on
-    // one line.
+    // Random points on a small grid become a polygon: parts of the outline are reversed until no two edges cross. Many
+    // points are on one line.
     const std::size_t n = 4 + random() % 16;
     const std::int64_t grid = 3 + static_cast<std::int64_t>(random() % 40);
     std::vector<Place> polygon;

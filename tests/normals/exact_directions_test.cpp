@@ -1,5 +1,6 @@
-// Compares every direction that is computed from positions with integers of any size: 100,000 cases from a fixed seed,
-// or as many as the variable CHRONORMAL_FULL_CASES says (./test --full exact). A case is one element at one t.
+// Compares every direction that is computed from positions with integers of any size. A case is one element at one t.
+// The test has 100,000 cases from a fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for (./test
+// --full exact).
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ using test::IntegerNormals;
 using test::IntegerTime;
 using test::IntegerVector;
 
-constexpr double kPromised = 1e-6;  // radians
+constexpr double kPromised = 1e-6;  // in radians, the guaranteed largest error
 constexpr std::uint64_t kSeed = 20170;
 
 std::size_t wanted_cases() {
@@ -55,7 +56,7 @@ long double size_at(const Segment& segment, std::size_t f, double t) {
   return std::hypot(e[1] * g[2] - e[2] * g[1], e[2] * g[0] - e[0] * g[2], e[0] * g[1] - e[1] * g[0]);
 }
 
-// Returns the t with the smallest |n(t)|, up to the last place.
+// Returns the t at which |n(t)| is smallest, to the last bit.
 double hardest_time(const Segment& segment, std::size_t f) {
   double best = 0;
   for (int i = 1; i <= 16; ++i) {
@@ -70,7 +71,7 @@ double hardest_time(const Segment& segment, std::size_t f) {
   return size_at(segment, f, low) < size_at(segment, f, best) ? low : best;
 }
 
-// Draws times that are hard for one of the faces, and times that are hard for most faces.
+// Draws times at which the direction is hard to compute: for one of the faces, or for most faces.
 std::vector<double> some_times(const Segment& segment, fixtures::Random& random) {
   constexpr std::array<double, 16> kSimple{0,           1,           0.5,  0.25,    0.75,     0.125,
                                            1.0 / 3,     0.8,         1e-9, 0x1p-40, 0x1p-150, 0x1p-250,
@@ -107,7 +108,7 @@ struct Tally {
   }
 };
 
-// Judges all elements of curves and of recomputed normals at some t.
+// Compares all elements of curves and of recomputed normals with exact directions, at several times t.
 template <class ElementOf>
 void judge(const NormalCurves& curves, NormalRecompute& recompute, const IntegerNormals& oracle,
            const std::vector<double>& times, const char* what, Tally& tally, const ElementOf& element_of) {
@@ -169,7 +170,7 @@ TEST(ExactDirections, are_within_a_millionth_of_a_radian_in_every_family) {
   EXPECT_GE(all, wanted);
 }
 
-// Judges a whole mesh, faces and vertices.
+// Compares the faces and the vertices of a mesh with exact directions.
 Tally judged(const Motion& motion, const std::vector<double>& times) {
   const Segment segment = motion.segment(0);
   const IntegerNormals oracle(segment);
@@ -186,7 +187,7 @@ Tally judged(const Motion& motion, const std::vector<double>& times) {
   return tally;
 }
 
-// Normals of these small meshes once had errors of up to 180 degrees.
+// In an earlier version, normals of these small meshes had errors of up to 180 degrees.
 TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
   struct Found {
     const char* name;
@@ -245,8 +246,8 @@ TEST(ExactDirections, are_right_in_files_that_broke_them) {
   EXPECT_GE(files, 8u);
 }
 
-// The curves of this test have only control normals in double, and no positions. Near a zero of n(t) the direction is
-// therefore uncertain, and the result counts such elements.
+// The curves of this test are made from control normals in double, without positions. Near a zero of n(t), the
+// direction is therefore uncertain, and the result must count the element as uncertain.
 TEST(UncertainDirections, are_counted_where_there_are_no_positions) {
   const Vec3d z{0, 0, 1};
   const ControlNormals turning{z, {}, -z}, steady{z, z, z};

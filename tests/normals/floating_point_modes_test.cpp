@@ -1,5 +1,5 @@
-// Tests the modes that a caller may set in the floating-point unit, and the guarantee for each mode
-// (control_normals.h).
+// Tests the results if the caller has changed the mode of the floating-point unit (rounding, subnormal numbers).
+// control_normals.h states the guarantee for each mode.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@
 namespace chronormal::floating_point_modes_test {
 namespace {
 
-// Returns the normals of faces and vertices at one t, both from curves and recomputed.
+// Returns the normals of all faces and all vertices at one t, both from curves and recomputed from positions.
 std::vector<float> everything(const Segment& segment, double t) {
   const Topology& topology = *segment.topology;
   const NormalGroups groups = NormalGroups::of_vertices(topology, separate_points(topology.vertex_count()));
@@ -59,8 +59,7 @@ class ScopedControl {
   unsigned before_;
 };
 
-// The meshes are so small that squares of coordinates may underflow, although the coordinates themselves are normal
-// floating-point numbers.
+// The coordinates of these meshes are normal floating-point numbers, but so small that their squares may underflow.
 TEST(FlushToZero, changes_no_bit_where_coordinates_are_normal) {
   fixtures::Random random(61);
   std::vector<Motion> motions = {fixtures::smooth_morph(8), fixtures::tiny_soup(50),

@@ -1,7 +1,7 @@
-// Tests theorems about control normals, each on random meshes of a family.
+// Tests theorems about control normals. Each theorem is tested on random meshes of a family.
 //
-// Most coordinates are multiples of 2^-8 within +-128: edges, products and sums of a few of them are exact in double,
-// so theorems hold to the last bit. Other tests state their tolerance.
+// Most coordinates are multiples of 2^-8 between -128 and 128. Edges, their products, and sums of a few products are
+// then exact in double, so theorems hold to the last bit. Other tests state a tolerance.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -27,13 +27,13 @@ using fixtures::Point;
 
 // ---- generators ----------------------------------------------------------------------------------------------------
 
-// Draws an integer in [-bound, bound]. rapidcheck begins with the low end of a range and widens the range from case to
-// case. The low end here is zero, so the first cases are degenerate and later cases are general.
+// Draws an integer in [-bound, bound]. rapidcheck draws from the low end of a range first, and from more of the range
+// in later cases. The low end here means 0, so the first cases are degenerate and later cases are general.
 rc::Gen<int> around_zero(int bound) {
   return rc::gen::map(rc::gen::inRange(0, 2 * bound + 1), [](int k) { return k % 2 == 0 ? k / 2 : -(k / 2) - 1; });
 }
 
-// Draws a coordinate that is a multiple of 2^-8 within +-`bound`.
+// Draws a coordinate that is a multiple of 2^-8 between -bound and bound.
 rc::Gen<double> on_grid(int bound = 128) {
   return rc::gen::map(around_zero(256 * bound - 1), [](int k) { return k * 0x1p-8; });
 }
@@ -44,13 +44,14 @@ std::vector<Point> points(std::size_t count, int bound = 128) {
   return *rc::gen::container<std::vector<Point>>(count, grid_point(bound));
 }
 
-// Makes a motion of `face_count` triangles on the grid that share no vertices.
+// Makes a motion of `face_count` triangles that share no vertices. Coordinates are multiples of 2^-8.
 Motion grid_soup(std::size_t face_count = 3, int bound = 128) {
   return fixtures::make_motion(fixtures::make_soup(face_count), points(3 * face_count, bound),
                                points(3 * face_count, bound));
 }
 
-// Makes a motion of triangles at any place and of any size from 1e-6 to 1e6, where nothing is exact.
+// Makes a motion of triangles at any place and of any size from 1e-6 to 1e6. Computations with their coordinates are
+// not exact.
 Motion any_soup(std::size_t face_count = 3) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const double size = std::pow(10, *around_zero(6));
@@ -87,7 +88,7 @@ double largest(const ControlNormals& normals) {
   return std::max({max_abs(normals.n0), max_abs(normals.m), max_abs(normals.n1)});
 }
 
-// Returns the largest component of an edge of face f, at both ends.
+// Returns the largest component of any edge of face f at t = 0 or t = 1.
 double largest_edge(const Motion& motion, std::size_t f) {
   const Segment segment = motion.segment(0);
   const auto corners = motion.topology.face(f);
@@ -112,7 +113,7 @@ Motion changed(Motion motion, Change&& change) {
   return motion;
 }
 
-// Returns a copy of a motion in which the corners of every triangle are in another order.
+// Returns a copy of a motion in which the corners of every triangle are in the given order.
 Motion reordered(const Motion& motion, const std::array<std::size_t, 3>& order) {
   std::vector<std::uint32_t> corners;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
@@ -134,7 +135,7 @@ RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, (
   const auto at = [&](std::size_t i) { return lerp(to_double(segment.from[i]), to_double(segment.to[i]), t); };
   const double edge = largest_edge(motion, 0);
   const double position = std::max({max_abs(at(0)), max_abs(at(1)), max_abs(at(2))});
-  // The vertices at t are rounded to double here, by a relative 2^-53.
+  // The test rounds the positions of the vertices at t to double, by a relative error of 2^-53.
   const double tolerance = 64 * 0x1p-53 * edge * edge * (edge + position);
   RC_ASSERT(std::fabs(dot(n, at(1) - at(0))) <= tolerance);
   RC_ASSERT(std::fabs(dot(n, at(2) - at(0))) <= tolerance);
@@ -178,7 +179,7 @@ RC_GTEST_PROP(Theorems, scaled_mesh_has_normals_times_the_square, ()) {
   const auto after = control_normals(larger);
   const Segment segment = larger.segment(0);
   for (std::size_t f = 0; f < before.size(); ++f) {
-    // Scaled positions are rounded to float again, by a relative 2^-24.
+    // Scaling the positions rounds them to float32 again, by a relative error of 2^-24.
     double position = 0;
     for (const auto& positions : {segment.from, segment.to}) {
       for (const auto vertex : larger.topology.face(f)) {
@@ -214,7 +215,7 @@ RC_GTEST_PROP(Theorems, mesh_scaled_by_a_power_of_two_has_the_same_bits_but_for_
 
 RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   const Motion motion = grid_soup();
-  // Each end is translated by its own vector, within the range of the grid.
+  // Translates the mesh by one vector at t = 0 and by another at t = 1. The coordinates remain multiples of 2^-8.
   const auto step0 = *grid_point(1000), step1 = *grid_point(1000);
   Motion moved = motion;
   for (std::size_t i = 0; i < moved.keyframes[0].positions.size(); ++i) {
@@ -224,7 +225,8 @@ RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   RC_ASSERT(control_normals(moved) == control_normals(motion));
 }
 
-// A rotation by a quaternion of small integers, times its squared length, which maps integers to integers.
+// The rotation by a quaternion of small integers, multiplied by the squared length of the quaternion. It maps integers
+// to integers.
 using IntegerMatrix = std::array<std::array<int, 3>, 3>;
 
 IntegerMatrix integer_rotation(int w, int x, int y, int z) {
@@ -244,7 +246,8 @@ RC_GTEST_PROP(Theorems, rigidly_moved_mesh_has_rotated_normals, ()) {
                                     [](const auto& c) { return c != std::array<int, 4>{}; });
   const int divisor = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
   const IntegerMatrix r = integer_rotation(q[0], q[1], q[2], q[3]);
-  // Coordinates are multiples of the divisor, so that rotated positions are integers, which floats represent exactly.
+  // The coordinates are multiples of the divisor, so the coordinates after the rotation are integers, which float32
+  // represents exactly.
   const Motion motion = changed(grid_soup(3, 4), [divisor](Point p) {
     for (double& c : p) c *= 256 * divisor;
     return p;
@@ -282,7 +285,7 @@ RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   Motion::Keyframe half = motion.keyframes[0];
   half.time = 0.5;
   for (std::size_t i = 0; i < half.positions.size(); ++i) {
-    half.positions[i] = (half.positions[i] + motion.keyframes[1].positions[i]) / 2;  // exact: multiples of 2^-9
+    half.positions[i] = (half.positions[i] + motion.keyframes[1].positions[i]) / 2;  // exact: a multiple of 2^-9
   }
   split.keyframes.insert(split.keyframes.begin() + 1, half);
   split.segments.clear();
@@ -293,7 +296,7 @@ RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   face_control_normals(split.segment(0), {0, first.size()}, first);
   face_control_normals(split.segment(1), {0, second.size()}, second);
   for (std::size_t f = 0; f < whole.size(); ++f) {
-    // This is de Casteljau's algorithm at t = 1/2.
+    // De Casteljau's algorithm at t = 1/2 gives the control normals of both halves.
     const Vec3d left = 0.5 * (whole[f].n0 + whole[f].m), right = 0.5 * (whole[f].m + whole[f].n1);
     const Vec3d middle = 0.5 * (left + right);
     RC_ASSERT(first[f] == (ControlNormals{whole[f].n0, left, middle}));
@@ -315,7 +318,8 @@ RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
     for (std::size_t f = 0; f < left.size(); ++f) RC_ASSERT(right[f] == negated(left[f]));
   };
   expect_negated(motion, reordered(motion, {0, 2, 1}));
-  // If another corner comes first, other edges are multiplied, so the bits are the same only if nothing is rounded.
+  // If the order begins with another corner, other edges are multiplied. The bits are then the same only if nothing is
+  // rounded.
   expect_negated(on_grid_motion, reordered(on_grid_motion, {1, 0, 2}));
   expect_negated(on_grid_motion, reordered(on_grid_motion, {2, 1, 0}));
 }
@@ -359,14 +363,14 @@ RC_GTEST_PROP(Theorems, polygon_normals_are_the_sum_of_any_fan_of_their_triangle
 
 RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) {
   const Motion motion = any_soup(1);
-  Motion mixed = motion;  // a quad in the mesh prevents the fast path for triangles
+  Motion mixed = motion;  // a quad in the mesh keeps the library from using its fast path for triangles
   mixed.topology = fixtures::make_polygons(3, {0, 3, 7}, {0, 1, 2, 0, 1, 2, 1});
   RC_ASSERT(control_normals(mixed)[0] == control_normals(motion)[0]);
 }
 
 // ---- degrees -------------------------------------------------------------------------------------------------------
 
-// Returns the control normals of one triangle whose corners move by `steps`.
+// Returns the control normals of a triangle whose corners begin at `start` and move by `steps`.
 ControlNormals moved_triangle(const std::array<Point, 3>& start, const std::array<Point, 3>& steps) {
   std::vector<Point> from(start.begin(), start.end()), to = from;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -421,9 +425,9 @@ RC_GTEST_PROP(Theorems, general_face_has_degree_2_where_its_edges_do_not_change_
   const auto edge_change = [&](std::size_t i) {
     return Vec3d{steps[i][0] - steps[0][0], steps[i][1] - steps[0][1], steps[i][2] - steps[0][2]};
   };
-  const Vec3d d = cross(edge_change(1), edge_change(2));  // exact for coordinates on the grid
+  const Vec3d d = cross(edge_change(1), edge_change(2));  // exact, since coordinates are multiples of 2^-8
   const ControlNormals normals = moved_triangle(start, steps);
-  // degree() treats a coefficient below 2^-28 of the largest control normal as zero.
+  // degree() treats a coefficient below 2^-28 of the largest control normal as zero, so such cases are skipped.
   RC_PRE(max_abs(d) > 0x1p-27 * largest(normals));
   RC_ASSERT(degree(normals) == 2);
   RC_ASSERT(normals.n0 + normals.n1 - 2 * normals.m == d);

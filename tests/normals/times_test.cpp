@@ -1,6 +1,7 @@
-// Tests that the normals at t are always the same bytes. They must not depend on which times are requested before,
-// after or together with t, on the instruction set, on the number of threads, or on the way to compute them, including
-// the C interface. The meshes are hard and random, and integers of any size give the true normals.
+// Tests that the normals at t always have the same bytes. The bytes must not depend on other times that are requested
+// before, after or together with t, on the instruction set, on the number of threads, or on the way to compute normals;
+// the C interface is one of these ways. The meshes are random and hard, and the true normals are computed from integers
+// of any size.
 
 #include <gtest/gtest.h>
 
@@ -44,24 +45,25 @@ using test::IntegerVector;
 
 using Normals = std::vector<float>;
 
-// A prepared way to compute the normals of some elements: returns the normals at each given time, in order.
+// A way to compute the normals of some elements, which is prepared for a segment. Returns the normals at each of the
+// given times, in the same order.
 using Way = std::function<std::vector<Normals>(const std::vector<double>& times)>;
 
 struct NamedWay {
   std::string name;
-  std::function<Way()> make;  // prepares the way from scratch
+  std::function<Way()> make;  // prepares the way anew
 };
 
-// The faces, vertices or corners of a mesh.
+// The elements of a mesh whose normals are computed: its faces, vertices or corners.
 struct Elements {
   chronormal_elements kind;
   const NormalGroups* groups;  // nullptr for faces
-  double crease_angle;         // for corners
+  double crease_angle;         // in degrees, for corners
 };
 
-// Ways that must agree with each other to the last bit, and with the true normals within a tolerance.
+// Ways that must give the same bytes as each other, and whose normals must have errors within a tolerance.
 struct Kin {
-  double tolerance;  // radians; infinite if integers cannot judge these normals
+  double tolerance;  // in radians; infinite if these normals are not compared with true normals
   std::vector<NamedWay> ways;
 };
 
@@ -87,7 +89,7 @@ Way all_together(NormalCurves made, Threads threads) {
   };
 }
 
-// Blends a base and one target, whose weight is t.
+// Makes a way from blend shapes with one target, whose weight is t.
 Way blended(BlendNormals made, Threads threads, bool together) {
   const auto normals = std::make_shared<BlendNormals>(std::move(made));
   return [=](const std::vector<double>& times) {
@@ -109,7 +111,8 @@ void expect_done(chronormal_status status) {
   if (status != CHRONORMAL_DONE) throw std::runtime_error(chronormal_last_message());
 }
 
-// A mesh and the two ends of its segment in the types of the C interface, and the options of some elements.
+// A mesh and its positions at both ends of a segment, in the types of the C interface, together with the options for
+// some elements.
 struct MeshInC {
   std::vector<std::uint32_t> offsets{0};
   chronormal_mesh mesh;
@@ -132,7 +135,7 @@ struct MeshInC {
   }
 };
 
-// Makes a way from an object of `size` elements: write(t, where) writes the normals at one time.
+// Makes a way from a function of the C interface: write(t, where) writes the normals of `size` elements at one time.
 template <class Write>
 Way written_in_c(std::size_t size, Write write) {
   return [=](const std::vector<double>& times) {
@@ -143,7 +146,8 @@ Way written_in_c(std::size_t size, Write write) {
   };
 }
 
-// Creates curves for the segment; or if is_next, for the reversed segment, and then moves them on to the segment.
+// Makes a way from curves of the C interface. If is_next, creates the curves for the reversed segment first, and then
+// changes them to the segment.
 Way curves_in_c(const MeshInC& in, bool is_next) {
   chronormal_curves* made = nullptr;
   expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));
@@ -193,11 +197,11 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the C interface to `curves`, the ways of C++, if both have the same elements. Otherwise adds them to
-// `all`.
+// Adds the ways of the C interface to `curves`, the ways of C++ to compare with, if both interfaces have the same
+// elements. Otherwise adds them to `all` as a separate group.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
-  Kin own{std::numeric_limits<double>::infinity(), {}};  // the C interface has a normal for each corner
+  Kin own{std::numeric_limits<double>::infinity(), {}};  // in the C interface, each corner has a separate normal
   Kin& kin = elements.kind == CHRONORMAL_CORNERS ? own : curves;
   for (const bool in_slices : {false, true})
     kin.ways.push_back({"the normals of a mesh", [=, &motion] {
@@ -213,7 +217,7 @@ void add_ways_of_outputs(const Motion& motion, const Elements& elements, double 
   if (!own.ways.empty()) all.push_back(std::move(own));
 }
 
-// Adds the ways of the C interface that blend or read files.
+// Adds the ways of the C interface that blend targets or read files.
 void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   std::vector<float> deltas = motion.keyframes[1].positions;
@@ -291,21 +295,21 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Describes the fault of one way to evaluate, or returns "". `expected` has the normals at each of the times. If
-// `expected` is empty, this function fills it with the results of this way.
+// Checks that one way gives the same bytes for any choice of times. `expected` has the normals at each of the times; if
+// it is empty, fills it with the results of this way. Describes the first fault, or returns "".
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
   };
-  // Each time is computed by an object that has computed no other time.
+  // First, a new object computes each time.
   std::vector<Normals> alone;
   for (const double t : times) alone.push_back(way.make()({t})[0]);
   if (expected.empty()) expected = alone;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!same(alone[i], expected[i])) return way.name + ": other bytes at t = " + std::to_string(times[i]);
   }
-  // Then two times are computed together, and all of them in some order.
+  // Then, one object computes two times together, and after that all times in random order.
   std::vector<std::size_t> order(times.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
@@ -322,7 +326,8 @@ std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times
   return "";
 }
 
-// Compares the normals of all elements at all times with integers.
+// Compares the normals of all elements at all times with true normals from integers. Describes the first fault, or
+// returns "".
 std::string fault_in_directions(double tolerance, const std::vector<double>& times, const std::vector<Normals>& found,
                                 const IntegerNormals& oracle, const NormalGroups* groups) {
   for (std::size_t i = 0; i < times.size(); ++i) {

@@ -1,4 +1,4 @@
-// Checks that LaTeX accepts the tables of `compare --table latex` for all names of inputs.
+// Checks that LaTeX accepts the tables of `compare --table latex`, whatever characters the names of the inputs have.
 
 #include <gtest/gtest.h>
 

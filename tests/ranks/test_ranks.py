@@ -1,6 +1,6 @@
-"""The program under mpirun: any number of ranks gives the bytes of one process. If a rank fails or dies, the run
-ends, the message names the rank, and no files are left behind. CHRONORMAL_PROGRAM names the program, which was
-built with MPI."""
+"""Tests the program under mpirun: with any number of ranks, the output has the same bytes as with one process. If a
+rank fails or dies, the run ends, the message names the rank, and no files are left behind. CHRONORMAL_PROGRAM names
+the program, which must be built with MPI."""
 
 import array
 import math
@@ -44,7 +44,7 @@ def write_cache(path, side, poses):
 
 
 def is_rank(process, rank):
-    """Tell whether a process is this rank of a run."""
+    """Tell whether a process is the given rank of a run."""
     try:
         with open(f"/proc/{process}/environ", "rb") as file:
             return f"OMPI_COMM_WORLD_RANK={rank}".encode() in file.read().split(b"\0")
@@ -59,7 +59,7 @@ class RanksTest(unittest.TestCase):
         os.chdir(cls.folder.name)
         write_mesh("small.obj", 12)
         write_cache("small.pc2", 12, [pose(12, k) for k in range(7)])
-        # Keyframes of up to 64 MiB stay in memory; these are larger.
+        # Keyframes of up to 64 MiB stay in memory, so this input has more.
         side, poses = 200, [pose(200, k) for k in range(5)]
         write_mesh("large.obj", side)
         write_cache("large.pc2", side, poses * 30)
@@ -93,7 +93,7 @@ class RanksTest(unittest.TestCase):
                     self.assertEqual((run.returncode, run.stdout), (alone.returncode, alone.stdout), run.stderr)
 
     def test_each_rank_of_an_audit_reads_its_own_segments_alone(self):
-        # Only the last rank reads the invalid keyframe, although all ranks know the largest length of normals.
+        # All ranks need the largest length of a normal, but only the last rank may read the invalid keyframe.
         run = self.run_program("audit large.obj broken.pc2 --no-weld --samples 2 -o x.txt", 3)
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("rank 2: broken.pc2", run.stderr)
@@ -204,7 +204,7 @@ class RanksTest(unittest.TestCase):
         run = subprocess.Popen(MPIRUN + ["3", PROGRAM] + arguments.split(), stderr=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)
         self.addCleanup(lambda: run.poll() is None and run.kill())
-        last_row = 3 * 40000 * 4 * 4516 * 2 // 3  # the first row of the last rank
+        last_row = 3 * 40000 * 4 * 4516 * 2 // 3  # byte at which the rows of the last rank begin
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline and run.poll() is None:
             for name in os.listdir("."):
@@ -263,7 +263,8 @@ class RanksTest(unittest.TestCase):
                 self.assertEqual(run.stderr.count("No space"), 1, run.stderr)
 
     def test_a_rank_without_memory_says_so_with_its_number(self):
-        # MPI itself takes some hundred megabytes of address space. The files are as sparse as the program allows.
+        # The limit on memory leaves room for MPI, which takes some hundred megabytes of address space. The files are as
+        # sparse as the program accepts.
         count = 40000000
         with open("huge.ply", "wb") as file:
             file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n"

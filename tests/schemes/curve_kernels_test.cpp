@@ -1,5 +1,5 @@
-// Checks that formulas give the same bits on every instruction set and in every layout, for all numbers of elements
-// beyond whole vectors. oracle_test.cpp compares the results with an independent oracle.
+// Checks that formulas give the same bits on every instruction set and in every layout, also if the last vector of
+// elements is not full. oracle_test.cpp compares the results with an independent oracle.
 
 #include "schemes/kernels/curve_kernels.h"
 
@@ -21,7 +21,7 @@
 namespace chronormal::curve_kernels_test {
 namespace {
 
-// Schemes that together use all formulas, including each formula that can be played step by step.
+// Schemes that together use all formulas, among them every formula with sequential access (playback step by step).
 const std::vector<std::string> kSchemes = {
     "linear",          "quadratic", "cubic",         "lagrange:4",       "lagrange:9",        "linear:scaled",
     "rational",        "slerp",     "decasteljau:2", "decasteljau:4",    "decasteljau:5",     "quaternion:matrix",
@@ -29,8 +29,8 @@ const std::vector<std::string> kSchemes = {
 
 constexpr std::size_t kElements = 150;
 
-// Faces of several kinds: some move much, some little, some rest, and some turn to their opposite. Every tenth face
-// never has an area.
+// Faces of several kinds: some move much, some little, some rest, and the normals of some become their opposites. Every
+// tenth face has no area at any time.
 struct Subject {
   Subject() : normals(kElements) {
     fixtures::Random random(5);
@@ -40,7 +40,7 @@ struct Subject {
       for (int corner = 0; corner < 3; ++corner) {
         fixtures::Point a = random.in_cube(1), b = random.in_cube(far);
         for (std::size_t k = 0; k < 3; ++k) b[k] += a[k];
-        if (face % 7 == 3) {  // mirrored within its plane, so that the normal becomes its opposite
+        if (face % 7 == 3) {  // mirrored within its plane, so its normal becomes the opposite
           a[2] = 0;
           b = {-a[0], a[1], 0};
         }
@@ -66,7 +66,7 @@ struct Subject {
 
 using Bits = std::vector<std::uint32_t>;
 
-// Returns the bits of x, y, z of every vector.
+// Returns the bits of the components x, y, z of all vectors.
 Bits bits_of(VectorView<const float> view) {
   Bits bits;
   for (std::size_t i = 0; i < view.count; ++i) {
@@ -75,7 +75,8 @@ Bits bits_of(VectorView<const float> view) {
   return bits;
 }
 
-// Memory for `count` vectors in some layout. It is filled with a value that must not change outside of the vectors.
+// Memory for `count` vectors in one of several layouts. The memory is filled with a value that must not change outside
+// of the vectors.
 class Layout {
  public:
   static constexpr int kCount = 5;
@@ -103,7 +104,7 @@ class Layout {
 
   [[nodiscard]] VectorView<float> view() const { return view_; }
 
-  // Counts the values that were written.
+  // Returns the number of values that were overwritten.
   [[nodiscard]] std::size_t touched() const {
     std::size_t count = 0;
     for (const float value : values_) count += value != kUntouched ? 1 : 0;
@@ -216,7 +217,8 @@ INSTANTIATE_TEST_SUITE_P(all, CurveKernels, testing::ValuesIn(kSchemes), [](cons
   return label;
 });
 
-// Coefficients from a seed, made without functions of a mathematics library.
+// Random coefficients from a seed, computed without functions of a mathematics library, so they are the same
+// everywhere.
 struct Blocks {
   Blocks(std::size_t plane_count, std::size_t element_count)
       : values((element_count + kBlock - 1) / kBlock * kBlock * plane_count) {
@@ -260,7 +262,8 @@ TEST(CurveFormulas, write_past_the_caches_what_they_write_into_them) {
   }
 }
 
-// Computes an FNV-1a hash of the results of all formulas, and of three steps of each formula that can be played.
+// Compares an FNV-1a hash of results with a constant: the results of all formulas, and of three steps of each formula
+// with sequential access.
 TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_given) {
   constexpr std::size_t kCount = 777;
   for (const std::int64_t id : supported_targets()) {
@@ -287,7 +290,7 @@ TEST(CurveFormulas, give_the_bits_that_every_compiler_and_instruction_set_has_gi
 }
 
 TEST(CurveFormulas, have_the_sine_and_cosine_of_core) {
-  // The arc is u(t) = cos(t A) (1, 0, 0) + sin(t A) (0, 1, 0).
+  // The arc is u(t) = cos(t A) (1, 0, 0) + sin(t A) (0, 1, 0), so its components are the cosine and the sine of t A.
   constexpr std::size_t kCount = 1 << 14;
   AlignedArray<float> planes(7 * kCount);
   for (std::size_t i = 0; i < kCount; ++i) {
@@ -316,7 +319,7 @@ TEST(CurveFormulas, slerp_turns_between_opposite_vectors_and_stays_between_equal
   } pairs[] = {
       {{1, 0, 0}, {-1, 0, 0}, 1e-6},     {{0, 0.6f, 0.8f}, {0, -0.6f, -0.8f}, 1e-6},
       {{0, 1, 0}, {0, 1, 0}, 1e-6},      {{0, 1, 0}, {2e-5f, 1, 0}, 1e-6},
-      {{0, 0, 1}, {5e-5f, 0, -1}, 1e-4},  // a difference of 1e-7 divided by a sine of 5e-5
+      {{0, 0, 1}, {5e-5f, 0, -1}, 1e-4},  // an error of 1e-7, divided by a sine of 5e-5
       {{0, 0, 1}, {0, 1, 0}, 1e-6},      {{}, {}, 0},
   };
   AlignedArray<float> planes(6 * kCount);

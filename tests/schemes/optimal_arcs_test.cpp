@@ -1,5 +1,5 @@
-// Tests the fast search of quaternion:optimal on every instruction set, and the elements that it leaves to the slow
-// search. oracle_test.cpp measures the quality of its arcs by a dense search.
+// Tests the fast search of the scheme quaternion:optimal on every instruction set, and which elements it leaves to the
+// slow search. oracle_test.cpp compares the arcs that the searches find with a dense search.
 #include "schemes/kernels/optimal_arcs.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,8 @@ Vec3d vector(fixtures::Random& random) {
   return {p[0], p[1], p[2]};
 }
 
-// Makes elements that turn by about `turn` radians, on a path that is bent by about `bend` times the turn.
+// Makes elements whose normals turn by about `turn` radians. The path of a normal deviates from a straight line by
+// about `bend` times the turn.
 std::vector<ControlNormals> turning(fixtures::Random& random, double turn, double bend, std::size_t count) {
   std::vector<ControlNormals> normals;
   for (std::size_t i = 0; i < count; ++i) {
@@ -69,7 +70,8 @@ TEST(OptimalArcs, are_within_a_few_ten_thousandths_of_the_best_of_many) {
       const ExactSamples exact(normals[i]);
       const double error = exact.mean_error(circles.arc(phis[i]));
       double best = error;
-      // One set of samples covers the whole family of arcs. Another set is dense around the arc that was found.
+      // The first samples cover the whole family of arcs. The second samples are close to the arc that the search
+      // found.
       for (int k = -200; k <= 200; ++k) {
         best = std::min(best, exact.mean_error(circles.arc(k * kPi / 400)));
         best = std::min(best, exact.mean_error(circles.arc(phis[i] + 1e-4 * k)));
@@ -83,12 +85,12 @@ TEST(OptimalArcs, are_within_a_few_ten_thousandths_of_the_best_of_many) {
 TEST(OptimalArcs, leave_what_is_not_mild_to_others) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals = {
-      {{}, {}, {}},                    // no normal at all
+      {{}, {}, {}},                    // the normal is always zero
       {x, x, x},                       // no turn
-      {x, x, -x},                      // opposite ends
+      {x, x, -x},                      // the ends are opposite
       {x, x + y, y},                   // more than a radian
       {x, -0.98 * x, x + 0.1 * y},     // a fast turn in between
-      {{}, x, y},                      // zero at the start
+      {{}, x, y},                      // zero at t = 0
       {x, 0.5 * x + z, x + 1e-3 * y},  // a path that goes far out and back
   };
   std::vector<double> phis(normals.size());

@@ -1,4 +1,4 @@
-// Compares every scheme with an oracle that shares no code with it (tests/support/reference.h).
+// Compares every scheme with an oracle that shares no code with the scheme (tests/support/reference.h).
 
 #include <gtest/gtest.h>
 
@@ -31,12 +31,12 @@ using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Returns how much a length may differ from 1. Only `rational` divides by a length from a quartic in float32, and not
-// by the length of its result. The quartic loses digits if n(t) is small relative to its control normals, but the
-// direction is as accurate as in other schemes.
+// Returns the largest permitted difference between 1 and the length of a result. `rational` divides by a length that a
+// quartic in float32 gives, and not by the length of its result. If n(t) is small relative to its control normals, the
+// quartic loses digits, but the direction is as accurate as in other schemes.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
-// A motion, and all data from which schemes and oracles are prepared.
+// A motion, and all data that schemes and oracles need.
 struct Subject {
   explicit Subject(Motion moving) : motion(std::move(moving)), normals(motion.topology.face_count()) {
     face_control_normals(motion.segment(0), faces(), normals);
@@ -61,7 +61,7 @@ struct Subject {
   std::vector<ControlNormals> normals;
 };
 
-// The results of a scheme for all faces at equidistant samples.
+// The results of a scheme for all faces, at equidistant times.
 class Output {
  public:
   Output(const std::string& name, const Subject& subject, std::size_t sample_count)
@@ -107,13 +107,13 @@ const std::array<Family, 3> kFamilies{
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(); }},
 };
 
-// Families with fewer faces, for the dense searches.
+// Families of motions with few faces, since the dense searches are slow.
 const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // If the steps are small, like those between two frames, the ends are so close that all circles that differ visibly
-    // have phi near +-pi/2.
+    // If normals turn little, as between two frames of an animation, the ends are so close that circles differ visibly
+    // only if phi is near +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -161,7 +161,7 @@ TEST_P(SchemeOracle, agrees_with_the_scheme) {
   }
 }
 
-// Motions for which some scheme divides by zero, overflows or is undefined.
+// Motions in which some scheme would divide by zero, overflow or be undefined.
 const std::array<Family, 16> kNastyFamilies{
     Family{"needles", [] { return fixtures::needle_soup(200); }},
     Family{"edges of 1e-6", [] { return fixtures::tiny_soup(200); }},
@@ -199,7 +199,7 @@ TEST_P(SchemeOracle, meets_unit_vectors_or_zero_wherever_the_motion_is_nasty) {
           continue;
         }
         const double off = std::fabs(reference::length(given) - 1);
-        if (!(off <= off_length)) {  // this form is also true for NaN
+        if (!(off <= off_length)) {  // also true if the difference is NaN
           off_length = off;
           worst_face = f;
           worst_time = output.time(i);
@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
   return label;
 });
 
-// The angle of a random frame depends on the segment, too.
+// The angle of quaternion:random depends on the index of the segment, too.
 TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   Motion motion = fixtures::large_soup(50, 36);
   motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);
@@ -316,7 +316,7 @@ TEST(Oracle, finds_every_quaternion_slerp_on_a_circle_of_constant_speed) {
       if (!at(0.5L)) continue;
       const auto circle = reference::circle_through(*at(0), *at(0.5L), *at(1));
       ASSERT_TRUE(circle);
-      EXPECT_LE(circle->end, reference::kPi + 1e-6L);  // quaternions on the shorter arc turn by at most half a turn
+      EXPECT_LE(circle->end, reference::kPi + 1e-6L);  // the shorter arc is at most half a turn
       for (const reference::Real t : {0.1L, 0.3L, 0.77L}) {
         EXPECT_LT(reference::angle(*at(t), circle->at(t * circle->end)), 1e-9L) << name << ", face " << f;
         ++judged;
@@ -346,8 +346,8 @@ TEST(Oracle, finds_no_pair_of_frames_better_than_its_dense_search) {
 
 // ---- searched schemes ----------------------------------------------------------------------------------------------
 
-// Compares a scheme that searches with a dense search over the same family of curves, and with members of the family
-// that other schemes compute directly. Compares the average errors of each face.
+// Compares a scheme that searches for the best curve of a family with a dense search in the same family, and with
+// curves of the family that other schemes compute directly. Compares the average error over time of each face.
 template <class DenseSearch>
 void expect_nearly_optimal(const std::string& name, const std::vector<std::string>& members, DenseSearch&& search) {
   constexpr std::size_t kSamples = 201;
@@ -403,8 +403,8 @@ TEST(LinearScaled, is_within_a_few_thousandths_of_a_dense_search_and_never_worse
 }
 
 TEST(LinearScaled, meets_an_element_of_degree_1_by_the_ratio_of_its_areas) {
-  // One edge rests and one moves, so n is linear in t, and the scaled linear scheme is exact with the right scale. A
-  // search that does not try the ratio of the areas would end up to 3e-4 rad away.
+  // One edge rests and the other moves, so n(t) is linear, and linear interpolation with the right scale is exact. This
+  // scale is the ratio of the areas. A search that does not try this ratio has an error of up to 3e-4 radians.
   struct Case {
     double ratio, turn;
   };

@@ -1,4 +1,4 @@
-// Tests sequential access for every scheme that can be played step by step.
+// Tests sequential access (playback step by step) for every scheme that has it.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -32,7 +32,7 @@ struct Prepared {
   Prepared(const Prepared&) = delete;
 };
 
-// Returns the largest angle between played normals and random access, over all steps.
+// Returns the largest angle, in radians, between normals from sequential access and from random access, over all steps.
 template <class Next, class At>
 double largest_drift(std::size_t count, std::size_t steps, Next next, At at) {
   std::vector<float> played(3 * count), exact(3 * count);
@@ -87,7 +87,7 @@ TEST(Playback, drift_is_real_and_anchors_remove_it) {
   EXPECT_GT(drift_of_scheme("circle", twist, 5000, 0), 2 * drift_of_scheme("circle", twist, 5000, 32));
 }
 
-// Makes the polynomial of given control normals, as elements of a segment that is never read.
+// Makes a scheme of the exact polynomials of the given control normals. The scheme never reads the segment.
 std::unique_ptr<Scheme> polynomial_of(const std::vector<ControlNormals>& normals, const Segment& segment) {
   auto scheme = make_scheme("polynomial").value();
   scheme->prepare({&segment, {0, normals.size()}, normals});
@@ -95,7 +95,8 @@ std::unique_ptr<Scheme> polynomial_of(const std::vector<ControlNormals>& normals
 }
 
 TEST(Playback, a_face_that_shrinks_keeps_its_direction) {
-  // The rounding error of the state is absolute, so an element that shrinks must not be played.
+  // The rounding error of sequential access does not shrink together with the element, so elements that shrink must use
+  // random access.
   const Segment segment;
   for (const double shrink : {0.1, 1e-2, 1e-4, 1e-8}) {
     for (const double tilt : {0.0, 0.2}) {
@@ -121,9 +122,10 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 }
 
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
-  // Between two anchors, the bits must equal a playback without anchors that begins at the first of the two.
+  // Anchors compute the state anew from t. Between two anchors, the bits must equal those of a playback without anchors
+  // that begins at the first of the two.
   constexpr std::size_t kInterval = 8;
-  constexpr double kStep = 0x1p-6;  // makes all times exact
+  constexpr double kStep = 0x1p-6;  // a power of two, so all times are exact
   const Prepared twist("twist");
   for (const char* name : {"circle", "polynomial"}) {
     const auto scheme = make_scheme(name).value();
@@ -167,7 +169,7 @@ TEST(Playback, mixed_degrees_and_degenerate_elements_are_played_too) {
   add({{0, 0, 2}, {0, 0.5, 1.5}, {0, 1, 1}}, 13);  // linear
   add({{0, 0, 1}, {0.5, 0, 1}, {1, 0, 0.2}}, 9);   // quadratic
   add({}, 2);                                      // zero
-  add({{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, 1);      // through zero at 1/2
+  add({{0, 0, 1}, {0, 0, 0}, {0, 0, -1}}, 1);      // zero at t = 1/2
   add({{0, 0, 1e300}, {0, 1e299, 1e300}, {0, 1e300, 1e300}}, 1);
   const Segment segment;
   const auto scheme = polynomial_of(normals, segment);
@@ -192,15 +194,15 @@ TEST(Playback, schemes_without_an_incremental_form_say_so) {
 }
 
 TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
-  // The last four numbers are those of the normalisation: 2 additions, 6 products, a quotient and a root.
+  // The last four numbers are the operations of normalising: 2 additions, 6 products, a quotient and a root.
   EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(make_scheme("slerp").value()->sequential_operations()->trigonometric, 0);
 }
 
-// The code that computes also counts its operations. Therefore one more vector in a sum must add three products and
-// three sums to the count.
+// The code that computes a formula also counts its operations. One more vector in a sum must therefore add three
+// products and three sums to the count.
 TEST(Operations, one_vector_more_changes_the_count) {
   const std::vector<float> coefficients(12, 0.5F), state(12, 0.25F);
   SharedValues weights{};

@@ -1,4 +1,5 @@
-// Tests names, costs, and every degenerate case by name. oracle_test.cpp tests accuracy with an independent oracle.
+// Tests the names and the costs of schemes, and every degenerate case by name. oracle_test.cpp compares the accuracy
+// with an independent oracle.
 
 #include "chronormal/schemes/scheme.h"
 
@@ -12,7 +13,7 @@
 namespace chronormal::scheme_test {
 namespace {
 
-// Returns every scheme once, with a value for its parameter.
+// Returns the name of every scheme, with a value for its parameter if it has one.
 std::vector<std::string> all_schemes() {
   std::vector<std::string> names;
   for (const SchemeDescription& description : scheme_descriptions()) {
@@ -121,15 +122,15 @@ TEST(Schemes, ends_are_met_by_every_scheme) {
 TEST(Schemes, equal_ends_of_a_still_face_stay_where_they_are) {
   const Prepared still({kFlat, kFlat});
   for (const std::string& name : all_schemes()) {
-    if (name.starts_with("quaternion:random")) continue;  // turns even if the ends are equal
+    if (name.starts_with("quaternion:random")) continue;  // this scheme turns even if both ends are equal
     for (const double t : {0.0, 0.3, 1.0}) EXPECT_LT(angle(evaluate(name, still, t).normal, {0, 0, 1}), 1e-6) << name;
     EXPECT_EQ(evaluate(name, still, 0.5).fallbacks, 0u) << name;
   }
 }
 
 TEST(Schemes, equal_ends_with_motion_between_give_unit_normals) {
-  // The triangle turns by 180 degrees about a line in its plane, and two corners are swapped, so both ends have the
-  // same normal.
+  // The triangle turns by 180 degrees about a line in its plane, and two corners are swapped, so its normal is the same
+  // at both ends.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0.5f, 1, 0, 0.25f}}), "moving");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0, 1, 0, 0}}), "half a turn in the plane");
 }
@@ -144,8 +145,8 @@ TEST(Schemes, antipodal_ends_give_unit_normals) {
 }
 
 TEST(Schemes, antipodal_ends_through_a_third_direction_are_met_by_the_circle) {
-  // The segment is half a turn about the x axis. The circle uses the normal in the middle, which is perpendicular to
-  // both ends.
+  // The triangle turns by 180 degrees about the x axis. The circle passes through the normal at t = 1/2, which is
+  // perpendicular to the normals at both ends.
   const Prepared flip({{0, -1, 0, 1, -1, 0, 0, 1, 0}, {0, 1, 0, 1, 1, 0.01f, 0, -1, 0}});
   const Vec3d middle = unit_normal_at(flip.normals[0], 0.5).vector;
   EXPECT_LT(angle(evaluate("circle:timed", flip, 0.5).normal, middle), 1e-5);
@@ -210,21 +211,21 @@ TEST(Schemes, an_edge_without_length_takes_the_direction_in_which_it_grows) {
 }
 
 TEST(Schemes, a_collapse_inside_the_segment_gives_unit_normals) {
-  // One motion passes through a point: n(t) has a double zero at 1/2, and the direction does not change. The others
-  // pass through a line, at 1/2 and at 1/3, where the direction jumps.
+  // In the first motion, the face passes through a point: n(t) has a double zero at t = 1/2, and the direction does not
+  // change. In the other motions, the face passes through a line at t = 1/2 or t = 1/3, where the direction jumps.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, -1, 0, 0, 0, -1, 0}}), "through a point");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, kReversed}), "through a line");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {0, 0, 0, 1, 0, 0, 0, -2, 0}}), "at one third");
 }
 
 TEST(Schemes, a_collapse_exactly_at_a_node_takes_the_side_before_and_is_counted) {
-  // N(t) is zero at 1/2, with opposite directions before and after.
+  // n(t) is zero at t = 1/2, and has opposite directions before and after that.
   const Prepared crossing({kFlat, {0, 0, 0, 1, 0, 0, 0, -1, 0}});
   for (const char* name : {"quadratic", "decasteljau:3", "circle", "circle:timed"}) {
     EXPECT_EQ(evaluate(name, crossing, 0.5).fallbacks, 1u) << name;
   }
   EXPECT_LT(angle(evaluate("quadratic", crossing, 0.5).normal, {0, 0, 1}), 1e-5);
-  EXPECT_EQ(evaluate("cubic", crossing, 0.5).fallbacks, 0u);  // none of its nodes is at 1/2
+  EXPECT_EQ(evaluate("cubic", crossing, 0.5).fallbacks, 0u);  // cubic has no node at t = 1/2
 }
 
 TEST(Schemes, linear_of_opposite_ends_is_the_start_where_it_vanishes) {
@@ -233,7 +234,7 @@ TEST(Schemes, linear_of_opposite_ends_is_the_start_where_it_vanishes) {
 }
 
 TEST(Schemes, no_input_makes_nan) {
-  // Coordinates have all magnitudes, and many are equal, so that all kinds of degeneracy occur.
+  // Coordinates have all magnitudes, and many coordinates are equal, so all kinds of degenerate faces occur.
   const float values[] = {0, 0, 0, 1, -1, 1, 0.5f, 1e-38f, 1e-20f, -1e-7f, 1e7f, 1e18f, -3e38f, 1.0000001f};
   std::mt19937 random(7);
   for (int i = 0; i < 3000; ++i) {
@@ -283,8 +284,8 @@ TEST(Schemes, planes_and_packed_results_are_the_same_bits) {
 }
 
 TEST(Schemes, operations_are_those_of_the_formulas) {
-  // The operations are a weighted sum of K + 1 vectors and a normalisation (2 + 0 additions, 3 + 3 products, root,
-  // quotient).
+  // Each row counts a weighted sum of K + 1 vectors and the normalisation, which takes 2 additions, 6 products, a root
+  // and a quotient.
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 12, 1, 1, 0}},
       {"quadratic", {8, 15, 1, 1, 0}},
@@ -303,11 +304,12 @@ TEST(Schemes, operations_are_those_of_the_formulas) {
     EXPECT_EQ(actual, counts) << name << ": " << actual.add << " " << actual.multiply << " " << actual.divide << " "
                               << actual.sqrt << " " << actual.trigonometric;
   }
-  EXPECT_EQ(make_scheme("decasteljau:4").value()->operations().trigonometric, 12);  // 6 slerps, 2 each
+  EXPECT_EQ(make_scheme("decasteljau:4").value()->operations().trigonometric, 12);  // 6 slerps with 2 functions each
 }
 
 TEST(Schemes, operations_of_a_step_are_those_of_differences_and_rotations) {
-  // The operations are K additions of vectors and a normalisation, or a rotation in the plane and a point on the arc.
+  // Each row counts either K additions of vectors and the normalisation, or a rotation in a plane and the point on the
+  // arc.
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 6, 1, 1, 0}}, {"quadratic", {8, 6, 1, 1, 0}}, {"cubic", {11, 6, 1, 1, 0}},
       {"slerp", {5, 10, 0, 0, 0}}, {"circle", {8, 10, 0, 0, 0}},

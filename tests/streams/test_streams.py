@@ -1,5 +1,5 @@
-"""Tests the memory of commands that read a sequence keyframe by keyframe. It must not grow with the number of
-keyframes."""
+"""Tests the memory of commands that read a sequence one keyframe at a time. The memory must not grow with the number
+of keyframes."""
 
 import os
 import struct
@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 
 PROGRAM = os.environ["CHRONORMAL_PROGRAM"]
-SIDE = 320  # vertices along a side of the sheet: a keyframe has 1.2 MB
+SIDE = 320  # vertices along a side of the sheet; a keyframe then has 1.2 MB
 COMMANDS = {
     "sample": ["--times", "0:0.23:23", "--format", "npy"],
     "compare": ["--schemes", "linear", "--samples", "2"],
     "audit": ["--samples", "2"],
     "inspect": [],
 }
-# Starts the command from a small process, since a process counts the memory of its parent at the fork as its own.
+# A small process starts the command, since at a fork the memory of the parent also counts for the child.
 MEASURE = """
 import os, sys
 nothing = os.open(os.devnull, os.O_WRONLY)
@@ -47,7 +47,7 @@ def write_sheet(folder, frames):
 
 class Streams(unittest.TestCase):
     def test_memory_does_not_grow_with_the_number_of_keyframes(self):
-        few, many = 80, 320  # 98 and 393 MB; up to 64 MiB would be kept in memory
+        few, many = 80, 320  # 98 and 393 MB, since up to 64 MiB would stay in memory
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for frames in (few, many):

@@ -1,4 +1,4 @@
-/// Counts the heap memory that a part of a test allocates.
+/// Counts the heap memory that a part of a test allocates, so that the test can limit it.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 #define CHRONORMAL_TESTS_SUPPORT_ALLOCATION_COUNTER_H_
 
@@ -6,11 +6,11 @@
 
 namespace chronormal::test {
 
-/// Counts the memory that operator new gives to this thread during the counter's lifetime. A thread can have one
+/// Counts the memory that operator new gives to this thread as long as the counter lives. A thread can have only one
 /// counter at a time.
 class AllocationCounter {
  public:
-  /// Returns false under a sanitizer, whose own operator new prevents counting.
+  /// Returns false under a sanitizer, whose operator new replaces the counting one.
   [[nodiscard]] static bool works() noexcept;
 
   AllocationCounter();
@@ -19,9 +19,10 @@ class AllocationCounter {
   ~AllocationCounter();
 
   [[nodiscard]] std::size_t allocations() const noexcept;
-  /// Returns the most bytes that were in use at once, beyond those at the start.
+  /// Returns the largest number of bytes that were in use at once, beyond the bytes in use at the start.
   [[nodiscard]] std::size_t peak_bytes() const noexcept;
-  /// Returns the bytes in use now; negative if more were freed than allocated.
+  /// Returns the number of bytes in use now, beyond those at the start. The number is negative if more bytes were freed
+  /// than allocated.
   [[nodiscard]] std::ptrdiff_t bytes() const noexcept;
 };
 

@@ -1,4 +1,5 @@
-/// Reads .npy and .npz files by an independent parser, which accepts only files in the form that chronormal writes.
+/// Reads .npy and .npz files by a parser that shares no code with chronormal. It accepts only files in the form that
+/// chronormal writes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 
@@ -32,8 +33,8 @@ struct ArrayFile {
   return value;
 }
 
-/// Parses an array. Throws if the file has a form that chronormal does not write, or if the number of elements does not
-/// fit the shape.
+/// Parses an array in the .npy format. Throws if the file has a form that chronormal does not write, or if the number
+/// of elements does not match the shape.
 [[nodiscard]] inline ArrayFile parse_npy(const std::string& bytes) {
   if (bytes.compare(0, 8, std::string("\x93NUMPY\1\0", 8)) != 0) throw std::runtime_error("no .npy file");
   const std::size_t begin = 10 + little_endian(bytes, 8, 2);
@@ -53,7 +54,7 @@ struct ArrayFile {
   std::size_t size = static_cast<std::size_t>(file.type.back() - '0');
   std::istringstream lengths(shape);
   for (std::string length; std::getline(lengths, length, ',');) {
-    if (length.find_first_of("0123456789") == std::string::npos) continue;  // (5,)
+    if (length.find_first_of("0123456789") == std::string::npos) continue;  // the end of "(5,)"
     file.shape.push_back(std::stoul(length));
     size *= file.shape.back();
   }
@@ -62,7 +63,7 @@ struct ArrayFile {
   return file;
 }
 
-/// Returns the arrays of a .npz file by name. Reads member after member, without the directory.
+/// Returns the arrays of an .npz file by name. Reads the members one after the other, without the zip directory.
 [[nodiscard]] inline std::map<std::string, ArrayFile> parse_npz(const std::string& bytes) {
   std::map<std::string, ArrayFile> arrays;
   std::size_t at = 0;

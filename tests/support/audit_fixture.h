@@ -1,4 +1,4 @@
-/// Audits glTF files that a test builds.
+/// Audits glTF files that a test builds in memory.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUDIT_FIXTURE_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUDIT_FIXTURE_H_
 
@@ -11,7 +11,7 @@
 
 namespace chronormal::test {
 
-/// Returns the audit of a file. If the file cannot be read or audited, the test fails and the audit is empty.
+/// Returns the audit of a file. If the file cannot be read or audited, fails the test and returns an empty audit.
 [[nodiscard]] inline Audit audit_of(const GltfBuilder& builder, const AuditOptions& options = {}) {
   const GltfFixture fixture(builder);
   EXPECT_TRUE(fixture.ok()) << fixture.error();

@@ -1,6 +1,6 @@
 /// A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is
-/// the sum over all polygons around it, weighted by the angle at their corners. Some normals were edited by hand,
-/// differently in each target, and some of the edited normals point to the other side.
+/// the sum of the normals of all polygons around the point, weighted by the angles at their corners. Some normals are
+/// edited as if by hand, differently in each target, and some of these point to the back.
 #ifndef CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_AUTHORED_MESH_H_
 
@@ -20,7 +20,7 @@ namespace chronormal::test {
 class AuthoredMesh {
  public:
   /// Makes a sheet of n x n points with three targets. The last target pulls the middle point up so far that all edges
-  /// at this point are nearly parallel to its normal. `flat` is the share of polygons that are shaded flat.
+  /// at this point are nearly parallel to its normal. `flat` is the share of polygons that are flat-shaded.
   AuthoredMesh(std::uint64_t seed, std::size_t n, double flat = 0.15) : random_(seed), n_(n), flat_(flat) {
     make_polygons();
     make_keys();
@@ -34,7 +34,7 @@ class AuthoredMesh {
  private:
   struct Polygon {
     std::vector<std::size_t> corners;  // in counterclockwise order
-    std::vector<std::size_t> cut;      // the corners of the triangles into which an exporter cuts the polygon
+    std::vector<std::size_t> cut;      // the triangles into which an exporter cuts the polygon, as corners
     bool is_flat = false;
   };
 
@@ -117,7 +117,7 @@ class AuthoredMesh {
     }
   }
 
-  // Adds a vertex: a point, with a normal for the base and for each target.
+  // Adds a vertex at a point, with its normals in the base and in each target.
   std::uint32_t add(std::size_t point, const std::vector<Vector>& normals) {
     const auto push = [](std::vector<float>& values, const Vector& v) {
       for (const Real c : v) values.push_back(static_cast<float>(c));
@@ -132,7 +132,7 @@ class AuthoredMesh {
     return static_cast<std::uint32_t>(mesh_.vertices() - 1);
   }
 
-  // Writes one vertex for each smooth point, and one for each corner of a flat polygon.
+  // Writes one vertex for each smooth point, and one vertex for each corner of a flat-shaded polygon.
   void write() {
     std::map<std::size_t, std::uint32_t> vertex_of;
     for (const Polygon& polygon : polygons_) {
@@ -157,7 +157,7 @@ class AuthoredMesh {
   std::size_t n_;
   double flat_;
   std::vector<Polygon> polygons_;
-  // For each point, the positions and normals of the base and of each target at weight 1.
+  // Indexed by key and point. Key 0 is the base, and the others are the targets at weight 1.
   std::vector<std::vector<Vector>> keys_, normals_;
   ShadedMesh mesh_;
 };

@@ -1,4 +1,4 @@
-/// Hills that morph, as glTF files, and bakes of these files.
+/// Makes glTF files of hills that morph, and bakes these files.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BAKE_FIXTURE_H_
 
@@ -17,7 +17,7 @@
 
 namespace chronormal::test {
 
-/// A document, its bake, and readers of both.
+/// A glTF document, the result of its bake, and readers of both.
 struct Baked {
   std::unique_ptr<GltfFixture> source;
   std::string bytes;  ///< the result; empty if the bake failed
@@ -61,7 +61,7 @@ struct Baked {
   return bake_bytes(builder.glb(), options);
 }
 
-/// A field of side x side vertices with random hills.
+/// A sheet of side x side vertices with random hills.
 class Hills {
  public:
   explicit Hills(unsigned seed, std::size_t side = 5) : random_(seed), side_(side) {
@@ -80,7 +80,7 @@ class Hills {
       }
     }
     for (std::size_t v = 0; v < side * side; ++v) {
-      // The normals point upwards, tilted as if an author had edited them.
+      // Normals point upwards, but are tilted as if an author had edited them.
       const double x = uniform(-0.3, 0.3), y = uniform(-0.3, 0.3), length = std::sqrt(x * x + y * y + 1);
       for (const double c : {x, y, 1.0}) normals.push_back(static_cast<float>(c / length));
     }
@@ -105,7 +105,7 @@ class Hills {
     return result;
   }
 
-  /// Makes a primitive of the field with some targets. If with_normals is false, the base has no normals.
+  /// Makes a primitive of the sheet with these targets. If with_normals is false, the base has no normals.
   [[nodiscard]] GltfBuilder::Json primitive(GltfBuilder& builder, const std::vector<std::vector<float>>& targets,
                                             bool with_normals = true) const {
     std::vector<GltfBuilder::Json> of_targets;
@@ -122,7 +122,7 @@ class Hills {
   std::size_t side_;
 };
 
-/// Makes hills with `targets` targets, as one mesh on node 0.
+/// Makes a document of hills with `targets` targets. The hills are one mesh, on node 0.
 [[nodiscard]] inline GltfBuilder still_hills_document(std::size_t targets, unsigned seed = 1) {
   GltfBuilder builder;
   Hills hills(seed);
@@ -132,15 +132,15 @@ class Hills {
   return builder;
 }
 
-/// Makes the same hills with an empty animation.
+/// Makes the document of still_hills_document() with an empty animation.
 [[nodiscard]] inline GltfBuilder hills_document(std::size_t targets, unsigned seed = 1) {
   GltfBuilder builder = still_hills_document(targets, seed);
   builder.add_animation("move");
   return builder;
 }
 
-/// Returns the document with normal deltas that have large errors at every weight except 0, so that any bake improves
-/// the document.
+/// Returns the document with normal deltas that have large errors at every weight except 0, so every bake improves the
+/// document.
 [[nodiscard]] inline GltfBuilder with_misleading_normals(GltfBuilder builder) {
   for (auto& mesh : builder.json["meshes"]) {
     for (auto& primitive : mesh["primitives"]) {
@@ -154,7 +154,7 @@ class Hills {
   return builder;
 }
 
-/// Returns the errors of a track at 101 times.
+/// Returns the errors of the rendered normals while a weight track plays, at 101 times.
 [[nodiscard]] inline ShownError track_error(const Baked& baked, std::size_t animation = 0, std::size_t channel = 0) {
   const auto& target = baked.before->json["animations"][animation]["channels"][channel]["target"];
   const std::size_t mesh = baked.before->json["nodes"][target["node"].get<std::size_t>()]["mesh"];

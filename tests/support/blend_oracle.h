@@ -1,6 +1,6 @@
-/// Makes blend shapes for tests, and computes their normals independently from blended positions. The vector area of a
-/// polygon is the sum of p_i x p_{i+1}, in rationals or in long double. The code uses neither fans of triangles nor
-/// products of targets.
+/// Makes blend shapes for tests, and computes their normals from blended positions, in rational numbers or in long
+/// double. The vector area of a polygon is the sum of p_i x p_{i+1}. Unlike the library, this file uses neither fans of
+/// triangles nor products of targets.
 #ifndef CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_BLEND_ORACLE_H_
 
@@ -30,7 +30,7 @@ struct BlendShapeOptions {
   double offset = 0;    ///< offset of the base, before scaling
 };
 
-/// Makes a sheet with targets that each move the vertices around a point; some move no vertex.
+/// Makes a sheet with targets. Each target moves the vertices around a point, and some targets move no vertex.
 [[nodiscard]] inline BlendSet random_blend_set(std::uint64_t seed, const BlendShapeOptions& options = {}) {
   fixtures::Random random(seed);
   const std::size_t cells = options.cells;
@@ -63,7 +63,7 @@ struct BlendShapeOptions {
       offsets.push_back(static_cast<std::uint32_t>(corners.size()));
     }
   }
-  // One vertex belongs to no face.
+  // The last vertex belongs to no face.
   put(set.base, {0, 0, 5});
   set.topology = fixtures::make_polygons(points.size() + 1, std::move(offsets), std::move(corners));
   for (std::size_t k = 0; k < options.targets; ++k) {
@@ -80,7 +80,7 @@ struct BlendShapeOptions {
   return set;
 }
 
-/// Draws weights in [-1, 2] for `active` targets; all other weights are 0.
+/// Draws weights between -1 and 2 for `active` targets. The weights of all other targets are 0.
 [[nodiscard]] inline std::vector<double> random_weights(std::uint64_t seed, std::size_t targets, std::size_t active) {
   fixtures::Random random(seed);
   std::vector<double> weights(targets);
@@ -93,7 +93,7 @@ struct BlendShapeOptions {
   return weights;
 }
 
-/// Returns the faces around each element. Without groups, each face is an element.
+/// Returns the faces of each element. If `groups` is nullptr, each face is an element.
 [[nodiscard]] inline std::vector<std::vector<std::uint32_t>> faces_of_elements(const BlendSet& set,
                                                                                const NormalGroups* groups) {
   std::vector<std::vector<std::uint32_t>> result;
@@ -110,7 +110,7 @@ struct BlendShapeOptions {
   return NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()));
 }
 
-/// Returns the bilinear form B(p, q) of a face, where p and q give a vector for each vertex; n = B(p, p).
+/// Returns the bilinear form B(p, q) of a face, where p and q have a vector for each vertex. The normal is B(p, p).
 template <class P, class Q>
 [[nodiscard]] exact::Vector exact_form(std::span<const std::uint32_t> face, const P& p, const Q& q) {
   exact::Vector sum{0, 0, 0};
@@ -140,7 +140,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Returns n(w) of all elements, without any rounding.
+/// Returns n(w), the normals of all elements at these weights, without rounding.
 [[nodiscard]] inline std::vector<exact::Vector> exact_normals(const BlendSet& set, const NormalGroups* groups,
                                                               std::span<const double> weights) {
   ExactPositions positions = exact_base(set);
@@ -161,8 +161,8 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Returns the normals of exact_normals() in long double, about a corner of each face, for sets that are too large for
-/// rationals.
+/// Returns the same normals as exact_normals(), in long double, for sets that are too large for rational numbers.
+/// Computes the vector area of each face relative to one of its corners.
 [[nodiscard]] inline std::vector<reference::Vector> real_normals(const BlendSet& set, const NormalGroups* groups,
                                                                  std::span<const double> weights) {
   std::vector<reference::Vector> positions;
@@ -194,7 +194,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Tells for each element whether an active target moves a corner of one of its faces.
+/// Tells for each element whether a target with a nonzero weight moves a corner of one of its faces.
 [[nodiscard]] inline std::vector<bool> touched_elements(const BlendSet& set, const NormalGroups* groups,
                                                         std::span<const double> weights) {
   std::set<std::uint32_t> moved;

@@ -1,4 +1,4 @@
-/// Makes point caches, MD2 models, arrays and zip files byte by byte, without the writers of the product.
+/// Makes point caches, MD2 models, NumPy arrays and zip files byte by byte, without the writers of chronormal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_CACHE_BYTES_H_
 
@@ -14,10 +14,10 @@
 
 namespace chronormal::test {
 
-/// Positions of three vertices at two times, (1, 3, 3) each: a triangle that turns.
+/// Positions of three vertices at two times: a triangle that turns.
 inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 1, 0, 0, 0, 1.5F}};
 
-/// Returns the same triangle as a motion.
+/// Returns the triangle of kTurning as a motion with keyframes at these times.
 [[nodiscard]] inline Motion turning_motion(double first_time, double second_time) {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -44,7 +44,7 @@ inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 
   return writer.bytes();
 }
 
-/// Makes a model of three vertices, one triangle with the corners 0 2 1, and two frames.
+/// Makes an MD2 model with three vertices, one triangle with the corners 0 2 1, and two frames.
 [[nodiscard]] inline std::string small_md2() {
   ByteWriter writer("IDP2", false);
   for (const std::int32_t value : {8, 1, 1, 52, 0, 3, 0, 1, 0, 2, 68, 68, 68, 80, 184, 184}) writer.add(value);
@@ -60,12 +60,13 @@ inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 
   return writer.bytes();
 }
 
-/// Writes chunks of a Maya cache, with 32-bit (FOR4) or 64-bit (FOR8) sizes.
+/// Writes chunks of a Maya cache. Their sizes have 32 bits (FOR4) or, if `wide`, 64 bits (FOR8).
 class MayaWriter {
  public:
   explicit MayaWriter(bool wide) : wide_(wide) {}
 
-  /// Returns a chunk, padded unless it is a group.
+  /// Returns a chunk with this tag. Unless it is a group, its content is padded to a multiple of four bytes or, if
+  /// `wide`, of eight bytes.
   [[nodiscard]] std::string chunk(const std::string& tag, const std::string& content, bool is_group = false) const {
     ByteWriter writer(tag, true);
     if (wide_) {
@@ -87,7 +88,7 @@ class MayaWriter {
   [[nodiscard]] std::string header(std::int32_t start) const {
     return group("CACH", chunk("VRSN", std::string("0.1\0", 4)) + integer("STIM", start) + integer("ETIM", start));
   }
-  /// Returns the three chunks of a channel.
+  /// Returns the three chunks of a channel: its name, its size, and its positions.
   template <class Real, class Given = float>
   [[nodiscard]] std::string points(const std::string& channel, const std::vector<Given>& positions) const {
     ByteWriter writer("", true);
@@ -100,7 +101,7 @@ class MayaWriter {
   bool wide_;
 };
 
-/// Makes a cache with two times (250 and 375 ticks) and the channels "other" (1 point) and "body" (3 points).
+/// Makes a Maya cache with two times (250 and 375 ticks) and the channels "other" (1 point) and "body" (3 points).
 template <class Real>
 [[nodiscard]] std::string small_maya(bool wide) {
   const MayaWriter writer(wide);
@@ -123,8 +124,8 @@ template <class Real>
          "\n</Channels>\n</Autodesk_Cache_File>\n";
 }
 
-/// Makes an array with this header. The length of the header is stored in 16 bits in version 1, and in 32 bits
-/// otherwise.
+/// Makes a NumPy array with this header. The length of the header has 16 bits in version 1 of the format, and 32 bits
+/// in later versions.
 [[nodiscard]] inline std::string npy(const std::string& header, const std::string& data, std::uint8_t version = 1) {
   ByteWriter writer("\x93NUMPY", false);
   writer.add(version).add(std::uint8_t{0});
@@ -147,7 +148,7 @@ template <class T>
   return writer.bytes();
 }
 
-/// Returns the two keyframes of kTurning as elements of (2, 3, 3).
+/// Returns the two keyframes of kTurning as the elements of an array (2, 3, 3), in Fortran order if `fortran`.
 template <class Real>
 [[nodiscard]] std::vector<Real> turning_elements(bool fortran) {
   std::vector<Real> elements(18);
@@ -180,7 +181,7 @@ struct ZipMember {
   return packed;
 }
 
-/// Makes a zip file. If size_of_first is not 0, the directory states this false size for the first member.
+/// Makes a zip file. If size_of_first is not 0, the directory states this wrong size for the first member.
 [[nodiscard]] inline std::string zip(const std::vector<ZipMember>& members, const std::string& comment = "",
                                      std::uint32_t size_of_first = 0) {
   std::string file, directory;
@@ -213,7 +214,7 @@ struct ZipMember {
     file += data;
     ByteWriter entry(fields("PK\1\2", true, false), false);
     entry.add(std::uint16_t{0}).add(std::uint16_t{0}).add(std::uint16_t{0}).add(std::uint32_t{0}).add(offset);
-    directory += entry.bytes() + member.name + std::string("\x55\x58\1\0x", 5);  // with an unknown extra field
+    directory += entry.bytes() + member.name + std::string("\x55\x58\1\0x", 5);  // an unknown extra field
   }
   ByteWriter end(file + directory + "PK\5\6", false);
   end.add(std::uint32_t{0});
@@ -223,7 +224,7 @@ struct ZipMember {
   return end.bytes() + comment;
 }
 
-/// Makes a motion as .npz with all arrays that a motion may have, each of a different type.
+/// Makes an .npz file of a motion with every array that a motion may have. Each array has a different type.
 [[nodiscard]] inline std::string small_npz(bool is_deflated) {
   return zip({{"positions.npy", npy(npy_header("<f4", "(2, 3, 3)"), raw(turning_elements<float>(false))), is_deflated},
               {"other.npy", npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': ()}", "abcd")},

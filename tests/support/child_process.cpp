@@ -22,13 +22,14 @@
 #define CHRONORMAL_SANITIZED
 #endif
 
-// This function exists only if the compiler adds coverage counters (CHRONORMAL_COVERAGE).
+// The compiler provides this function only if it adds coverage counters (CHRONORMAL_COVERAGE).
 extern "C" __attribute__((weak)) int __llvm_profile_write_file(void);
 
 namespace chronormal::test {
 namespace {
 
-// Resets the peak of resident memory to the current memory, so that a peak of the parent process does not count.
+// Resets the peak of resident memory to the memory that is resident now, so that the peak of the parent process does
+// not count.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << 5; }
 
 std::size_t peak_bytes() {
@@ -49,7 +50,7 @@ void limit_address_space(std::size_t growth) {
 }
 
 // Allocates the large pieces of the heap that the parent has freed, so that all later large allocations come from the
-// system. Otherwise the child would use these pieces, and keep their pages after freeing them.
+// system. Otherwise the child would use these pieces and, after freeing them, keep their memory.
 void take_free_pieces() {
   constexpr std::size_t kLarge = std::size_t{1} << 16;
   mallopt(M_MMAP_THRESHOLD, kLarge);
@@ -72,12 +73,12 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-// Does the work in the child, and writes to the pipe the growth as text, a separator, and the text that the work
+// Does the work in the child. Writes to the pipe the growth of memory in bytes, a line feed, and the text that the work
 // returned.
 [[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
                                 const std::function<void()>& prepare) {
-  // The limit of elapsed time is this many times the limit of processor time, since a process also waits, and others
-  // use the processor.
+  // The limit of elapsed time is this many times the limit of processor time, since a process also waits for files and
+  // for other processes.
   constexpr unsigned kWaits = 20;
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);
@@ -97,7 +98,7 @@ void write_all(int file, const std::string& text) {
     code = 1;
   }
   write_all(out, std::to_string(peak_bytes() - start) + "\n" + text);
-  // _exit() would lose the coverage counters.
+  // _exit() alone would lose the coverage counters.
   if (__llvm_profile_write_file != nullptr) (void)__llvm_profile_write_file();
   _exit(code);
 }

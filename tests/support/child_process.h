@@ -1,5 +1,5 @@
-/// Runs a part of a test in a child process, so that its cost can be measured, and so that it cannot crash the test
-/// program.
+/// Runs a part of a test in a child process. Its time and memory can then be measured, and a crash does not end the
+/// test program.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 #define CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 
@@ -16,12 +16,12 @@ struct ChildRun {
   std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, minus those at the start
 };
 
-/// Tells whether a sanitizer is active, which needs additional memory.
+/// Tells whether a sanitizer is active. Sanitizers need additional memory and time.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process, which is stopped after most_seconds of processor time. Except under a sanitizer,
-/// its address space may grow by at most 1 GiB. `prepare` runs first in the forked process. The memory that it touches,
-/// such as the pages of the program, does not count as growth.
+/// Does the work in a forked process, which is stopped after most_seconds of processor time. Unless a sanitizer is
+/// active, its address space may grow by at most 1 GiB. `prepare` runs first in the forked process. Memory that
+/// `prepare` touches, such as the pages of the program, does not count as growth.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
                                     const std::function<void()>& prepare = {});
 

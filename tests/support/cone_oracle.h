@@ -1,7 +1,7 @@
-/// Decides without rounding whether a normal with integer components is inside a cone of four floats.
+/// Decides without rounding whether a normal with integer components is inside a cone that is stored in four floats.
 ///
-/// A normal n is inside the cone of the stored axis a and sine s if n.a >= 0 and (n.a)^2 >= (1 - s^2) |n|^2
-/// |a|^2. Clear cases are decided in double with a margin of 1e-12, and the others in integers of any size.
+/// A normal n is inside the cone with the stored axis a and sine s if n.a >= 0 and (n.a)^2 >= (1 - s^2) |n|^2 |a|^2.
+/// Clear cases are decided in double with a margin of 1e-12, and all other cases in integers of any size.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CONE_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_CONE_ORACLE_H_
 
@@ -21,7 +21,7 @@ namespace chronormal::test {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Tells whether the cone contains n. Every cone contains the zero vector.
+/// Tells whether the normal n is inside the cone. The zero vector is inside every cone.
 [[nodiscard]] inline bool contains(const NormalCone& cone, const IntegerVector& n) {
   if (is_zero(n)) return true;
   const bool has_axis = cone.axis.x != 0 || cone.axis.y != 0 || cone.axis.z != 0;
@@ -38,8 +38,8 @@ namespace chronormal::test {
   return mpz_class(dot * dot * one * one) >= mpz_class((one * one - s * s) * exact_dot(n, n) * exact_dot(axis, axis));
 }
 
-/// Returns sixty-four instants of [t0, t1]: both ends and their neighbours, instants at which many normals are hard to
-/// compute, and random instants.
+/// Returns 64 instants in [t0, t1]: both ends and their neighbours, instants at which many normals are hard to compute,
+/// and random instants.
 [[nodiscard]] inline std::array<double, 64> some_times_in(double t0, double t1, fixtures::Random& random) {
   std::array<double, 64> times{};
   for (std::size_t i = 0; i < times.size(); ++i) {

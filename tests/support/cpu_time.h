@@ -1,5 +1,5 @@
-/// Measures the processor time of this process. Tests can limit this time, since other programs on the machine do not
-/// affect it.
+/// Measures the processor time of this process. Other programs on the machine do not affect this time, so tests can
+/// limit it.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 #define CHRONORMAL_TESTS_SUPPORT_CPU_TIME_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// Returns the processor seconds of all threads, in the program and in the system.
+/// Returns the processor time of all threads in seconds, in the program and in the system.
 [[nodiscard]] inline double cpu_seconds(const rusage& usage) {
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
@@ -22,7 +22,8 @@ namespace chronormal::test {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// A clock of processor time that starts when it is made. Child processes count once they have ended.
+/// A clock that measures processor time from its construction on. The time of a child process counts once the process
+/// has ended.
 class CpuClock {
  public:
   [[nodiscard]] double seconds() const { return now() - start_; }
@@ -37,9 +38,10 @@ class CpuClock {
   double start_ = now();
 };
 
-/// Expects that `many()` takes at most `limit` times as long as `few()`, plus `once` seconds. Runs both in turn, at
-/// most ten times, until the shortest times fulfil this. A busy machine can only add time, so work that grows faster
-/// fails all ten times. Does nothing under sanitizers, whose additional work grows differently.
+/// Expects that `many()` takes at most `limit` times as long as `few()`, plus `once` seconds. Runs both functions
+/// alternately, at most ten times, until the shortest time of each fulfils this condition. A busy machine can only
+/// lengthen times, so a test fails only if all ten attempts were too slow. Does nothing under sanitizers, whose
+/// additional work grows differently.
 template <class Few, class Many>
 void expect_growth(double limit, double once, const Few& few, const Many& many) {
   if (is_sanitized()) return;

@@ -1,5 +1,5 @@
-/// A sequence of keyframes whose vertices turn, swell and wander, and the positions of these vertices on curves through
-/// the keyframes, by textbook formulas. This file shares no code with the product.
+/// Makes a motion whose vertices turn, swell and wander. Also computes the positions of its vertices on curves through
+/// the keyframes by textbook formulas. This file shares no code with chronormal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 #define CHRONORMAL_TESTS_SUPPORT_CURVED_MOTION_H_
 
@@ -14,8 +14,8 @@
 
 namespace chronormal::test {
 
-/// Makes a round body with bumps that turns by `angle` over the time from 0 to 1. It has more than one block of
-/// elements.
+/// Makes a round body with bumps, which turns by `angle` radians between the times 0 and 1. The body has more than one
+/// block of elements.
 [[nodiscard]] inline Motion curved_motion(const std::vector<double>& times, double angle, std::size_t around = 48,
                                           std::size_t up = 24) {
   constexpr double kPi = 3.14159265358979323846;
@@ -49,10 +49,10 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the positions (V, 3) of all vertices at local t on the cubic from keyframe s to s + 1. If `given`, the
-/// keyframes store the velocities. Otherwise, the velocity at a keyframe is the slope of the parabola through this
-/// keyframe and its neighbours. At the first and the last keyframe it is the slope of the cubic through the nearest
-/// four keyframes, or of the polynomial through all keyframes if there are fewer.
+/// Returns the positions (V, 3) of all vertices at local t on the cubic curve from keyframe s to keyframe s + 1. If
+/// `given`, uses the velocities that the keyframes store. Otherwise, the velocity at a keyframe is the slope of the
+/// parabola through this keyframe and its neighbours. At the first and the last keyframe, it is the slope of the cubic
+/// through the nearest four keyframes, or of the polynomial through all keyframes if there are fewer.
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;
@@ -62,7 +62,7 @@ namespace chronormal::test {
     const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, keys.size()), first = k == 0   ? 0
                                                                                          : is_end ? keys.size() - used
                                                                                                   : k - 1;
-    // Newton's divided differences are differentiated at the time of keyframe k.
+    // Differentiates the polynomial, in the form of Newton's divided differences, at the time of keyframe k.
     std::vector<long double> x, f;
     for (std::size_t i = 0; i < used; ++i) {
       x.push_back(keys[first + i].time);
@@ -88,7 +88,8 @@ namespace chronormal::test {
   return result;
 }
 
-/// Returns the normals (elements, 3) of all faces, or of all vertices with area weights, at these positions.
+/// Returns the normals of all faces at these positions or, if of_vertices, the area-weighted normals of all vertices.
+/// The normals do not have unit length.
 [[nodiscard]] inline std::vector<std::array<long double, 3>> normals_of(const Motion& motion,
                                                                         const std::vector<long double>& positions,
                                                                         bool of_vertices) {
@@ -108,7 +109,7 @@ namespace chronormal::test {
   return of_vertices ? vertices : faces;
 }
 
-/// Returns the angle between two directions in radians.
+/// Returns the angle between two directions, in radians.
 template <class A, class B>
 [[nodiscard]] double angle_of(const A& a, const B& b) {
   long double cross = 0, dot = 0;

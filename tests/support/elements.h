@@ -1,5 +1,5 @@
-/// Functions for tests of vertices and corners. They convert motions for the oracle of reference_elements.h, and change
-/// meshes.
+/// Functions for tests of vertices and corners: some convert motions for the oracle of reference_elements.h, and others
+/// change meshes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_ELEMENTS_H_
 
@@ -20,7 +20,7 @@ namespace chronormal::test {
 [[nodiscard]] inline reference::Vector to_real(const Vec3d& v) { return {v.x, v.y, v.z}; }
 [[nodiscard]] inline reference::Vector to_real(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
-/// Converts one segment for the oracle.
+/// Converts a segment into a mesh for the oracle.
 [[nodiscard]] inline reference::Mesh reference_mesh(const Segment& segment) {
   reference::Mesh mesh;
   for (std::size_t f = 0; f < segment.topology->face_count(); ++f) {
@@ -34,7 +34,7 @@ namespace chronormal::test {
   return mesh;
 }
 
-/// Returns the corners of every element for the oracle. NormalGroups and the oracle both number corners face by face.
+/// Returns the corners of every element for the oracle. Both NormalGroups and the oracle number corners face by face.
 [[nodiscard]] inline std::vector<std::vector<reference::Corner>> reference_corners(const reference::Mesh& mesh,
                                                                                    const NormalGroups& groups) {
   const auto all = reference::corners_of(mesh);
@@ -45,7 +45,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Returns the same motion, as polygons, with the faces in the given order.
+/// Returns the motion with its faces in the given order, as polygons.
 [[nodiscard]] inline Motion with_faces_in_order(const Motion& motion, const std::vector<std::size_t>& order) {
   std::vector<std::uint32_t> offsets = {0}, corners;
   for (const std::size_t f : order) {
@@ -66,7 +66,7 @@ namespace chronormal::test {
   return order;
 }
 
-/// Returns the same motion with all positions changed by a function.
+/// Returns the motion with every position replaced by change(position).
 [[nodiscard]] inline Motion with_positions(Motion motion,
                                            const std::function<fixtures::Point(const fixtures::Point&)>& change) {
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -79,7 +79,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the same surface with a separate vertex for each corner, so that every edge is a seam.
+/// Returns the motion with a separate vertex for each corner, so every edge is a seam.
 [[nodiscard]] inline Motion torn(const Motion& motion) {
   Motion result = motion;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -101,7 +101,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Makes a mesh that does not move.
+/// Makes a motion in which both keyframes have these points.
 [[nodiscard]] inline Motion still(Topology topology, const std::vector<fixtures::Point>& points) {
   return fixtures::make_motion(std::move(topology), points, points);
 }

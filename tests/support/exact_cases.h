@@ -1,5 +1,5 @@
-/// Segments for tests in which no answer may be wrong: hard motions, and small integer coordinates, for which exact
-/// coincidences are frequent.
+/// Makes segments for tests in which no answer may be wrong: hard motions, and motions with small integer coordinates,
+/// in which exact coincidences are frequent.
 #ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
 #define CHRONORMAL_TESTS_SUPPORT_EXACT_CASES_H_
 
@@ -14,17 +14,17 @@
 
 namespace chronormal::test {
 
-/// Returns the number of cases to test: the value of CHRONORMAL_FULL_CASES, or else 100,000, or 10,000 under a
-/// sanitizer.
+/// Returns the number of cases to test: the value of CHRONORMAL_FULL_CASES if it is set, otherwise 100,000, or 10,000
+/// under a sanitizer.
 [[nodiscard]] inline std::size_t wanted_cases() {
   const char* const full = std::getenv("CHRONORMAL_FULL_CASES");
   if (full != nullptr) return static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
   return is_sanitized() ? 10000 : 100000;
 }
-/// Returns the number of instants at which a case is tested: 64 for one case in fifty, and 3 for the others.
+/// Draws the number of instants at which a case is tested: 64 for one case in fifty, and 3 for all other cases.
 [[nodiscard]] inline std::size_t wanted_times(Random& random) { return random.below(50) == 0 ? 64 : 3; }
 
-/// Makes a triangle with integer coordinates from -3 to 3, which stays in a plane in half of the cases.
+/// Makes a moving triangle with integer coordinates from -3 to 3. In half of the cases, it stays in a plane.
 [[nodiscard]] inline MovingTriangle on_a_lattice(Random& random) {
   MovingTriangle triangle;
   const bool is_flat = random.below(2) == 0;
@@ -35,7 +35,7 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Makes a triangle with two corners close to each other, far from the third.
+/// Makes a moving triangle with two corners that are close to each other and far from the third.
 [[nodiscard]] inline MovingTriangle needle(Random& random) {
   MovingTriangle triangle = ordinary(random);
   const double width = random_decade(random, -9, -3);
@@ -46,8 +46,9 @@ namespace chronormal::test {
   return triangle;
 }
 
-/// Calls judge(segment, face, random) on about wanted_cases() / share faces, spread evenly over all families. judge()
-/// describes a fault, or returns "". Returns the number of wrong answers, and prints a line for each family.
+/// Calls judge(segment, face, random) for about wanted_cases() / share faces, spread evenly over all families. judge()
+/// describes a wrong answer, or returns "" if the answer is right. Returns the number of wrong answers, and prints a
+/// line for each family.
 template <class Judge>
 std::size_t judge_cases(std::uint64_t seed, const Judge& judge, std::size_t share = 1) {
   std::vector<HardMotions> families = hard_motions();

@@ -1,7 +1,7 @@
-/// Computes normals of moving triangles without any rounding, in rational numbers.
+/// Computes normals of moving triangles in rational numbers, without any rounding.
 ///
-/// Floats and doubles are rational numbers, and normals are polynomials of them, so n(t) and the control normals are
-/// rational, too. Only the final conversion of an angle to double rounds.
+/// Floats and doubles are rational numbers, and normals are polynomials in the coordinates, so n(t) and the control
+/// normals are rational, too. Only the conversion of an angle to double rounds.
 #ifndef CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_EXACT_NORMAL_H_
 
@@ -16,7 +16,7 @@ namespace chronormal::exact {
 using Rational = mpq_class;
 using Vector = std::array<Rational, 3>;
 
-/// The corners a, b, c at t = 0 and at t = 1.
+/// A triangle with its corners a, b, c at t = 0 and at t = 1.
 struct Triangle {
   std::array<Vector, 3> from;
   std::array<Vector, 3> to;
@@ -26,7 +26,8 @@ struct ControlNormals {
   Vector n0, m, n1;
 };
 
-/// Converts three finite floats or doubles exactly. (Rationals have no NaN: GMP would divide by zero.)
+/// Converts three finite floats or doubles exactly. Infinity and NaN have no rational value, so GMP would divide by
+/// zero.
 template <class S>
 [[nodiscard]] Vector vector(S x, S y, S z) {
   return {Rational(static_cast<double>(x)), Rational(static_cast<double>(y)), Rational(static_cast<double>(z))};
@@ -43,7 +44,7 @@ template <class S>
 
 [[nodiscard]] inline Rational dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Returns the largest absolute component.
+/// Returns the largest absolute value of a component.
 [[nodiscard]] inline Rational max_abs(const Vector& a) {
   Rational largest = 0;
   for (const Rational& component : a) {
@@ -54,7 +55,7 @@ template <class S>
 
 [[nodiscard]] inline bool is_zero(const Vector& a) { return max_abs(a) == 0; }
 
-/// Returns n(t) by eq. 1 from the corners at t, which may be any rational number.
+/// Returns n(t) by eq. 1 of docs/theory.md, from the corners at t. The time may be any rational number.
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, const Rational& time) {
   std::array<Vector, 3> corner;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -65,7 +66,7 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
-/// Returns the sum of n(t) of some triangles of a segment, a chronormal::Segment.
+/// Returns the sum of n(t) over some triangles of a chronormal::Segment.
 template <class SegmentOfMesh, class Faces>
 [[nodiscard]] Vector sum_of_faces_at(const SegmentOfMesh& segment, const Faces& faces, const Rational& time) {
   Vector sum;
@@ -84,7 +85,7 @@ template <class SegmentOfMesh, class Faces>
 
 [[nodiscard]] inline Vector normal_at(const Triangle& triangle, double t) { return normal_at(triangle, Rational(t)); }
 
-/// Returns n(t) by eq. 5.
+/// Returns n(t) from control normals, by eq. 5 of docs/theory.md.
 [[nodiscard]] inline Vector normal_at(const ControlNormals& normals, double t) {
   const Rational time(t), rest = 1 - time;
   const Rational w0 = rest * rest, wm = 2 * time * rest, w1 = time * time;
@@ -93,8 +94,8 @@ template <class SegmentOfMesh, class Faces>
   return sum;
 }
 
-/// Returns n0, m and n1 without using eq. 5: n0 and n1 are the normals at the ends, and m makes the quadratic pass
-/// through the normal at t = 1/2.
+/// Returns n0, m and n1 without using the formula for m: n0 and n1 are the normals at the ends, and m is such that the
+/// quadratic passes through the normal at t = 1/2.
 [[nodiscard]] inline ControlNormals control_normals(const Triangle& triangle) {
   ControlNormals result{normal_at(triangle, 0.0), {}, normal_at(triangle, 1.0)};
   const Vector half = normal_at(triangle, 0.5);
@@ -102,7 +103,7 @@ template <class SegmentOfMesh, class Faces>
   return result;
 }
 
-/// Returns the largest component of the three control normals.
+/// Returns the largest absolute value of a component of the three control normals.
 [[nodiscard]] inline Rational max_abs(const ControlNormals& normals) {
   Rational largest = max_abs(normals.n0);
   for (const Vector* v : {&normals.m, &normals.n1}) {
@@ -112,12 +113,12 @@ template <class SegmentOfMesh, class Faces>
   return largest;
 }
 
-/// Returns the exact a / b as a double, with one rounding. Precondition: b is not zero.
+/// Returns a / b as a double. Only this conversion rounds. b must not be zero.
 [[nodiscard]] inline double ratio(const Rational& a, const Rational& b) { return Rational(a / b).get_d(); }
 
-/// Returns the angle in radians between a direction, exactly as stored, and an exact vector. Even tiny angles have a
-/// relative error of only 1e-15: the cross and dot products are exact, and are divided by exact scales before they are
-/// rounded to double. Returns NaN if one of the vectors is zero, or if the direction is not finite.
+/// Returns the angle in radians between the direction (x, y, z) and an exact vector. Even tiny angles have a relative
+/// error of only 1e-15, because the cross product and the dot product are exact, and are divided by exact scales before
+/// they are rounded to double. Returns NaN if one of the vectors is zero or the direction is not finite.
 template <class S>
 [[nodiscard]] double angle(S x, S y, S z, const Vector& exact) {
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return std::nan("");

@@ -1,8 +1,8 @@
-/// Makes motions for tests from a seed, with the same bits for every compiler and standard library.
+/// Makes motions for tests from a seed. They have the same bits with every compiler and standard library.
 ///
-/// Random numbers come straight from std::mt19937_64, whose output the standard prescribes. No std distribution is
-/// used, since the standard does not prescribe its algorithm. Coordinates that are computed with sin or cos are rounded
-/// to a grid that is far coarser than the differences between mathematics libraries.
+/// Random numbers come directly from std::mt19937_64, whose output the C++ standard prescribes. Distributions of the
+/// standard library are not used, since the standard does not prescribe their algorithms. Coordinates that are computed
+/// with sin or cos are rounded to a grid that is far coarser than the differences between mathematics libraries.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FIXTURES_H_
 
@@ -38,7 +38,7 @@ class Random {
     return {x, y, uniform(-half_size, half_size)};
   }
 
-  /// Draws an integer below `bound`, almost uniformly, which is enough for tests.
+  /// Draws an integer below `bound`. The distribution is almost uniform, which is enough for tests.
   std::size_t below(std::size_t bound) { return static_cast<std::size_t>(engine_() % bound); }
 
  private:
@@ -76,15 +76,15 @@ class Random {
   return std::move(topology).value();
 }
 
-/// Makes triangles that share no vertices. Face f has the corners 3 f, 3 f + 1 and 3 f + 2.
+/// Makes the topology of triangles that share no vertices. Face f has the corners 3 f, 3 f + 1 and 3 f + 2.
 [[nodiscard]] inline Topology make_soup(std::size_t face_count) {
   std::vector<std::uint32_t> corners(3 * face_count);
   for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
   return make_triangles(3 * face_count, std::move(corners));
 }
 
-/// Makes a sheet of 2 x cells x cells triangles that twists, bends and waves: normals turn by up to about 90 degrees,
-/// and every face moves. cells = 32 gives 2,048 faces.
+/// Makes a sheet of 2 x cells x cells triangles that twists, bends and waves. Normals turn by up to about 90 degrees,
+/// and every face moves. The default, cells = 32, gives 2,048 faces.
 [[nodiscard]] inline Motion smooth_morph(std::size_t cells = 32) {
   const auto snapped = [](Point p) {
     for (double& c : p) c = std::nearbyint(c * 0x1p20) * 0x1p-20;
@@ -97,8 +97,8 @@ class Random {
       const double y = 2 * static_cast<double>(j) / static_cast<double>(cells) - 1;
       from.push_back(snapped({x, y, 0.15 * std::sin(4 * x + 1) * std::cos(3 * y)}));
       const double wave = 0.2 * std::cos(3 * x - 0.5) * std::sin(5 * y + 2);
-      const double twist = 0.3 + 0.9 * x;     // about the x axis
-      const double bend = 0.8 * x + 0.2 * y;  // about the y axis, on a cylinder
+      const double twist = 0.3 + 0.9 * x;     // angle about the x axis, in radians
+      const double bend = 0.8 * x + 0.2 * y;  // angle about the y axis, in radians, as on a cylinder
       const double ty = y * std::cos(twist) - wave * std::sin(twist);
       const double tz = y * std::sin(twist) + wave * std::cos(twist);
       to.push_back(snapped({1.25 * std::sin(bend) + 0.3 * tz * std::sin(bend), 1.1 * ty + 0.4,
@@ -117,12 +117,13 @@ class Random {
   return make_motion(make_triangles(vertex_count, std::move(corners)), from, to);
 }
 
-/// The properties of a random soup.
+/// The properties of random triangles that share no vertices (a soup).
 struct SoupOptions {
   std::size_t face_count = 1000;
   std::uint64_t seed = 1;
   double size = 1;  ///< corners are in a cube with this edge length
-  /// The corners move by up to motion x size in each coordinate. If it is negative, both ends are independent.
+  /// Each coordinate of a corner moves by up to motion x size. If `motion` is negative, the positions at both ends are
+  /// independent.
   double motion = -1;
   double offset = 0;  ///< added to x, y and z at both ends
   double needle = 0;  ///< distance of c from the line through a and b; if 0, c is anywhere
@@ -165,12 +166,12 @@ struct SoupOptions {
   return make_motion(make_soup(options.face_count), from, to);
 }
 
-/// Makes triangles that are independent at both ends, which is the largest possible motion.
+/// Makes triangles whose positions at both ends are independent, which is the largest possible motion.
 [[nodiscard]] inline Motion large_soup(std::size_t face_count = 1000, std::uint64_t seed = 1) {
   return soup({.face_count = face_count, .seed = seed});
 }
 
-/// Makes triangles whose corners move by up to a fifth of the size.
+/// Makes triangles whose corners move by up to a fifth of the size of a triangle.
 [[nodiscard]] inline Motion moderate_soup(std::size_t face_count = 1000, std::uint64_t seed = 2) {
   return soup({.face_count = face_count, .seed = seed, .motion = 0.2});
 }
@@ -188,13 +189,14 @@ struct SoupOptions {
   return soup({.face_count = face_count, .seed = seed, .size = 1e6});
 }
 
-/// Makes edges of length about 1 at coordinates around 10,000, where neighbouring floats differ by a thousandth.
+/// Makes triangles with edges of length about 1 and coordinates around 10,000, where neighbouring floats differ by a
+/// thousandth.
 [[nodiscard]] inline Motion far_soup(std::size_t face_count = 1000, std::uint64_t seed = 6) {
   return soup({.face_count = face_count, .seed = seed, .offset = 1e4});
 }
 
-/// Makes triangles whose normal nearly vanishes in between: corner c passes the line through a and b at a distance of
-/// `gap` times the size, at a different time for each face.
+/// Makes triangles whose normals nearly vanish at some time. Corner c passes the line through corners a and b at a
+/// distance of `gap` times the size, at a different time for each face.
 [[nodiscard]] inline Motion collapsing_soup(double gap, std::size_t face_count = 1000, std::uint64_t seed = 7) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -218,8 +220,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles that move by all orders of magnitude from 1e-9 to 1 times their size, so that normals have all
-/// degrees, with coefficients of all magnitudes.
+/// Makes triangles whose motions are 1e-9 to 1 times their size, with all orders of magnitude in between. Normals
+/// therefore have all degrees, and coefficients of all magnitudes.
 [[nodiscard]] inline Motion graded_soup(std::size_t face_count = 1000, std::uint64_t seed = 10) {
   Random random(seed);
   std::vector<Point> from, to;
@@ -227,7 +229,7 @@ struct SoupOptions {
     const auto place = static_cast<double>(f) / static_cast<double>(face_count);
     const double step = std::ldexp(1.0, -static_cast<int>(30 * place));
     for (int corner = 0; corner < 3; ++corner) {
-      // Close to the origin, floats are dense enough to represent small steps.
+      // Near the origin, neighbouring floats are close enough to represent small steps.
       const Point start = random.in_cube(0.5), by = random.in_cube(0.5);
       from.push_back(start);
       to.push_back({start[0] + step * by[0], start[1] + step * by[1], start[2] + step * by[2]});
@@ -236,9 +238,9 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes needles that are as thin as coordinates of 20 bits allow. Two edges have a length of about 2^20 each, and
-/// integer coordinates that span an area of 1 in one of the coordinate planes. With in_plane, the triangles are in this
-/// plane; otherwise they are tilted against it.
+/// Makes needles that are as thin as integer coordinates of 20 bits allow. Two edges have a length of about 2^20.
+/// Projected onto one of the coordinate planes, their coordinates are integers and the edges span an area of 1. If
+/// in_plane, the triangles are in that plane; otherwise they are tilted against it.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };
@@ -274,8 +276,8 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles that end as their own mirror image: corners b and c are swapped. The end normals are opposite, and
-/// in the middle there is no normal.
+/// Makes triangles that end with corners b and c swapped. The normals at the two ends are opposite, and at t = 1/2
+/// there is no normal.
 [[nodiscard]] inline Motion inside_out_soup(std::size_t face_count = 1000, std::uint64_t seed = 8) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   auto& to = motion.keyframes[1].positions;
@@ -285,24 +287,25 @@ struct SoupOptions {
   return motion;
 }
 
-/// Makes triangles that shrink to a point and grow out of it as their reflection in this point: n(t) = (1 - 2 t)^2 n0.
+/// Makes triangles that shrink to a point and then grow again as their reflection in this point, so n(t) = (1 - 2 t)^2
+/// n0.
 [[nodiscard]] inline Motion point_reflected_soup(std::size_t face_count = 1000, std::uint64_t seed = 14) {
   Motion motion = soup({.face_count = face_count, .seed = seed, .motion = 0});
   for (float& c : motion.keyframes[1].positions) c = -c;
   return motion;
 }
 
-/// The shape of the corners of degenerate_soup() at one end.
+/// The shape of the triangles of degenerate_soup() at one end of the segment.
 enum class Shape { kTriangle, kLine, kPoint };
 
-/// Makes triangles that start and end with these shapes. The coordinates are small integers, so the normal of a line is
-/// exactly zero. A motion from line to line has normals in between.
+/// Makes triangles that have these shapes at t = 0 and t = 1. The coordinates are small integers, so the normal of a
+/// line is exactly zero. If a triangle moves from one line to another, it has a normal at the times between.
 [[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
                                             std::uint64_t seed = 9) {
   Random random(seed);
   const auto coordinate = [&random] { return static_cast<double>(random.below(2001)) - 1000; };
-  // On a line, corner c divides the edge from a to b in the ratio `along`. If this ratio were equal at both ends, the
-  // corners would always be on a line.
+  // If the shape is a line, corner c divides the edge from a to b in the ratio `along`. If the ratio were the same at
+  // both ends, the corners would be on a line at all times.
   const auto append = [&](std::vector<Point>& points, Shape shape, double along) {
     std::array<Point, 3> corners{};
     for (Point& corner : corners) {
@@ -322,13 +325,13 @@ enum class Shape { kTriangle, kLine, kPoint };
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// A closed mesh: points on the unit sphere, and faces.
+/// A closed mesh: its points, and its faces as a topology.
 struct ClosedMesh {
   std::vector<Point> points;
   Topology topology;
 };
 
-/// Makes a sphere of 20 x 4^subdivisions triangles, whose points are on the unit sphere up to rounding.
+/// Makes a sphere of 20 x 4^subdivisions triangles. Its points are on the unit sphere, except for rounding.
 [[nodiscard]] inline ClosedMesh icosphere(int subdivisions = 2) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Point> points{{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -363,7 +366,7 @@ struct ClosedMesh {
   return {std::move(points), make_triangles(vertex_count, std::move(corners))};
 }
 
-/// Makes the surface of a cube [-1, 1]^3 from 6 x cells x cells quads: a closed mesh of polygons.
+/// Makes the surface of the cube [-1, 1]^3 as a closed mesh of 6 x cells x cells quads.
 [[nodiscard]] inline ClosedMesh box_grid(std::size_t cells = 4) {
   std::map<std::array<std::size_t, 3>, std::uint32_t> numbers;
   std::vector<Point> points;
@@ -388,7 +391,7 @@ struct ClosedMesh {
             quad[c][u] = i + (c == 1 || c == 2 ? 1 : 0);
             quad[c][v] = j + (c >= 2 ? 1 : 0);
           }
-          if (side == 0) std::swap(quad[1], quad[3]);  // makes the faces of both opposite sides point outwards
+          if (side == 0) std::swap(quad[1], quad[3]);  // makes the faces on both of the opposite sides point outwards
           for (const auto& corner : quad) corners.push_back(vertex(corner));
           offsets.push_back(static_cast<std::uint32_t>(corners.size()));
         }

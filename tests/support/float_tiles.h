@@ -1,4 +1,5 @@
-/// Checks the error bounds of tiles that were computed in float32 against control normals in double.
+/// Compares control normals in tiles that were computed in float32 with control normals in double, and checks that the
+/// differences do not exceed the error bounds of the tiles.
 #ifndef CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 #define CHRONORMAL_TESTS_SUPPORT_FLOAT_TILES_H_
 
@@ -19,8 +20,9 @@
 
 namespace chronormal::test {
 
-/// Changes the end of the motion so that normals have degree 1 or 0. For kind 0 each point moves along z by itself, for
-/// 1 all points move by the same vector, for 2 they are stretched along x, and for 3 nothing moves.
+/// Changes the positions at the end of the motion, so that normals have degree 1 or 0. If `kind` is 0, each point moves
+/// along z by a different distance. If it is 1, all points move by the same vector; if it is 2, the mesh is stretched
+/// along x; and if it is 3, nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -31,8 +33,8 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Changes the end of the motion: every coordinate moves only by a share of its original way, plus a small random
-/// amount.
+/// Changes the positions at the end of the motion, so that every coordinate moves by only a share of its original
+/// difference, plus a small random amount.
 [[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -41,7 +43,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// The results for some elements. `fault` describes the last fault, or is "".
+/// Counts of what the tests found in some elements. `fault` describes the last fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;           ///< elements with a stated degree of 2
@@ -51,8 +53,8 @@ struct FloatTileFaults {
   double largest_bound = 0;          ///< relative to the absolute products
   std::string fault;
 
-  /// Checks one element. `right` has the true control normals. `products` is at least the sum of the absolute products
-  /// in each component, and `count` is the number of cross products in the sum.
+  /// Checks one element of a tile. `right` is the true control normals. `products` must be at least the sum of the
+  /// absolute products in each component, and `count` is the number of cross products in the sum.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -66,7 +68,7 @@ struct FloatTileFaults {
       for (const double component : {v.x, v.y, v.z}) {
         const double off = std::fabs(double{tile.normals[k++][lane]} - component);
         if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
-        // An error that underflows is too small to matter. NaN exceeds every bound except an infinite one.
+        // An error below the smallest normal float does not matter. NaN exceeds every bound except an infinite one.
         if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
           fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
       }
@@ -85,8 +87,8 @@ struct FloatTileFaults {
   }
 
  private:
-  /// Returns the largest distance between n(t) and the stored curve if m is left out, divided by the bound. The curve
-  /// is then the line between the ends, or n0 alone.
+  /// Returns the largest difference between n(t) and the curve that is stored without m, divided by the bound. Without
+  /// m, the curve is the line between n0 and n1, or n0 alone.
   [[nodiscard]] static double share_of_line(const ControlTile& tile, std::size_t lane, const ControlNormals& right) {
     const double n0[3] = {right.n0.x, right.n0.y, right.n0.z}, m[3] = {right.m.x, right.m.y, right.m.z},
                  n1[3] = {right.n1.x, right.n1.y, right.n1.z};
@@ -104,8 +106,9 @@ struct FloatTileFaults {
   }
 };
 
-/// Checks that elements that hardly move are stored as lines or as single normals, and that the stated error of a tile
-/// covers this simplification. look(seen, motion) checks the tiles of a motion.
+/// Checks that elements that hardly move are stored as lines or as single normals, and that the error bound of a tile
+/// includes the error of this simplification. look(seen, motion) compares the tiles of a motion and adds the result to
+/// `seen`.
 template <class Look>
 void expect_lines_within_their_errors(const Motion& motion, const Look& look) {
   constexpr std::uint64_t kSeed = 20261126;

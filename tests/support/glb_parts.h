@@ -1,4 +1,4 @@
-/// Splits GLB files that an edit wrote into their parts, without the reader of the product.
+/// Splits GLB files that an edit wrote into header, JSON and binary data, without chronormal's reader.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 
@@ -41,7 +41,7 @@ struct GlbParts {
   return result;
 }
 
-/// Returns the bytes that an edit writes, or the text of its error.
+/// Returns the bytes of the file that an edit makes, or the text of its error.
 [[nodiscard]] inline std::string bytes_or_error(const GltfEdit& edit, const std::string& path = "") {
   const Result<std::string> bytes = edit.bytes(path);
   return bytes ? bytes.value() : bytes.error().text();

@@ -1,4 +1,4 @@
-/// Makes glTF files in memory, piece by piece, without using the reader. A quad with one target:
+/// Makes glTF files in memory, piece by piece, without chronormal's reader. For example, a quad with one target:
 ///
 ///     GltfBuilder builder;
 ///     const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
@@ -7,7 +7,7 @@
 ///                                                               {{{"POSITION", lift}}}));
 ///     builder.glb();
 ///
-/// Tests change everything else through the public members json and buffer, also to make invalid files.
+/// Tests change everything else through the public members json and buffer. They can therefore make invalid files, too.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_BUILDER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_BUILDER_H_
 
@@ -26,7 +26,7 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes of values as they are in memory (little endian, on all machines that run the tests).
+/// Returns the bytes of values as they are in memory. All machines that run the tests are little-endian, like glTF.
 template <class T>
 [[nodiscard]] std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -46,7 +46,7 @@ template <class T>
   return text;
 }
 
-/// Makes a GLB file of these chunks, with the required padding. Without `bin` there is no second chunk.
+/// Makes a GLB file of these two chunks, with the required padding. If `bin` is empty, the file has no second chunk.
 [[nodiscard]] inline std::string glb_bytes(std::string json, std::optional<std::string> bin) {
   const auto word = [](std::size_t value) {
     return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
@@ -67,7 +67,7 @@ class GltfBuilder {
   Json json = {{"asset", {{"version", "2.0"}}}};
   std::string buffer;  ///< the bytes of buffer 0
 
-  /// Adds a view of new bytes, which begin at a multiple of four.
+  /// Adds a buffer view with new bytes, which begin at a multiple of four in the buffer. Returns the index of the view.
   std::size_t add_view(std::string_view bytes, std::size_t stride = 0) {
     buffer.resize((buffer.size() + 3) / 4 * 4, '\0');
     Json view = {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}};
@@ -76,7 +76,7 @@ class GltfBuilder {
     return add("bufferViews", std::move(view));
   }
 
-  /// Adds an accessor with its own view, tightly packed.
+  /// Adds an accessor with a buffer view of its own, in which the elements are packed without gaps.
   template <class T>
   std::size_t add_accessor(const char* type, const std::vector<T>& values, bool normalized = false) {
     return add_accessor_over(add_view(bytes_of(values)), type, component_type<T>(), values.size() / components(type),
@@ -94,7 +94,8 @@ class GltfBuilder {
   std::size_t add_indices(const std::vector<T>& values) {
     return add_accessor("SCALAR", values);
   }
-  /// Adds an accessor whose elements begin `stride` bytes apart. The gaps are filled with 0xEE.
+  /// Adds an accessor whose elements begin at distances of `stride` bytes. The gaps between the elements are filled
+  /// with 0xEE.
   template <class T>
   std::size_t add_strided(const char* type, const std::vector<T>& values, std::size_t stride, bool normalized = false) {
     const std::size_t size = components(type) * sizeof(T), count = values.size() / components(type);
@@ -103,8 +104,7 @@ class GltfBuilder {
     for (std::size_t i = 0; i < count; ++i) bytes.replace(i * stride, size, packed, i * size, size);
     return add_accessor_over(add_view(bytes, stride), type, component_type<T>(), count, normalized);
   }
-  /// Replaces some elements of an accessor by sparse elements. The accessor comes from add_accessor_over(), with or
-  /// without a view.
+  /// Replaces some elements of an accessor that add_accessor_over() has made, by sparse arrays of indices and values.
   template <class I, class T>
   void make_sparse(std::size_t accessor, const std::vector<I>& indices, const std::vector<T>& values) {
     const std::size_t index_view = add_view(bytes_of(indices)), value_view = add_view(bytes_of(values));
@@ -139,7 +139,7 @@ class GltfBuilder {
     if (!name.empty()) animation["name"] = name;
     return add("animations", std::move(animation));
   }
-  /// Adds a channel of an animation that drives the weights of a node.
+  /// Adds a channel to an animation. The channel drives the weights of a node.
   template <class T>
   void add_track(std::size_t animation, std::size_t node, const std::vector<float>& times, const std::vector<T>& values,
                  const char* interpolation = "LINEAR") {
@@ -151,11 +151,11 @@ class GltfBuilder {
     target["channels"].push_back({{"sampler", sampler}, {"target", {{"node", node}, {"path", "weights"}}}});
   }
 
-  /// Returns the document with buffer 0 embedded as base64.
+  /// Returns the document as a .gltf file in which buffer 0 is embedded as base64.
   [[nodiscard]] std::string gltf() const {
     return gltf_with_uri("data:application/octet-stream;base64," + base64(buffer));
   }
-  /// Returns the document with buffer 0 in another file.
+  /// Returns the document as a .gltf file in which buffer 0 is a separate file with this URI.
   [[nodiscard]] std::string gltf_with_uri(const std::string& uri) const { return with_buffer(uri).dump(); }
   [[nodiscard]] std::string glb() const { return glb_bytes(with_buffer(std::nullopt).dump(), buffer); }
 
@@ -179,7 +179,7 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // A test may have added further buffers after a placeholder for buffer 0. These buffers are kept.
+  // A test may have put a placeholder for buffer 0, and other buffers after it. The other buffers are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;
@@ -191,8 +191,8 @@ class GltfBuilder {
   }
 };
 
-/// A document, and the bytes from which it is read. By default it is read strictly, so that notes (gltf_notes_test.cpp)
-/// become errors.
+/// A document together with the bytes from which it is read. By default, the reader is strict: notes
+/// (gltf_notes_test.cpp) are errors.
 class GltfFixture {
  public:
   explicit GltfFixture(std::string bytes, const std::optional<std::string>& folder = std::nullopt,
@@ -213,13 +213,14 @@ class GltfFixture {
   Result<GltfDocument> document_;
 };
 
-// A non-planar quad, its triangles, and two targets. All numbers are exact in binary.
+// A quad that is not planar, its triangles, and two targets. All numbers are exact in float32.
 inline const std::vector<float> kQuad = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F};
 inline const std::vector<std::uint16_t> kQuadCorners = {0, 1, 2, 0, 2, 3};
 inline const std::vector<float> kLift = {0, 0, 1, 0, 0, -1, 0, 0, 2, 0.5F, 0, 0};
 inline const std::vector<float> kShift = {0.25F, 0, 0, 0, -0.5F, 0, 0, 0, 0, 0, 0.125F, 4};
 
-/// Makes the quad with its two targets as the mesh of a node. The accessors are: 0 base, 1 corners, 2 and 3 targets.
+/// Makes a document with a node and a mesh: the quad with its two targets. The accessors are 0 the base, 1 the corners,
+/// 2 and 3 the targets.
 [[nodiscard]] inline GltfBuilder quad_document() {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(kQuad), corners = builder.add_indices(kQuadCorners);
@@ -230,7 +231,7 @@ inline const std::vector<float> kShift = {0.25F, 0, 0, 0, -0.5F, 0, 0, 0, 0, 0, 
   return builder;
 }
 
-/// Returns base + weights[0] targets[0] + weights[1] targets[1] + ..., in double.
+/// Returns the morphed positions base + weights[0] targets[0] + weights[1] targets[1] + ..., computed in double.
 [[nodiscard]] inline std::vector<double> morphed(const std::vector<float>& base,
                                                  const std::vector<std::vector<float>>& targets,
                                                  const std::vector<double>& weights) {

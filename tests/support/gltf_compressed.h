@@ -21,7 +21,7 @@
 
 namespace chronormal::test {
 
-/// Encodes vertex data for EXT_meshopt_compression in mode ATTRIBUTES. `stride` is the number of bytes per element.
+/// Encodes vertex data by EXT_meshopt_compression in the mode ATTRIBUTES. `stride` is the number of bytes per element.
 [[nodiscard]] inline std::string meshopt_attributes(const std::string& bytes, std::size_t stride) {
   const std::size_t count = bytes.size() / stride;
   std::vector<unsigned char> coded(meshopt_encodeVertexBufferBound(count, stride));
@@ -30,7 +30,8 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Encodes triangles for mode TRIANGLES, which may rotate the corners of a triangle but keeps the order of triangles.
+/// Encodes triangles by EXT_meshopt_compression in the mode TRIANGLES. The encoder may rotate the corners of a
+/// triangle, but keeps the order of triangles.
 [[nodiscard]] inline std::string meshopt_triangles(const std::vector<std::uint32_t>& corners, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexBufferBound(corners.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -38,7 +39,7 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Encodes indices for mode INDICES.
+/// Encodes indices by EXT_meshopt_compression in the mode INDICES.
 [[nodiscard]] inline std::string meshopt_indices(const std::vector<std::uint32_t>& indices, std::size_t vertices) {
   std::vector<unsigned char> coded(meshopt_encodeIndexSequenceBound(indices.size(), vertices));
   meshopt_encodeIndexVersion(1);
@@ -46,8 +47,8 @@ namespace chronormal::test {
   return {coded.begin(), coded.end()};
 }
 
-/// Adds a view of `count` elements of `size` bytes that exist only in compressed form. The extension demands a fallback
-/// buffer, which is buffer 1 and has no URI.
+/// Adds a buffer view with `count` elements of `size` bytes that exist only in compressed form. The extension demands a
+/// fallback buffer for the uncompressed bytes. It is buffer 1, and has no URI.
 inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& coded, std::size_t count, std::size_t size,
                                     const char* mode, const char* filter = nullptr) {
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4, '\0');
@@ -75,7 +76,7 @@ inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& cod
   return builder.add("bufferViews", std::move(view));
 }
 
-/// Adds a compressed view of the floats of an attribute, without a filter.
+/// Adds a compressed buffer view of positions, without a filter, and an accessor. Returns the index of the accessor.
 inline std::size_t add_meshopt_positions(GltfBuilder& builder, const std::vector<float>& positions) {
   const std::string coded = meshopt_attributes(bytes_of(positions), 12);
   const std::size_t count = positions.size() / 3;
@@ -96,14 +97,15 @@ template <class T>
   if constexpr (std::is_same_v<T, float>) return draco::DT_FLOAT32;
 }
 
-/// Joints and weights for skinning, four for each vertex.
+/// The joints and weights of a skin, four for each vertex.
 struct DracoShares {
   std::vector<std::uint8_t> joints = {};
   std::vector<float> weights = {};
 };
 
-/// Encodes a triangle mesh with Draco. The attributes that are given are numbered from 0 in the order POSITION, NORMAL,
-/// JOINTS, WEIGHTS. The encoding is lossless if `bits` is 0. Otherwise, positions are quantised to so many bits.
+/// Encodes a triangle mesh with Draco. The attributes that are given get the numbers 0, 1, ... in the order POSITION,
+/// NORMAL, JOINTS, WEIGHTS. If `bits` is 0, the encoding is lossless. Otherwise, coordinates are rounded to this number
+/// of bits.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
                                      DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,
@@ -141,7 +143,7 @@ template <class T>
   return {coded.data(), coded.size()};
 }
 
-/// Makes a primitive whose indices, positions and normals exist only in Draco's encoding; targets are not compressed.
+/// Makes a primitive whose indices, positions and normals exist only in Draco's encoding. Targets are not compressed.
 [[nodiscard]] inline GltfBuilder::Json draco_primitive(GltfBuilder& builder, const std::string& coded,
                                                        std::size_t vertex_count, std::size_t corner_count,
                                                        bool has_normals,

@@ -1,4 +1,5 @@
-/// Makes small documents that tests then damage. Together they use everything that the glTF reader supports.
+/// Makes small glTF documents, which tests then damage. Together, the documents use everything that the glTF reader
+/// supports.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_DOCUMENTS_H_
 
@@ -12,8 +13,8 @@
 
 namespace chronormal::test {
 
-/// Makes a document with strided normals, a sparse target without a view, weights, a chain of nodes, and LINEAR and
-/// STEP tracks.
+/// Makes a document with strided normals, a sparse target without a buffer view, weights, a chain of nodes, and LINEAR
+/// and STEP tracks.
 [[nodiscard]] inline GltfBuilder sparse_document() {
   GltfBuilder builder = quad_document();
   const std::size_t sparse = builder.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -34,7 +35,8 @@ namespace chronormal::test {
   return builder;
 }
 
-/// Makes a document with KHR_mesh_quantization, a fan without indices, and a CUBICSPLINE track of normalised integers.
+/// Makes a document with KHR_mesh_quantization, a triangle fan without indices, and a CUBICSPLINE track of normalised
+/// integers.
 [[nodiscard]] inline GltfBuilder quantised_document() {
   GltfBuilder builder;
   const std::size_t base = builder.add_strided<std::uint16_t>("VEC3", {0, 0, 0, 99, 0, 0, 99, 99, 0, 0, 99, 50}, 8);
@@ -47,8 +49,8 @@ namespace chronormal::test {
   return builder;
 }
 
-/// Makes a document with EXT_meshopt_compression of positions, of a target with the exponential filter, and of
-/// triangles.
+/// Makes a document with EXT_meshopt_compression of positions, of triangles, and of a target with the exponential
+/// filter.
 [[nodiscard]] inline GltfBuilder meshopt_document() {
   GltfBuilder builder;
   const std::size_t base = add_meshopt_positions(builder, kQuad);
@@ -84,7 +86,7 @@ namespace chronormal::test {
   return builder;
 }
 
-/// Returns all documents by name.
+/// Returns all documents of this file, with their names.
 [[nodiscard]] inline std::vector<std::pair<std::string, GltfBuilder>> all_documents() {
   std::vector<std::pair<std::string, GltfBuilder>> documents;
   documents.emplace_back("sparse", sparse_document());

@@ -1,5 +1,5 @@
-/// A small viewer of glTF that shares no code with the library. It reads a GLB, plays its weight tracks by appendix C
-/// of the specification, adds up targets in float32, and computes the true normals from the positions.
+/// A small viewer of glTF files that shares no code with the library. It reads a GLB file, plays weight tracks by
+/// appendix C of the glTF specification, adds up targets in float32, and computes the true normals from the positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 
@@ -64,7 +64,7 @@ class GltfPlayer {
     return values;
   }
 
-  /// Returns the weights of a channel at a time, in float32 like viewers.
+  /// Returns the weights of a channel at a time. Computes them in float32, as viewers do.
   [[nodiscard]] std::vector<float> weights_at(std::size_t animation, std::size_t channel, double time) const {
     const Json& a = json.at("animations").at(animation);
     const Json& sampler = a.at("samplers").at(a.at("channels").at(channel).at("sampler").get<std::size_t>());
@@ -95,7 +95,7 @@ class GltfPlayer {
     return result;
   }
 
-  /// Adds the weighted deltas to the stored normal of a vertex in float32.
+  /// Returns the stored normal of a vertex plus its weighted deltas, computed in float32.
   [[nodiscard]] Vector shown(const Json& primitive, std::size_t vertex, const std::vector<float>& weights) const {
     const std::vector<float>& normals = cached(primitive.at("attributes").at("NORMAL"));
     std::array<float, 3> sum = {normals[3 * vertex], normals[3 * vertex + 1], normals[3 * vertex + 2]};

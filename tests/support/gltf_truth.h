@@ -12,7 +12,7 @@
 
 namespace chronormal::test {
 
-/// One mesh of a file before the bake. Its vertices are those of all primitives with faces and normals.
+/// A mesh of a file before the bake. Its vertices are the vertices of all primitives that have faces and normals.
 class GltfTruth {
  public:
   using Json = nlohmann::json;
@@ -62,7 +62,7 @@ class GltfTruth {
   std::vector<Vertex> vertices;
   bool uniform = false;  ///< true if all faces have equal weight, instead of their area
 
-  /// Returns n(w) of each vertex. Weights beyond the targets of the file are ignored.
+  /// Returns n(w) for each vertex. Ignores weights beyond the number of targets in the file.
   [[nodiscard]] std::vector<Vector> normals_at(const std::vector<double>& weights) const {
     std::vector<Vector> at(vertices.size());
     for (std::size_t v = 0; v < at.size(); ++v) {
@@ -89,13 +89,13 @@ class GltfTruth {
     return at;
   }
 
-  /// Turns n by the smallest rotation from the direction of `from` to that of `to`.
+  /// Turns n by the smallest rotation from the direction of `from` to the direction of `to`.
   [[nodiscard]] static Vector turn(const Vector& from, const Vector& to, const Vector& n) {
     const Real scale = length_of(from) * length_of(to);
     if (scale == 0) return n;
     const Vector axis = crossed(from, to);
     const Real s = length_of(axis) / scale, c = dotted(from, to) / scale, norm = length_of(axis);
-    if (norm == 0) return n;  // the tests have no opposite vectors
+    if (norm == 0) return n;  // the tests have no opposite vectors, so `from` and `to` are parallel
     const Vector k = {axis[0] / norm, axis[1] / norm, axis[2] / norm};
     const Vector across = crossed(k, n);
     const Real along = dotted(k, n) * (1 - c);
@@ -119,7 +119,8 @@ class GltfTruth {
     }
   }
 
-  // Gives vertices at the same place a common normal if their stored normals differ by at most 0.1 degrees.
+  // Groups vertices at the same place, so that they share a normal if their stored normals differ by at most 0.1
+  // degrees.
   void group(const std::vector<std::size_t>& here) {
     std::vector<std::size_t> root(here.size());
     for (std::size_t a = 0; a < here.size(); ++a) root[a] = a;
@@ -139,7 +140,7 @@ class GltfTruth {
   std::vector<std::size_t> group_;
 };
 
-/// Angles in degrees between rendered and true normals.
+/// Statistics of the angles between rendered and true normals, in degrees.
 struct ShownError {
   double sum = 0, worst = 0;
   std::size_t judged = 0, left_out = 0;
@@ -152,14 +153,14 @@ struct ShownError {
   }
 };
 
-/// A pose of a mesh: the weights of the targets in the file before the bake, and in the file after the bake.
+/// A pose of a mesh: the weights of the targets, in the file before the bake and in the file after the bake.
 struct Pose {
   std::vector<double> before;
   std::vector<float> after;
 };
 
-/// Compares the rendered normals of a mesh after the bake with its true normals before the bake. Leaves out samples
-/// where |n(w)| is below 1e-4 of the largest |n| of the vertex in these poses.
+/// Compares the normals that viewers render after the bake with the true normals before the bake, in these poses. Skips
+/// samples in which |n(w)| is below 1e-4 of the largest |n| of the same vertex in these poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
   ShownError error;

@@ -1,5 +1,5 @@
-/// Computes weights of morph targets over time by the formulas of the glTF specification (appendix C), in long double,
-/// and the positions of a motion to compare with.
+/// Computes the weights of morph targets over time by the formulas of the glTF specification (appendix C), in long
+/// double. Also computes the positions of a motion at a time, to compare with morphed positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_WEIGHTS_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::test {
 
-/// Returns the weights of target_count targets at a time. `values` has the layout of the file: (K, N), or (K, 3, N) for
-/// a cubic spline. With STEP, the weights of a key begin exactly at its time.
+/// Returns the weights of target_count targets at a time. `values` has the layout of glTF: (K, N), or (K, 3, N) for a
+/// cubic spline, for K keys and N targets. With STEP, the weights of a key begin exactly at the time of the key.
 [[nodiscard]] inline std::vector<double> weights_at(GltfInterpolation interpolation, const std::vector<float>& times,
                                                     const std::vector<float>& values, std::size_t target_count,
                                                     double time) {
@@ -46,8 +46,8 @@ namespace chronormal::test {
   return weights;
 }
 
-/// Returns all positions of a sequence at a time, on the straight line of its segment. At times outside of the range,
-/// returns the positions at the nearer end.
+/// Returns all positions of a motion at a time, on the straight line between two keyframes. Before the first and after
+/// the last keyframe, returns the positions of that keyframe.
 [[nodiscard]] inline std::vector<double> positions_at(const Motion& motion, double time) {
   for (const Motion::SegmentKeys& segment : motion.segments) {
     const Motion::Keyframe& from = motion.keyframes.at(segment.from);

@@ -1,6 +1,7 @@
 /// Makes small motions whose normals are hard to compute in double, and some ordinary motions.
 ///
-/// The motions depend only on random numbers, and are the same for every compiler except for the last bits of std::pow.
+/// The motions depend only on random numbers. They are the same with every compiler, except for the last bits of
+/// std::pow.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 
@@ -20,26 +21,26 @@ namespace chronormal::test {
 using fixtures::Point;
 using fixtures::Random;
 
-/// A triangle at both ends of a segment.
+/// The corners of a triangle at both ends of a segment.
 struct MovingTriangle {
   std::array<Point, 3> from{}, to{};
 };
 
-/// Returns 10^k for a random k.
+/// Returns 10^k for a random k between low and high.
 [[nodiscard]] inline double random_decade(Random& random, double low, double high) {
   return std::pow(10, random.uniform(low, high));
 }
 
 [[nodiscard]] inline Point scaled_point(double s, const Point& p) { return {s * p[0], s * p[1], s * p[2]}; }
 
-/// Draws integer coordinates up to 2^10, so that sums of a few of them are exact.
+/// Draws a point with integer coordinates of up to 2^10, so that sums of a few coordinates are exact in float32.
 [[nodiscard]] inline Point whole_point(Random& random) {
   const auto one = [&random] { return static_cast<double>(random.below(2049)) - 1024; };
   const double x = one(), y = one();
   return {x, y, one()};
 }
 
-/// Makes a triangle in which each corner at either end has its own random magnitude between 1e-10 and 1e10.
+/// Makes a triangle in which each corner has its own random magnitude between 1e-10 and 1e10 at each end.
 [[nodiscard]] inline MovingTriangle mixed_scales(Random& random) {
   MovingTriangle triangle;
   const bool stands_still = random.below(3) == 0, each_coordinate = random.below(4) == 0;
@@ -55,8 +56,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle whose three corners are on a line through the origin, except for the rounding to float32. One
-/// corner is very close to the origin.
+/// Makes a triangle whose corners are on a line through the origin, except for rounding to float32. One corner is very
+/// close to the origin.
 [[nodiscard]] inline MovingTriangle sliver_at_origin(Random& random) {
   MovingTriangle triangle;
   const double ratio = random.below(2) == 0 ? 2 : random.uniform(0.3, 3);
@@ -64,7 +65,7 @@ struct MovingTriangle {
     (*corners)[0] = scaled_point(random_decade(random, -14, -4), random.in_cube(1));
     (*corners)[1] = random.in_cube(2);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The coordinate is rounded to the nearest float32, or sometimes to the next float above or below.
+      // Rounds the coordinate to the nearest float or, sometimes, to the next float above or below that.
       const auto b = static_cast<float>((*corners)[1][k]);
       const auto product = static_cast<float>(ratio * static_cast<double>(b));
       const std::array<float, 3> near{product, std::nextafter(product, 10.0F), std::nextafter(product, -10.0F)};
@@ -75,8 +76,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle whose corner c passes the line through a and b at t = 1/2, at a distance of exactly `gap`. All
-/// other coordinates are integers in a plane.
+/// Makes a triangle whose corner c passes the line through corners a and b at t = 1/2, at a distance of exactly `gap`.
+/// All coordinates that have nothing to do with the gap are integers in a plane.
 [[nodiscard]] inline MovingTriangle passing_collapse(Random& random, double gap) {
   const Point a = whole_point(random), step = whole_point(random), by = whole_point(random);
   const double along = static_cast<double>(random.below(5)) - 2;
@@ -93,10 +94,10 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes the corners shrink to a point at t = 1 / (1 + r) and grow out of it again, so that n(t) has a double zero.
-/// Half of the triangles only come close to the point.
+/// Makes a triangle that shrinks to a point at t = 1 / (1 + r) and grows again, so n(t) has a double zero. Half of the
+/// triangles only come close to the point.
 [[nodiscard]] inline MovingTriangle double_zero(Random& random) {
-  constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // for r = 1.5 and 1/4, 1 / (1 + r) is not a double
+  constexpr std::array<double, 5> kRatios{1, 3, 7, 1.0 / 4, 1.5};  // if r is 1.5 or 1/4, 1 / (1 + r) is not a double
   const double r = kRatios[random.below(kRatios.size())];
   const Point center = whole_point(random);
   MovingTriangle triangle;
@@ -114,10 +115,11 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a flat triangle that turns over: the normal is zero once, with opposite directions before and after.
+/// Makes a triangle that moves in a plane and turns over. Its normal is zero once, with opposite directions before and
+/// after.
 [[nodiscard]] inline MovingTriangle turning_over(Random& random) {
   MovingTriangle triangle;
-  // The plane is z = 7 + slope x - y for integers, or parallel to two axes.
+  // The triangle moves in the plane z = 7 + slope x - y with an integer slope, or in a plane parallel to two axes.
   const bool is_whole = random.below(2) == 0;
   const std::size_t across = random.below(3);
   const double slope = static_cast<double>(random.below(4)), height = random.uniform(-1, 1);
@@ -130,8 +132,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle without a normal at one or both ends. At such an end it is a line or a point, exactly or as nearly
-/// as float32 allows.
+/// Makes a triangle without a normal at one or both ends. There, the triangle is a line or a point, either exactly or
+/// as nearly as float32 allows.
 [[nodiscard]] inline MovingTriangle collapsed_at_ends(Random& random) {
   MovingTriangle triangle;
   for (auto* corners : {&triangle.from, &triangle.to}) {
@@ -153,7 +155,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle at any place that moves by up to twice its size, at any scale and distance from the origin.
+/// Makes an ordinary triangle of any scale and at any distance from the origin. It moves by up to twice its size.
 [[nodiscard]] inline MovingTriangle ordinary(Random& random) {
   MovingTriangle triangle;
   const double size = random.below(3) == 0 ? random_decade(random, -44, 38) : 1;
@@ -170,7 +172,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle that passes a collapse as closely as float32 can represent.
+/// Makes a triangle that comes as close to a collapse as float32 can represent.
 [[nodiscard]] inline MovingTriangle grazing(Random& random) {
   MovingTriangle triangle;
   const double when = random.uniform(0.05, 0.95), along = random.uniform(-0.5, 1.5);
@@ -207,7 +209,7 @@ template <class Make>
   return soup_of(triangles);
 }
 
-/// Makes two huge faces around vertex 0 that cancel, exactly or nearly, and a small face beside them.
+/// Makes two huge faces around vertex 0 whose normals cancel, exactly or nearly, and a small face beside them.
 [[nodiscard]] inline Motion cancelling_fan(Random& random) {
   const double huge = random_decade(random, 2, 9), small = random_decade(random, -7, 0);
   std::vector<Point> from{{0, 0, 0}}, to{{0, 0, 0}};
@@ -220,7 +222,7 @@ template <class Make>
     for (std::size_t k = 0; k < 3; ++k) to[v][k] += by[k];
   }
   std::vector<std::uint32_t> corners{0, 1, 2, 0, 2, 1, 0, 3, 4};
-  if (random.below(2) == 0) {  // replaces the second huge face by a slightly different copy
+  if (random.below(2) == 0) {  // replaces the second huge face by a slightly different copy of the first
     for (const std::size_t v : {1U, 2U}) {
       for (auto* points : {&from, &to}) {
         Point copy = (*points)[v];
@@ -235,7 +237,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes a dozen faces over a few vertices, whose normals cancel more or less. Sometimes some of the faces are quads.
+/// Makes a dozen faces with few vertices, so the normals at a vertex partly cancel. Sometimes some of the faces are
+/// quads.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;
@@ -256,8 +259,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_polygons(vertices, std::move(offsets), std::move(corners)), from, to);
 }
 
-/// Makes a vertex with many faces, some of which are opposite. Their sum has larger rounding errors than a sum of a few
-/// faces.
+/// Makes a vertex with many faces, some of which have opposite normals. Their sum has larger rounding errors than a sum
+/// of few faces.
 [[nodiscard]] inline Motion many_faces(Random& random) {
   const std::size_t rim = 90 + random.below(400);
   const double height = random_decade(random, -9, 0);
@@ -276,14 +279,15 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(rim + 1, std::move(corners)), from, to);
 }
 
-/// Makes a fan of faces around vertex 0 that nearly cancel and nearly rest. The rim has integer coordinates in a plane
-/// and goes there and back, so it encloses no area. The height of the rim above the plane is so small that it is lost
-/// in double relative to the height of vertex 0: a small integer times a power of two.
+/// Makes a fan of faces around vertex 0 whose normals nearly cancel and which hardly move. The rim has integer
+/// coordinates in a plane, and returns along the same points, so it encloses no area. The height of the rim above the
+/// plane is a small integer times a power of two. It is so small that double loses it when it is added to the height of
+/// vertex 0.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };
   const int low = -static_cast<int>(30 + random.below(60)), shift = static_cast<int>(random.below(40)) - 20;
-  const bool moves = random.below(3) == 0;  // the fan moves within its plane by integers
+  const bool moves = random.below(3) == 0;  // the fan moves within its plane, by integers
   std::vector<Point> way(half);
   for (Point& p : way)
     for (double& x : p) x = small();

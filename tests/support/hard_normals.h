@@ -1,8 +1,8 @@
-/// Makes control normals that are hard to store in few bits, and measures the errors of stored ones.
+/// Makes control normals that are hard to store in few bits, and measures the errors of stored control normals.
 ///
-/// The control normals depend only on random numbers and powers of two, and have the same bits for every compiler. The
-/// errors are computed in long double from the original control normals. On x86, the rounding of this computation is
-/// below 1e-18 of the largest control normal.
+/// The control normals depend only on random numbers and powers of two, and have the same bits with every compiler.
+/// Errors are computed in long double from the original control normals. On x86, rounding changes the errors by less
+/// than 1e-18 of the largest control normal.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_NORMALS_H_
 
@@ -41,7 +41,7 @@ using RealVector = std::array<Real, 3>;
   return static_cast<double>(std::atan2(length({x, y, z}), u.x * n[0] + u.y * n[1] + u.z * n[2]));
 }
 
-/// Returns the t with the smallest |n(t)|, with a precision of 2^-40.
+/// Returns the t at which |n(t)| is smallest, with an error of 2^-40.
 [[nodiscard]] inline double hardest_time(const ControlNormals& c) {
   const auto size = [&c](double t) { return length(normal_in_long_double(c, t)); };
   double best = 0;
@@ -60,8 +60,8 @@ using RealVector = std::array<Real, 3>;
   return size(low) < size(best) ? low : best;
 }
 
-/// Returns times at which errors are likely: the ends and their neighbourhood, simple fractions, the neighbourhood of
-/// the hardest time, and random times.
+/// Returns times at which large errors are likely: the ends and times near them, simple fractions, the time at which
+/// |n(t)| is smallest and times near it, and random times.
 [[nodiscard]] inline std::vector<double> hard_times(const ControlNormals& c, fixtures::Random& random) {
   std::vector<double> times{0,   1,       1e-3,    1e-6, 0x1p-40, 1 - 1e-3, 1 - 1e-6,
                             0.5, 1.0 / 3, 2.0 / 3, 0.25, 0.75,    0x1p-150, 1 - 0x1p-53};
@@ -80,7 +80,7 @@ using RealVector = std::array<Real, 3>;
   return {x, y, random.uniform(-1, 1)};
 }
 
-/// Returns 2^-k for a random k in [0, most].
+/// Returns 2^-k for a random integer k in [0, most].
 [[nodiscard]] inline double random_power(fixtures::Random& random, std::size_t most) {
   return std::ldexp(1, -static_cast<int>(random.below(most + 1)));
 }
@@ -89,8 +89,8 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Returns three vectors along n. Each vector has a length from `factor`, and is changed by a random vector of up to
-/// `turn` times this length.
+/// Returns three vectors close to n. Each vector is n plus a random vector of up to `turn`, multiplied by a number from
+/// factor().
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -106,7 +106,7 @@ struct HardFamily {
   ControlNormals (*make)(fixtures::Random&);
 };
 
-/// Returns the families of hard elements; each makes one element.
+/// Returns the families of control normals that are hard to store. Each family is a function that makes one element.
 [[nodiscard]] inline const std::vector<HardFamily>& hard_families() {
   using fixtures::Random;
   static const std::vector<HardFamily> families{
@@ -138,7 +138,7 @@ struct HardFamily {
          const ControlNormals c{n, s * (n + random_vector(r)), wholly ? Vec3d{} : s * s * random_vector(r)};
          return at_start ? ControlNormals{c.n1, c.m, c.n0} : c;
        }},
-      {"collapse inside, or nearly",  // (t - z)^2 n plus random vectors times 1 to 2^-30
+      {"collapse inside, or nearly",  // (t - z)^2 n, plus random vectors of length 1 to 2^-30
        [](Random& r) {
          const Vec3d n = random_vector(r);
          const double z = r.uniform(0.02, 0.98), gap = random_power(r, 30);
@@ -159,7 +159,7 @@ struct HardFamily {
          const double bend = r.below(2) == 0 ? 0 : std::ldexp(1, -static_cast<int>(24 + r.below(8)));
          return ControlNormals{n0, 0.5 * (n0 + n1) + bend * random_vector(r), n1};
        }},
-      {"around a wide cone",  // halfway, the three vectors cancel except along the axis
+      {"around a wide cone",  // at t = 1/2, the three vectors cancel except along the axis
        [](Random& r) {
          const double height = r.uniform(0.3, 0.6) * random_power(r, 8);
          const auto turned = [axis = r.below(3)](const Vec3d& v) {
@@ -169,8 +169,8 @@ struct HardFamily {
          const auto near = [&r, height](const Vec3d& v) { return v + 0.1 * height * random_vector(r); };
          return ControlNormals{near(c.n0), 0.5 * near(c.m), near(c.n1)};
        }},
-      // The components are M, -M, half an integer times M / 1023 or M / 32767, or close to these, where M is the
-      // largest.
+      // The components are M, -M, a half-integer times M / 1023 or M / 32767, or close to one of these. M is the
+      // largest component.
       {"where integers round",
        [](Random& r) {
          const double largest = r.below(3) == 0 ? r.uniform(0.5, 1) : 1;
@@ -195,7 +195,8 @@ struct HardFamily {
            return Vec3d{x, y, component()};
          };
          ControlNormals c{vector(), vector(), vector()};
-         // All vectors are in one half of space, so most sums are long enough for integers.
+         // The z of all vectors is positive, so they do not cancel, and most sums are long enough to be stored as
+         // integers.
          for (Vec3d* v : {&c.n0, &c.m, &c.n1}) v->z = std::fabs(v->z);
          if (r.below(2) == 0) c.m.z = largest;
          return c;
@@ -204,7 +205,7 @@ struct HardFamily {
   return families;
 }
 
-/// Makes an element of a random family. With any_scale, its magnitude is anywhere in the range of double.
+/// Makes an element of a random family. If any_scale, its magnitude is anywhere in the range of double.
 [[nodiscard]] inline ControlNormals hard_element(fixtures::Random& random, bool any_scale) {
   const auto& families = hard_families();
   const ControlNormals c = families[random.below(families.size())].make(random);

@@ -1,6 +1,6 @@
-/// Makes a moving grid from integers and powers of two alone, so that its coordinates have the same bits for every
-/// compiler and mathematics library. The grid serves tests that compare with a constant, and tests that need large
-/// meshes quickly.
+/// Makes a moving grid from integers and powers of two alone. Its coordinates therefore have the same bits with every
+/// compiler and mathematics library. The grid is for tests that compare results with a constant, and for tests that
+/// need large meshes quickly.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_MESH_H_
 
@@ -16,11 +16,11 @@
 
 namespace chronormal::test {
 
-/// Makes cells x cells squares of two triangles each. Bands of rows rest, move along, turn in their plane, shrink to a
-/// point at an end, or move freely, so that all degrees, formats and flagged elements occur.
+/// Makes a grid of cells x cells squares, each of two triangles. Bands of rows rest, translate, turn in their plane,
+/// shrink to a point, or move freely, so all degrees, all formats and flagged elements occur.
 [[nodiscard]] inline Motion integer_grid(std::size_t cells, std::uint64_t seed = 91) {
   std::mt19937_64 engine(seed);
-  // Returns a signed integer of `bits` bits, divided by 2^12.
+  // Returns a random signed integer of `bits` bits, divided by 2^12.
   const auto noise = [&engine](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(engine() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12F;
   };
@@ -76,7 +76,7 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Returns the same grid with vertices and faces in random order.
+/// Returns the grid of integer_grid(), with its vertices and faces in random order.
 [[nodiscard]] inline Motion shuffled_grid(std::size_t cells, std::uint64_t seed = 91) {
   Motion motion = integer_grid(cells, seed);
   fixtures::Random random(seed);

@@ -1,11 +1,12 @@
 /// Computes normals of moving polygons at one t in integers of any size, fast enough for millions of normals.
 ///
-/// A float is an integer times 2^-149 and a double t is T 2^-e, so the corners at t are (2^e - T) p + T q in units of
-/// 2^(-149 - e), and their cross products are integers as well. All of them are GMP integers; only the final direction
-/// is rounded to double. (exact_normal.h computes the same in rational numbers, a hundred times slower.)
+/// A float is an integer times 2^-149, and a double t is T 2^-e for an integer T. The corners at t are therefore (2^e -
+/// T) p + T q in units of 2^(-149 - e), and their cross products are integers as well. All of these are integers of
+/// GMP, and only the direction of the result is rounded to double. exact_normal.h computes the same normals in rational
+/// numbers, which takes a hundred times as long.
 ///
-/// If n(t) = 0, the result is the direction of n slightly earlier, or at t = 0 slightly later. "Slightly" is 2^-1500 of
-/// the segment, which is far less than any difference between two terms of n.
+/// If n(t) = 0, the result is the direction of n slightly earlier or, at t = 0, slightly later. The time differs by
+/// 2^-1500 of the segment, which is far less than any difference between two terms of n.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 
@@ -26,7 +27,7 @@ namespace chronormal::test {
 
 using IntegerVector = std::array<mpz_class, 3>;
 
-/// An instant t = T 2^-e, where T is any integer.
+/// An instant t = T 2^-e, where T is an integer of any size.
 struct IntegerTime {
   mpz_class t;
   unsigned e = 0;
@@ -34,14 +35,14 @@ struct IntegerTime {
   [[nodiscard]] static IntegerTime of(double t) {
     int exponent = 0;
     const double mantissa = std::ldexp(std::frexp(t, &exponent), 53);
-    const int e = 53 - exponent;  // t <= 1, so e is positive
+    const int e = 53 - exponent;  // t is at most 1, so e is positive
     return {mpz_class(mantissa), t == 0 ? 0 : static_cast<unsigned>(e)};
   }
-  /// Returns an instant that is slightly earlier (sign -1) or later (sign 1).
+  /// Returns an instant that is slightly earlier (if sign is -1) or later (if sign is 1).
   [[nodiscard]] IntegerTime moved(int sign) const { return {(t << 1500) + sign, e + 1500}; }
 };
 
-/// Returns the value in units of 2^-149, which is an integer.
+/// Returns a float in units of 2^-149, which is an integer.
 [[nodiscard]] inline mpz_class integer_of(float value) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(value, &exponent), 24));
@@ -51,7 +52,7 @@ struct IntegerTime {
                     : mpz_class(result >> static_cast<unsigned>(-shift));
 }
 
-/// Returns the direction of v as doubles, not as a unit vector.
+/// Returns the direction of v in doubles. The result does not have length 1.
 [[nodiscard]] inline std::array<double, 3> direction_of(const IntegerVector& v) {
   std::array<double, 3> mantissa{};
   std::array<long, 3> exponent{};
@@ -65,14 +66,14 @@ struct IntegerTime {
   return mantissa;
 }
 
-/// Returns the angle between u and n in radians, with an error of 1e-15; NaN if u is not finite or zero.
+/// Returns the angle between u and n, in radians, with an error of 1e-15. Returns NaN if u is zero or not finite.
 [[nodiscard]] inline double angle_between(const Vec3f& u, const std::array<double, 3>& n) {
   const double x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   if (!(double{u.x} * u.x + double{u.y} * u.y + double{u.z} * u.z > 0.5)) return std::nan("");
   return std::atan2(std::sqrt(x * x + y * y + z * z), u.x * n[0] + u.y * n[1] + u.z * n[2]);
 }
 
-/// The normals of one segment.
+/// Computes the normals of all faces of one segment.
 class IntegerNormals {
  public:
   explicit IntegerNormals(const Segment& segment) : segment_(segment) {
@@ -82,7 +83,7 @@ class IntegerNormals {
     }
   }
 
-  /// Returns n of all faces.
+  /// Returns n(t) of all faces.
   [[nodiscard]] std::vector<IntegerVector> at(const IntegerTime& time) const {
     std::vector<IntegerVector> corners(from_.size()), normals(segment_.topology->face_count());
     const mpz_class s = (mpz_class(1) << time.e) - time.t;
@@ -115,7 +116,7 @@ class IntegerNormals {
 
 [[nodiscard]] inline bool is_zero(const IntegerVector& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Returns the sum of the normals of some faces.
+/// Returns the sum of the normals of these faces.
 [[nodiscard]] inline IntegerVector sum_of(const std::vector<IntegerVector>& normals,
                                           std::span<const std::uint32_t> faces) {
   IntegerVector sum;

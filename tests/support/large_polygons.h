@@ -1,5 +1,5 @@
-/// Makes random motions of meshes of one or two polygons with many corners. Every vertex belongs to one of the large
-/// polygons.
+/// Makes random motions of meshes with one or two polygons that have many corners. Every vertex belongs to one of these
+/// large polygons.
 #ifndef CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_LARGE_POLYGONS_H_
 
@@ -18,13 +18,13 @@ namespace chronormal::test {
 
 enum class LargePolygons {
   kAlone,  ///< a single polygon
-  /// Two polygons back to back: the vertex normals cancel almost completely, and only exact arithmetic finds their
-  /// directions.
+  /// Two polygons back to back. The normals of their vertices cancel almost completely, so only exact arithmetic finds
+  /// the directions.
   kPillow,
   kPrism,  ///< two polygons, joined by a band of quadrilaterals
 };
 
-/// Makes one or two wavy polygons with a few keyframes.
+/// Makes a motion of one or two wavy polygons with this number of keyframes.
 [[nodiscard]] inline Motion large_polygons(LargePolygons kind, std::uint32_t corners, fixtures::Random& random,
                                            int keyframes = 2) {
   const double height = kind == LargePolygons::kPrism ? std::ldexp(random.uniform(1, 2), -40) : 0;
@@ -38,7 +38,7 @@ enum class LargePolygons {
   add_face(rim.begin(), rim.end());
   std::uint32_t vertices = corners;
   if (kind == LargePolygons::kPillow) {
-    rim.push_back(vertices++);  // without this corner the two polygons would cancel exactly
+    rim.push_back(vertices++);  // without this corner, the normals of the two polygons would cancel exactly
     add_face(rim.rbegin(), rim.rend());
   } else if (kind == LargePolygons::kPrism) {
     vertices = 2 * corners;

@@ -1,4 +1,5 @@
-/// Vectors of long double and their angles, for the oracles of files. This file shares no code with the product.
+/// Functions for vectors of long double and the angles between them. Oracles use these functions, which share no code
+/// with chronormal.
 #ifndef TESTS_SUPPORT_LONG_VECTORS_H_
 #define TESTS_SUPPORT_LONG_VECTORS_H_
 

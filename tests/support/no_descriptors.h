@@ -1,4 +1,4 @@
-/// Makes a process unable to open files, to cause errors of the system that no file can cause.
+/// Makes a process unable to open files, to cause errors of the operating system that no file can cause.
 #ifndef CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
 #define CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
 
@@ -6,7 +6,7 @@
 
 namespace chronormal::test {
 
-/// An object during whose lifetime this process can open neither files nor folders.
+/// As long as such an object lives, this process can open no files and folders.
 class NoDescriptors {
  public:
   NoDescriptors() {

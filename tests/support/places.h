@@ -1,5 +1,5 @@
 /// The paths that tests need: the program, the sources and the build folder. Only places.cpp is compiled with these
-/// paths, so that all other test objects are the same in every build.
+/// paths, so all other object files of the tests are the same in every build.
 #ifndef TESTS_SUPPORT_PLACES_H_
 #define TESTS_SUPPORT_PLACES_H_
 

@@ -1,4 +1,4 @@
-/// Makes PLY files byte by byte, without the writer of the product.
+/// Makes PLY files byte by byte, without chronormal's writer.
 #ifndef CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_PLY_BYTES_H_
 
@@ -30,7 +30,8 @@ class ByteWriter {
   bool big_endian_;
 };
 
-/// Returns a header for V vertices and F faces with the most common properties.
+/// Returns a PLY header with the most common properties. `vertices` and `faces` are the numbers of vertices and faces,
+/// as text.
 [[nodiscard]] inline std::string ply_header(const std::string& encoding, const std::string& vertices,
                                             const std::string& faces) {
   return "ply\nformat " + encoding + " 1.0\nelement vertex " + vertices +
@@ -38,7 +39,7 @@ class ByteWriter {
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-/// Makes three vertices and one triangle.
+/// Makes a PLY file with three vertices and one triangle.
 [[nodiscard]] inline std::string small_binary_ply(bool big_endian) {
   ByteWriter writer(ply_header(big_endian ? "binary_big_endian" : "binary_little_endian", "3", "1"), big_endian);
   for (const float value : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.5F}) writer.add(value);
@@ -47,8 +48,8 @@ class ByteWriter {
   return writer.bytes();
 }
 
-/// Makes a file with everything that a PLY file can contain: other elements before, between and after, lists, and every
-/// scalar type. The faces, a quad and a triangle, come before the vertices.
+/// Makes a PLY file with everything that the format allows: other elements before, between and after the known ones,
+/// lists, and every scalar type. The faces, a quad and a triangle, precede the vertices.
 [[nodiscard]] inline std::string mixed_binary_ply(bool big_endian) {
   ByteWriter writer(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                         " 1.0\r\ncomment a b c\r\nobj_info d\r\n"

@@ -21,11 +21,11 @@ std::string contents(const std::filesystem::path& path) {
 }  // namespace
 
 ProcessResult run_shell(const std::string& command, const std::string& folder, const std::string& input) {
-  // Streams are redirected to files, since a pipe could fill up.
+  // Streams are redirected to files, since a process could wait forever if a pipe is full.
   char name[] = "/tmp/chronormal_process_XXXXXX";
   const std::filesystem::path scratch = mkdtemp(name);
   std::ofstream(scratch / "in", std::ios::binary) << input;
-  // Unsets variables of a person's terminal, which must not change the results of a test.
+  // Unsets variables of a user's terminal, which must not change the results of tests.
   const std::string line = "unset COLUMNS NO_COLOR CLICOLOR_FORCE; cd '" + folder + "' && ( " + command + " ) <'" +
                            (scratch / "in").string() + "' >'" + (scratch / "out").string() + "' 2>'" +
                            (scratch / "err").string() + "'";

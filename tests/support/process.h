@@ -1,4 +1,4 @@
-/// Runs a program through a shell, and returns its output.
+/// Runs a program in a shell, and returns its output and its exit code.
 #ifndef TESTS_SUPPORT_PROCESS_H_
 #define TESTS_SUPPORT_PROCESS_H_
 

@@ -1,4 +1,4 @@
-/// Changes bytes at random, to test readers that must withstand any input.
+/// Changes bytes at random, to test that readers withstand any input.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_EDITS_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_EDITS_H_
 
@@ -8,8 +8,8 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes after one to six edits: a byte is changed or inserted, or some bytes are erased or copied from
-/// elsewhere.
+/// Makes one to six random edits. Each edit changes a byte, inserts a byte, erases some bytes, or copies some bytes
+/// from elsewhere.
 [[nodiscard]] inline std::string with_random_edits(std::string bytes, std::mt19937& random) {
   for (std::size_t edits = 1 + random() % 6; edits > 0 && !bytes.empty(); --edits) {
     const std::size_t at = random() % bytes.size();

@@ -1,4 +1,4 @@
-/// Makes random meshes for round trips through files.
+/// Makes random meshes, which tests write to files and read back.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_MESH_H_
 
@@ -15,8 +15,8 @@
 
 namespace chronormal::test {
 
-/// Makes a mesh of 1 to 20 vertices, with coordinates of any finite bit pattern, and 1 to 20 faces of 3 to 6 corners
-/// (only triangles in one mesh of four).
+/// Makes a mesh of 1 to 20 vertices and 1 to 20 faces with 3 to 6 corners. Coordinates have any bits that are a finite
+/// float. One mesh in four has only triangles.
 [[nodiscard]] inline MeshFrame random_mesh() {
   const auto vertex_count = *rc::gen::inRange<std::size_t>(1, 21);
   const auto any_bits = rc::gen::resize(rc::kNominalSize, rc::gen::arbitrary<std::uint32_t>());
@@ -38,7 +38,7 @@ namespace chronormal::test {
   return frame;
 }
 
-/// Tells whether two lists of coordinates have the same bits (-0 and 0 differ).
+/// Tells whether two lists of coordinates have the same bits. The bits of -0 and 0 differ.
 [[nodiscard]] inline bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {

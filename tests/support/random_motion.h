@@ -1,4 +1,4 @@
-/// Makes random motions for round trips through files.
+/// Makes random motions, which tests write to files and read back.
 #ifndef CHRONORMAL_TESTS_SUPPORT_RANDOM_MOTION_H_
 #define CHRONORMAL_TESTS_SUPPORT_RANDOM_MOTION_H_
 
@@ -15,8 +15,8 @@
 
 namespace chronormal::test {
 
-/// Makes 2 to 5 keyframes with coordinates of any finite bit pattern and float32 times, over faces with equally many
-/// corners.
+/// Makes a motion with 2 to 5 keyframes whose times are float32. Coordinates have any bits that are a finite float. All
+/// faces have the same number of corners.
 [[nodiscard]] inline Motion random_motion(bool equal_steps) {
   const MeshFrame mesh = random_mesh();
   const auto corners = *rc::gen::inRange<std::size_t>(3, 6);

@@ -1,4 +1,4 @@
-/// Reads whole motions for tests, from names or from options.
+/// Reads whole motions for tests, given names of files or options.
 #ifndef TESTS_SUPPORT_READ_INPUT_H_
 #define TESTS_SUPPORT_READ_INPUT_H_
 
@@ -10,7 +10,7 @@
 
 namespace chronormal::test {
 
-/// Returns the motion of an input.
+/// Opens an input and returns its motion, with all keyframes in memory.
 [[nodiscard]] inline Result<Motion> read_motion(const InputOptions& options) {
   Result<Input> input = open_input(options);
   if (!input) return input.error();
@@ -26,7 +26,7 @@ namespace chronormal::test {
   return options;
 }
 
-/// Returns options for a base and its targets.
+/// Returns the options that open a base and its targets.
 [[nodiscard]] inline InputOptions targets_over(std::string base, std::vector<std::string> names) {
   InputOptions options = files(std::move(names));
   options.base = std::move(base);

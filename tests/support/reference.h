@@ -1,19 +1,20 @@
 /// An oracle for every scheme: the textbook definition in long double, computed independently.
 ///
-/// This file includes no chronormal header and shares no line with src/: a mistake in the product would have to be
-/// repeated here to stay hidden. If there are several methods, the more direct and slower one is taken:
+/// This file includes no chronormal header and shares no line with src/, so a mistake in the product stays hidden only
+/// if this file repeats it. If there are several methods, the file uses the more direct and slower one:
 ///
 ///     exact        eq. 1 on the interpolated vertices, never a polynomial
 ///     lagrange     Neville's recursion, never weights
 ///     slerp        the paper's eq. 5; de Casteljau as its literal recursion
 ///     quaternion   frames as matrices -> quaternions -> slerp in four dimensions -> matrix -> third column
 ///     circle       plane, circumcentre, radius and in-plane angles of three points, never an axis formula
-///     optimal      a dense search over the circles of eq. 6; only its error is known, not its path
-///     scaled       a dense search over the scale; again, only its error is known
+///     optimal      a dense search over the circles of eq. 6; gives only the error, not the path
+///     scaled       a dense search over the scale; gives only the error, too
 ///
-/// A triangle is given by six points; t runs over [0, 1]. Functions return std::nullopt where a scheme is not defined
-/// (antipodal ends of a slerp, two coinciding points of a circle, a node without a normal, a quaternion arc of exactly
-/// half a turn) or so close to such a case that rounding decides the answer; tests leave these samples out.
+/// A triangle is given by six points, and t is in [0, 1]. Functions return std::nullopt if a scheme is not defined, or
+/// if t is so close to such a case that rounding decides the answer. A scheme is not defined for antipodal ends of a
+/// slerp, two coinciding points of a circle, a node without a normal, or a quaternion arc of exactly half a turn. Tests
+/// skip these samples.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 
@@ -43,22 +44,22 @@ using VectorD = Vec<double>;  ///< for the dense searches, which compute million
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// The distance from antipodal, in radians, within which rounding decides the great circle between two ends.
+/// If two ends are within this distance in radians of being antipodal, rounding decides the great circle between them.
 inline constexpr Real kNearAntipodal = 1e-6L;
-/// The distance in radians below which two points count as one when a circle is put through them.
+/// Two points that are closer than this distance, in radians, count as one when a circle is put through them.
 inline constexpr Real kNearCoincident = 1e-6L;
-/// The angle in radians below which slerp equals a normalised lerp far beyond the precision of float32.
+/// Below this angle in radians, slerp equals a normalised linear interpolation, far beyond the precision of float32.
 inline constexpr Real kTinyAngle = 1e-9L;
-/// If |q0 . q1| is below this, rounding decides which arc is the shorter one.
+/// If |q0 . q1| is below this limit, rounding decides which arc between the quaternions is shorter.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// The face and the segment of a triangle, which determine the angle of `quaternion:random`.
+/// The indices of a face and of a segment, which determine the angle of `quaternion:random`.
 struct Place {
   std::uint64_t element = 0;
   std::uint64_t segment = 0;
 };
 
-/// The corners a, b, c at t = 0 and at t = 1.
+/// A triangle: its corners a, b, c at t = 0 and at t = 1.
 struct Triangle {
   std::array<Vector, 3> from;
   std::array<Vector, 3> to;
@@ -107,7 +108,7 @@ template <class S>
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Returns the angle in radians, by atan2. The vectors need not be unit vectors.
+/// Returns the angle between a and b in radians, by atan2. The vectors need not have length 1.
 template <class S>
 [[nodiscard]] S angle(const Vec<S>& a, const Vec<S>& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
@@ -121,7 +122,7 @@ template <class S>
 
 // ---- exact normals -------------------------------------------------------------------------------------------------
 
-/// Evaluates eq. 1 of the paper on the corners at t.
+/// Returns n(t) by eq. 1 of the paper, from the corners at t.
 [[nodiscard]] inline Vector exact_normal(const Triangle& triangle, Real t) {
   std::array<Vector, 3> corner{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -130,7 +131,7 @@ template <class S>
   return cross(subtract(corner[1], corner[0]), subtract(corner[2], corner[0]));
 }
 
-/// Returns the exact unit normal, or nothing if it is zero or below the rounding error of long double.
+/// Returns the exact unit normal, or nothing if the normal is zero or below the rounding error of long double.
 [[nodiscard]] inline std::optional<Vector> exact_unit_normal(const Triangle& triangle, Real t) {
   const Vector normal = exact_normal(triangle, t);
   Real edge = 0;
@@ -145,19 +146,19 @@ template <class S>
 
 // ---- slerp, Lagrange, de Casteljau ---------------------------------------------------------------------------------
 
-/// Interpolates unit vectors spherically in any dimension, by eq. 5 of the paper.
+/// Interpolates spherically between two unit vectors of any dimension, by eq. 5 of the paper.
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<Real, N>> slerp(const std::array<Real, N>& from, const std::array<Real, N>& to,
                                                        Real t) {
-  // Half the angle follows from chord and diagonal, which is accurate for small and large angles, and needs no cross
-  // product, which does not exist in four dimensions.
+  // Computes half the angle from the lengths of the difference and of the sum. This is accurate for small and large
+  // angles, and needs no cross product, which does not exist in four dimensions.
   const Real theta = 2 * std::atan2(length(subtract(to, from)), length(add(to, from)));
   if (theta > kPi - kNearAntipodal) return std::nullopt;
   if (theta < kTinyAngle) return normalised(add(scaled(1 - t, from), scaled(t, to)));
   return scaled(1 / std::sin(theta), add(scaled(std::sin((1 - t) * theta), from), scaled(std::sin(t * theta), to)));
 }
 
-/// Returns exact unit normals at `count` equidistant times from 0 to 1. Moving is a Triangle, or another type that
+/// Returns exact unit normals at `count` equidistant times from 0 to 1. `Moving` is Triangle, or another type that
 /// exact_unit_normal() accepts.
 template <class Moving>
 [[nodiscard]] std::optional<std::vector<Vector>> exact_nodes(const Moving& triangle, std::size_t count) {
@@ -170,8 +171,8 @@ template <class Moving>
   return nodes;
 }
 
-/// Interpolates exact unit normals by Lagrange's polynomial of degree `degree`, with Neville's recursion, and
-/// normalises.
+/// Interpolates exact unit normals by Lagrange's polynomial of degree `degree`, by Neville's recursion, and normalises
+/// the result.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> lagrange(const Moving& triangle, std::size_t degree, Real t) {
   auto nodes = exact_nodes(triangle, degree + 1);
@@ -183,11 +184,11 @@ template <class Moving>
       (*nodes)[i] = add(scaled(left, (*nodes)[i]), scaled(1 - left, (*nodes)[i + 1]));
     }
   }
-  if (length(nodes->front()) < 1e-7L) return std::nullopt;  // float32 cannot distinguish it from zero
+  if (length(nodes->front()) < 1e-7L) return std::nullopt;  // float32 cannot distinguish such a short vector from zero
   return normalised(nodes->front());
 }
 
-/// Spherical de Casteljau: slerps neighbours until one vector is left.
+/// Evaluates de Casteljau's algorithm on the sphere: replaces neighbours by their slerp until one vector is left.
 [[nodiscard]] inline std::optional<Vector> spherical_de_casteljau(const std::vector<Vector>& polygon, Real t) {
   if (polygon.size() == 1) return polygon.front();
   std::vector<Vector> shorter;
@@ -206,7 +207,7 @@ using Matrix = std::array<std::array<Real, N>, N>;  ///< rows
 
 using Quaternion = std::array<Real, 4>;  ///< w, x, y, z
 
-/// A rotation matrix with the columns tangent, binormal, normal.
+/// A frame: the columns tangent, binormal and normal of a rotation matrix.
 struct Frame {
   Vector tangent, binormal, normal;
 };
@@ -238,7 +239,7 @@ template <std::size_t N>
   return result;
 }
 
-/// Inverts a matrix by Gauss-Jordan elimination with row pivoting.
+/// Returns the inverse of a matrix by Gauss-Jordan elimination with row pivoting, or nothing if the matrix is singular.
 template <std::size_t N>
 [[nodiscard]] std::optional<Matrix<N>> inverse(Matrix<N> a) {
   Matrix<N> result{};
@@ -268,15 +269,16 @@ template <std::size_t N>
   return transposed(Matrix<3>{frame.tangent, frame.binormal, frame.normal});
 }
 
-/// Converts a rotation matrix to a unit quaternion, starting from the largest component.
+/// Converts a rotation matrix to a unit quaternion. Computes the component with the largest absolute value first, and
+/// the others from it.
 [[nodiscard]] inline Quaternion to_quaternion(const Matrix<3>& r) {
   const Real trace = r[0][0] + r[1][1] + r[2][2];
   std::array<Real, 4> four_squares{1 + trace, 1 + 2 * r[0][0] - trace, 1 + 2 * r[1][1] - trace,
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // Computes four times the products of two components. The antisymmetric part of the matrix gives w x, w y and w z;
-  // the symmetric part gives the others.
+  // Four times the products of two components of the quaternion. The antisymmetric part of the matrix gives w x, w y
+  // and w z, and the symmetric part gives the others.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};
@@ -295,7 +297,8 @@ template <std::size_t N>
            {2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)}}};
 }
 
-/// Interpolates by a quaternion slerp on the shorter arc; the normal is the third column of the resulting matrix.
+/// Interpolates two frames by a quaternion slerp on the shorter arc. Returns the normal, which is the third column of
+/// the resulting matrix.
 [[nodiscard]] inline std::optional<Vector> quaternion_slerp(const Frame& from, const Frame& to, Real t) {
   const Quaternion q0 = to_quaternion(to_matrix(from));
   Quaternion q1 = to_quaternion(to_matrix(to));
@@ -316,7 +319,7 @@ template <std::size_t N>
   return Frame{tangent, cross(normal, tangent), normal};
 }
 
-/// Returns M of eqs. 7 and 8, which maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t = 1.
+/// Returns the matrix M of eqs. 7 and 8. It maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t = 1.
 [[nodiscard]] inline std::optional<Matrix<4>> triangle_map(const Triangle& triangle, const Vector& normal0,
                                                            const Vector& normal1) {
   const auto homogeneous = [](const std::array<Vector, 3>& corners, const Vector& normal) {
@@ -333,7 +336,7 @@ template <std::size_t N>
   return multiply(homogeneous(triangle.to, normal1), *back);
 }
 
-/// Returns the rotation factor of the polar decomposition by Newton's iteration R <- (R + R^-T) / 2.
+/// Returns the rotation in the polar decomposition of a matrix, by Newton's iteration R <- (R + R^-T) / 2.
 [[nodiscard]] inline std::optional<Matrix<3>> polar_rotation(Matrix<3> r) {
   for (int i = 0; i < 100; ++i) {
     const auto back = inverse(r);
@@ -350,7 +353,7 @@ template <std::size_t N>
   return std::nullopt;
 }
 
-/// Returns the angle by which `quaternion:random:SEED` rotates the second frame about its normal.
+/// Returns the angle in radians by which `quaternion:random:SEED` rotates the second frame about its normal.
 [[nodiscard]] inline Real random_turn(std::uint64_t seed, const Place& place) {
   std::uint64_t z = seed + 0x9E3779B97F4A7C15U * (1 + place.element + 0x100000000U * place.segment);
   z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
@@ -359,7 +362,7 @@ template <std::size_t N>
   return 2 * kPi * (static_cast<Real>(z) / 0x1p64L);
 }
 
-/// Returns the frames at both ends for one frame choice: "matrix", "edge", "polar" or "random".
+/// Returns the frames at both ends by one rule: "matrix", "edge", "polar" or "random".
 [[nodiscard]] inline std::optional<std::pair<Frame, Frame>> frames(std::string_view choice, const Triangle& triangle,
                                                                    std::uint64_t seed, const Place& place) {
   const auto normal0 = exact_unit_normal(triangle, 0);
@@ -384,7 +387,7 @@ template <std::size_t N>
     Frame mapped{};
     mapped.normal = *normal1;
     mapped.binormal = normalised(Vector{image[0], image[1], image[2]});
-    // The paper prints n1 x b1, which would make a frame with the determinant -1. The correct tangent is binormal x
+    // The paper prints n1 x b1, which would give a frame with the determinant -1. The correct tangent is binormal x
     // normal.
     mapped.tangent = cross(mapped.binormal, mapped.normal);
     return std::pair{*frame0, mapped};
@@ -401,7 +404,7 @@ template <std::size_t N>
 
 // ---- circles -------------------------------------------------------------------------------------------------------
 
-/// The circle through three points, traversed from the first through the second to the third.
+/// The circle through three points, which runs from the first point through the second to the third.
 struct Circle {
   Vector centre, x, y;  ///< unit vectors: x points to the first point, and the traversal starts along y
   Real radius = 0;
@@ -427,7 +430,7 @@ struct Circle {
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // Either of the two normals of the plane may be taken, since the angles below decide the direction of traversal.
+  // Either of the two normals of the plane will do, since the angles below decide the direction of the circle.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
   const auto turn = [&circle](const Vector& point) {
@@ -437,7 +440,7 @@ struct Circle {
   };
   circle.middle = turn(second);
   circle.end = turn(third);
-  if (circle.middle > circle.end) {  // the end would come first, so the direction is reversed
+  if (circle.middle > circle.end) {  // the end comes before the middle, so the direction is reversed
     circle.y = scaled(Real(-1), circle.y);
     circle.middle = 2 * kPi - circle.middle;
     circle.end = 2 * kPi - circle.end;
@@ -445,14 +448,14 @@ struct Circle {
   return circle;
 }
 
-/// Evaluates `circle` and `circle:timed`.
+/// Returns the normal at t by the scheme `circle` or, if `timed`, `circle:timed`.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> circle_normal(const Moving& triangle, bool timed, Real t) {
   const auto u0 = exact_unit_normal(triangle, 0);
   const auto uh = exact_unit_normal(triangle, Real(0.5L));
   const auto u1 = exact_unit_normal(triangle, 1);
   if (!u0 || !uh || !u1) return std::nullopt;
-  if (length(add(*u0, *uh)) < kNearCoincident) return std::nullopt;  // a documented fallback of the scheme
+  if (length(add(*u0, *uh)) < kNearCoincident) return std::nullopt;  // here the scheme uses a documented fallback
   const auto circle = circle_through(*u0, *uh, *u1);
   if (!circle) return std::nullopt;
   Real share = t;
@@ -465,13 +468,13 @@ template <class Moving>
 
 // ---- every scheme by its name --------------------------------------------------------------------------------------
 
-/// The parts of a scheme's name: "quaternion:random:7" is kind "quaternion:random" with number 7.
+/// The parts of the name of a scheme: "quaternion:random:7" has the kind "quaternion:random" and the number 7.
 struct SchemeName {
   std::string_view kind;
   std::uint64_t number = 0;
 };
 
-/// Splits a name, or returns nothing if this oracle does not know it.
+/// Splits the name of a scheme into its parts. Returns nothing if this oracle does not know the scheme.
 [[nodiscard]] inline std::optional<SchemeName> parse_scheme(std::string_view name) {
   static constexpr std::array<std::string_view, 14> kPlain{
       "recompute",     "polynomial",        "rational",        "linear",           "quadratic", "cubic",
@@ -497,12 +500,12 @@ struct SchemeName {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }
 
-/// Returns the unit normal that the scheme must give at t, or nothing where the scheme is not defined or `name` is
+/// Returns the unit normal that a scheme must give at t, or nothing if the scheme is not defined there or `name` is
 /// unknown.
 ///
-/// For schemes that search for a number, `observed_middle` is the result of the tested scheme at t = 1/2. It determines
-/// this number, and thereby the result at every other t. Without `observed_middle`, this function returns nothing for
-/// such schemes. optimal_circle_error() and scaled_linear_error() judge the search itself.
+/// Some schemes search for a number. For these, `observed_middle` is the result of the tested scheme at t = 1/2. It
+/// determines the number, and thereby the result at every other t. Without `observed_middle`, the function returns
+/// nothing for such schemes. optimal_circle_error() and scaled_linear_error() test the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -530,8 +533,8 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The observed middle is parallel to u0 + s u1. s is the ratio of the areas that the middle spans with the two
-      // ends.
+      // The observed middle is parallel to u0 + s u1. The number s is the ratio of two areas: the middle spans one with
+      // u0, and the other with u1.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -551,7 +554,7 @@ template <class Moving>
 
 // ---- errors and dense searches -------------------------------------------------------------------------------------
 
-/// Exact unit normals at equidistant t = i / (count - 1), in double; nothing if the normal is zero.
+/// Exact unit normals in double at the equidistant times i / (count - 1). An entry is empty if the normal is zero.
 struct ExactSamples {
   std::vector<std::optional<VectorD>> unit;
 
@@ -567,8 +570,8 @@ struct ExactSamples {
   }
 };
 
-/// Returns the average angle in radians between exact samples and a curve, which is a function of t that returns a
-/// VectorD, not necessarily a unit vector. Uses every `stride`-th sample.
+/// Returns the average angle, in radians, between exact samples and a curve. The curve is a function of t that returns
+/// a VectorD, whose length need not be 1. Uses every `stride`-th sample.
 template <class Curve>
 [[nodiscard]] double mean_error(const ExactSamples& exact, Curve&& curve, std::size_t stride = 1) {
   double sum = 0;
@@ -581,7 +584,7 @@ template <class Curve>
   return counted == 0 ? 0 : sum / static_cast<double>(counted);
 }
 
-/// Returns the smallest value of f that a golden-section search in [low, high] finds.
+/// Returns the smallest value of f that a golden-section search between low and high finds.
 template <class F>
 [[nodiscard]] double golden_section_minimum(F&& f, double low, double high, int steps) {
   const double golden = (std::sqrt(5.0) - 1) / 2;
@@ -601,8 +604,8 @@ template <class F>
   return best;
 }
 
-/// Returns the global minimum of f over [grid.front(), grid.back()]: evaluates `coarse` at all grid points, then
-/// refines the best few local minima with `fine`. The grid must ascend.
+/// Returns the global minimum of f between the first and the last point of a grid, whose points must ascend. Evaluates
+/// `coarse` at all points of the grid, and then refines the best few local minima with `fine`.
 template <class Coarse, class Fine>
 [[nodiscard]] double dense_minimum(const std::vector<double>& grid, Coarse&& coarse, Fine&& fine) {
   std::vector<double> values;
@@ -623,7 +626,8 @@ template <class Coarse, class Fine>
   return best;
 }
 
-/// Returns the error of one circle of eq. 6 through u0 and u1, chosen by the angle phi of its axis.
+/// Returns the average error, in radians, of one circle of eq. 6 through u0 and u1. The angle phi of its axis selects
+/// the circle.
 [[nodiscard]] inline double circle_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double phi, std::size_t stride = 1) {
   const VectorD axis =
@@ -636,12 +640,13 @@ template <class Coarse, class Fine>
       exact, [&](double t) { return add(w, add(scaled(std::cos(t * arc), p), scaled(std::sin(t * arc), q))); }, stride);
 }
 
-/// Returns the smallest average error, in radians over `exact`, that a dense search over all pairs of frames finds.
-/// Each pair gives a circle of eq. 6, run through at constant speed on its shorter arc (|phi| <= pi/2). Returns nothing
-/// if the ends coincide or are antipodal.
+/// Returns the smallest average error over the samples, in radians, that a dense search over all pairs of frames finds.
+/// Each pair of frames gives a circle of eq. 6, which runs at constant speed on its shorter arc (|phi| <= pi/2).
+/// Returns nothing if the ends coincide or are antipodal.
 ///
-/// `density` points are spread evenly over phi, and as many over the direction in which the circle leaves u0. The
-/// latter are needed if u0 and u1 are close: all circles that differ visibly then have phi near +-pi/2.
+/// The search tries `density` values that are equidistant in phi, and as many that are equidistant in the direction in
+/// which the circle leaves u0. The latter are needed if u0 and u1 are close, since circles then differ visibly only if
+/// phi is near +-pi/2.
 [[nodiscard]] inline std::optional<double> optimal_circle_error(const Triangle& triangle, const ExactSamples& exact,
                                                                 std::size_t density = 100,
                                                                 std::size_t coarse_stride = 5) {
@@ -656,7 +661,7 @@ template <class Coarse, class Fine>
   for (std::size_t i = 0; i <= density; ++i) {
     const double even = quarter * (2 * static_cast<double>(i) / static_cast<double>(density) - 1);
     grid.push_back(even);
-    // The circle leaves u0 at the angle atan(-tan(phi) sin(T/2)) to the great circle.
+    // The angle between the circle and the great circle at u0 is atan(-tan(phi) sin(T/2)).
     grid.push_back(std::atan2(std::sin(even), std::cos(even) * half_sine));
   }
   std::sort(grid.begin(), grid.end());
@@ -665,14 +670,14 @@ template <class Coarse, class Fine>
       [&](double phi) { return circle_family_error(exact, u0, u1, phi); });
 }
 
-/// Returns the average error of u0 + t (s u1 - u0).
+/// Returns the average error, in radians, of the straight line u0 + t (s u1 - u0).
 [[nodiscard]] inline double scaled_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double s, std::size_t stride = 1) {
   return mean_error(
       exact, [&](double t) { return add(scaled(1 - t, u0), scaled(t * s, u1)); }, stride);
 }
 
-/// Returns the smallest average error of u0 + t (s u1 - u0) over all s > 0, in radians.
+/// Returns the smallest average error, in radians, of the straight line u0 + t (s u1 - u0) over all s > 0.
 [[nodiscard]] inline std::optional<double> scaled_linear_error(const Triangle& triangle, const ExactSamples& exact,
                                                                std::size_t density = 320,
                                                                std::size_t coarse_stride = 2) {

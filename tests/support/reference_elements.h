@@ -1,8 +1,9 @@
 /// An independent oracle for the normals of vertices and corners, in long double.
 ///
 /// Like reference.h, this file includes no chronormal header and shares no line with src/. If there are several
-/// methods, the slow one is taken. Vector areas come from the vertices at t about their centre, not from a fan or a
-/// polynomial. Groups of corners come from a flood fill over all pairs, not from sorting.
+/// methods, it uses a slow one. Vector areas are computed from the vertices at t relative to their centre, not by a fan
+/// of triangles or by a polynomial. Groups of corners are found by a flood fill over all pairs of corners, not by
+/// sorting.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 
@@ -17,13 +18,13 @@
 
 namespace chronormal::reference {
 
-/// Polygons whose vertices move on straight lines.
+/// A mesh of polygons whose vertices move on straight lines.
 struct Mesh {
   std::vector<std::vector<std::size_t>> faces;  ///< vertices of each face
   std::vector<Vector> from, to;                 ///< positions of each vertex
 };
 
-/// The corner `place` of face `face`.
+/// A corner of a face: `place` is its index in the face.
 struct Corner {
   std::size_t face = 0, place = 0;
 };
@@ -45,7 +46,7 @@ struct Corner {
   return add(scaled(1 - t, mesh.from[vertex]), scaled(t, mesh.to[vertex]));
 }
 
-/// Returns twice the vector area of a polygon at t, or zero if the area is only rounding error.
+/// Returns twice the vector area of a polygon at t, or zero if it is only rounding error.
 [[nodiscard]] inline Vector vector_area(const Mesh& mesh, std::size_t face, Real t) {
   const auto& vertices = mesh.faces[face];
   std::vector<Vector> points;
@@ -64,7 +65,7 @@ struct Corner {
   return length(sum) > 1e-15L * size ? sum : Vector{};
 }
 
-/// Returns the contribution of one corner to the normal of its element. `weighting` is a name as on the command line.
+/// Returns what one corner adds to the normal of its element. `weighting` is a name that the command line accepts.
 [[nodiscard]] inline Vector contribution(const Mesh& mesh, const Corner& corner, const std::string& weighting, Real t) {
   const Vector area = vector_area(mesh, corner.face, t);
   const Vector here = position(mesh, vertex_of(mesh, corner), t);
@@ -82,7 +83,7 @@ struct Corner {
     if (!(edges > 0)) return {};
     return scaled(std::pow(edges, weighting == "inverse-edges" ? Real(-1) : Real(-0.5L)), normalised(area));
   }
-  // The angle comes from Kahan's half-angle formula instead of a cross product.
+  // Computes the angle by Kahan's formula for half the angle, without a cross product.
   Real corner_angle = 0;
   if (length(next) > 0 && length(previous) > 0) {
     const Vector a = normalised(next), b = normalised(previous);
@@ -91,7 +92,7 @@ struct Corner {
   return scaled(corner_angle, weighting == "angle" ? normalised(area) : area);
 }
 
-/// Returns the normal at t that some corners share.
+/// Returns the normal at t of an element with these corners.
 [[nodiscard]] inline Vector element_normal(const Mesh& mesh, const std::vector<Corner>& corners,
                                            const std::string& weighting, Real t) {
   Vector sum{};
@@ -99,7 +100,7 @@ struct Corner {
   return sum;
 }
 
-/// The corners that share a normal, for the schemes of reference.h.
+/// The corners of an element, as a type for the schemes of reference.h.
 struct MovingElement {
   const Mesh& mesh;
   const std::vector<Corner>& corners;
@@ -112,8 +113,8 @@ struct MovingElement {
   return normalised(normal);
 }
 
-/// Returns the equivalence classes on 0 ... count - 1 of the smallest equivalence relation that contains `related`.
-/// Classes are numbered in the order of their first members.
+/// Returns the class of each number from 0 to count - 1, where all numbers that are `related`, directly or through
+/// others, are in one class. Classes are numbered in the order of their first members.
 [[nodiscard]] inline std::vector<std::size_t> flood(std::size_t count,
                                                     const std::function<bool(std::size_t, std::size_t)>& related) {
   std::vector<std::size_t> class_of(count, count);
@@ -137,12 +138,13 @@ struct MovingElement {
   return class_of;
 }
 
-/// Returns the classes of corners that share a normal at a crease angle in degrees. `point` has the point of each
-/// vertex. Faces must have normals at t = 0, and no angle may be within rounding of the crease angle.
+/// Returns the class of each corner. Corners of one class share a normal at this crease angle, in degrees. `point` is
+/// the point of each vertex. All faces must have normals at t = 0, and no angle may be so close to the crease angle
+/// that rounding decides.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);
-  const Real crease = degrees * kPi / 180 + 1e-6L;  // the tolerance that the contract allows for rounding of positions
+  const Real crease = degrees * kPi / 180 + 1e-6L;  // with the documented tolerance for rounding of positions
   const auto neighbours = [&](const Corner& c) {
     return std::pair{point[vertex_of(mesh, c, 1)], point[vertex_of(mesh, c, mesh.faces[c.face].size() - 1)]};
   };

@@ -1,5 +1,5 @@
-/// Reads a report like a page. Splits the container into its parts, and computes the error that a page shows for a
-/// vertex of a sample, in double and from the container alone. Nothing here includes code of src/.
+/// Reads a report as a page does. Splits the container into its parts, and computes the error that a page shows for a
+/// vertex at a sample, in double and from the container alone. This file includes no code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 
@@ -50,7 +50,7 @@ class ReportFile {
 
   [[nodiscard]] const Json& part(std::size_t p) const { return json["parts"][p]; }
 
-  /// Returns the angle in degrees between the rendered and the true normal at a place of json["worst"].
+  /// Returns the angle, in degrees, between the rendered and the true normal at an entry of json["worst"].
   [[nodiscard]] double degrees_at(const Json& place) const {
     const Json& of = part(place["part"]);
     const Json& motion = of["motions"][place["motion"].get<std::size_t>()];
@@ -58,7 +58,7 @@ class ReportFile {
                                 : keyframe_degrees(of, motion, place["sample"], place["vertex"]);
   }
 
-  /// Returns the number by which a page calls a vertex: its label if the part has labels, or else its index in its
+  /// Returns the number by which a page names a vertex: its label if the part has labels, otherwise its index in its
   /// primitive.
   [[nodiscard]] std::size_t label(const Json& of, std::size_t vertex) const {
     if (!of["labels"].is_null()) return numbers<std::uint32_t>(of["labels"])[vertex];
@@ -87,11 +87,11 @@ class ReportFile {
   static double length(const Point& a) { return std::sqrt(dot(a, a)); }
   static Point unit(const Point& a) { return length(a) > 0 ? scaled(a, 1 / length(a)) : a; }
   static double angle(const Point& a, const Point& b) { return std::atan2(length(cross(a, b)), dot(a, b)); }
-  // Turns v about an axis, which is a unit vector.
+  // Turns v by an angle in radians about an axis. The axis must have length 1.
   static Point turned(const Point& axis, double by, const Point& v) {
     return sum(sum(scaled(v, std::cos(by)), cross(axis, v), std::sin(by)), axis, dot(axis, v) * (1 - std::cos(by)));
   }
-  // Turns v by the rotation from `from` to `to`, but by at most `most` radians.
+  // Turns v by the rotation from the direction of `from` to the direction of `to`, but by at most `most` radians.
   static Point turned(const Point& from, const Point& to, const Point& v, double most = 10) {
     const Point axis = cross(from, to);
     if (length(axis) < 1e-12) return v;
@@ -101,7 +101,8 @@ class ReportFile {
     return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
   }
 
-  // Returns the weighted normal of an element at some positions.
+  // Returns the normal of an element at these positions, by the weighting of the part. The length of the normal is not
+  // 1.
   [[nodiscard]] Point normal(const Json& of, const std::vector<Point>& positions, std::uint32_t element) const {
     const std::vector<std::uint32_t> triangles = numbers<std::uint32_t>(of["triangles"]),
                                      elements = numbers<std::uint32_t>(of["element"]),
@@ -110,7 +111,7 @@ class ReportFile {
     const std::string weighting = of["weighting"];
     Point result = {};
     for (std::size_t t = 0; 3 * t < triangles.size();) {
-      // Collects the polygon of a fan of triangles.
+      // Puts together the polygon that a fan of triangles stands for.
       const std::size_t first = 3 * t;
       std::vector<std::uint32_t> polygon(triangles.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));
@@ -123,7 +124,7 @@ class ReportFile {
     return result;
   }
 
-  // Returns the contribution of a corner of a polygon to the sum of an element.
+  // Returns what a corner of a polygon adds to the normal of its element.
   static Point term(const std::string& weighting, const std::vector<Point>& positions,
                     const std::vector<std::uint32_t>& polygon, std::size_t corner) {
     const auto place = [&](std::size_t i) { return positions[polygon[i % polygon.size()]]; };
@@ -142,7 +143,7 @@ class ReportFile {
     throw std::logic_error("a weighting of no name");
   }
 
-  // Returns the normal that the author of a glTF mesh intends for an element, at some positions and weights.
+  // Returns the normal that the author of a glTF mesh saw for an element, at these positions and weights.
   [[nodiscard]] Point truth(const Json& of, const std::vector<Point>& positions, const std::vector<double>& weights,
                             std::uint32_t element) const {
     const Point triangles = normal(of, positions, element);
@@ -159,7 +160,7 @@ class ReportFile {
                                      corners = numbers<std::uint32_t>(sums["polygons"]["corners"]),
                                      terms = numbers<std::uint32_t>(sums["terms"]),
                                      elements = numbers<std::uint32_t>(of["element"]);
-    std::set<std::size_t> counted;  // corners that were already added
+    std::set<std::size_t> counted;  // the corners that add to the normal, each once
     for (std::size_t i = 0; i < terms.size(); i += 2)
       if (terms[i + 1] == element) counted.insert(terms[i]);
     for (std::size_t c = 0; sums["terms"].is_null() && c < corners.size(); ++c)
@@ -173,8 +174,8 @@ class ReportFile {
     return result;
   }
 
-  // Adds the author's offset to a sum. The offset is an angle between the result and the sum, and an azimuth around the
-  // sum.
+  // Adds the author's offset to a normal n. The offset consists of the angle between n and the result, and of the
+  // direction around n (the azimuth).
   [[nodiscard]] Point with_offset(const Json& offsets, const std::vector<Point>& positions,
                                   const std::vector<double>& weights, std::uint32_t element, const Point& n) const {
     const std::vector<std::uint32_t> elements = numbers<std::uint32_t>(offsets["elements"]),
@@ -224,7 +225,7 @@ class ReportFile {
     return result;
   }
 
-  // Returns the weights of all targets at a sample.
+  // Returns the weights of all targets at a sample of a track.
   [[nodiscard]] std::vector<double> weights_at(const Json& track, std::size_t sample, std::size_t targets) const {
     const std::vector<std::uint32_t> moved = numbers<std::uint32_t>(track["targets"]);
     const std::vector<float> values = numbers<float>(track["values"]);

@@ -1,4 +1,4 @@
-/// Lists all schemes by name, so that tests cannot omit a new one.
+/// Lists all schemes by name, so that tests cannot miss a new scheme.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SCHEME_NAMES_H_
 #define CHRONORMAL_TESTS_SUPPORT_SCHEME_NAMES_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::test {
 
-/// Returns all names that make_scheme() accepts, with numbers for K and SEED.
+/// Returns a name for each scheme that make_scheme() accepts, with numbers in place of K and SEED.
 [[nodiscard]] inline std::vector<std::string> scheme_names() {
   std::vector<std::string> names;
   for (const SchemeDescription& description : scheme_descriptions()) {

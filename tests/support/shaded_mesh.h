@@ -1,5 +1,5 @@
-/// A morphing mesh with normals, as a glTF file and as an oracle of its rendered normals, in long double. The
-/// oracle shares no code with src/, and gltf_builder.h makes the file.
+/// A morphing mesh with normals. It can be written as a glTF file, by gltf_builder.h. Its oracle computes the rendered
+/// and the true normals in long double, and shares no code with src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 
@@ -29,7 +29,8 @@ inline Vector vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-/// Turns v by the smallest rotation from the unit vector `from` to `to`, by Rodrigues' formula.
+/// Turns v by the smallest rotation from the direction `from` to the direction `to`, both of length 1, by Rodrigues'
+/// formula.
 inline Vector rotated(const Vector& from, const Vector& to, const Vector& v) {
   const Vector axis = crossed(from, to);
   if (length_of(axis) == 0) return v;
@@ -50,7 +51,7 @@ struct ShadedMesh {
 
   [[nodiscard]] std::size_t vertices() const { return positions.size() / 3; }
 
-  /// Returns the file: node 0 has mesh 0, whose only primitive is this mesh.
+  /// Returns a glTF file in which node 0 has mesh 0, whose only primitive is this mesh.
   [[nodiscard]] GltfBuilder file() const {
     GltfBuilder builder;
     builder.add_node(builder.add_mesh(primitive(builder)));
@@ -72,7 +73,8 @@ struct ShadedMesh {
     return result;
   }
 
-  /// Tells whether two vertices have the same position, stored normal, and deltas of positions.
+  /// Tells whether two vertices share a normal: they must have the same position, the same stored normal, and the same
+  /// deltas of positions.
   [[nodiscard]] bool same_element(std::size_t a, std::size_t b) const {
     const auto same = [&](const std::vector<float>& v) {
       return v.empty() || (v[3 * a] == v[3 * b] && v[3 * a + 1] == v[3 * b + 1] && v[3 * a + 2] == v[3 * b + 2]);
@@ -89,7 +91,7 @@ struct ShadedMesh {
     return p;
   }
 
-  /// Returns the sum of the cross products of all faces around the element of v.
+  /// Returns the sum of the cross products of all faces at the element of vertex v, for these weights.
   [[nodiscard]] Vector normal(std::size_t v, const std::vector<double>& weights) const {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < corners.size(); ++c) {
@@ -117,8 +119,8 @@ struct ShadedMesh {
   }
 };
 
-/// Makes two triangles: 0 1 2 in the plane z = 0, and 2 1 3 beside it, which a target folds up by 90 degrees about the
-/// edge from 1 to 2. Both are halves of squares of size 2, and all base normals are (0, 0, 1).
+/// Makes two triangles: 0 1 2 in the plane z = 0, and 2 1 3 beside it. A target folds the second triangle up by 90
+/// degrees about the edge from 1 to 2. Both triangles are halves of squares, and all base normals are (0, 0, 1).
 [[nodiscard]] inline ShadedMesh hinge() {
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 2, 1, 3};
@@ -128,8 +130,8 @@ struct ShadedMesh {
   return mesh;
 }
 
-/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted against the normals of the surface by up to
-/// `tilt` radians, and its targets have random deltas of positions and normals.
+/// Makes a bumpy sheet of n x n vertices. Its base normals are tilted by up to `tilt` radians from the normals of the
+/// surface. Its targets have random deltas of positions and normals.
 [[nodiscard]] inline ShadedMesh random_sheet(std::uint64_t seed, std::size_t n, std::size_t target_count, double tilt) {
   fixtures::Random random(seed);
   ShadedMesh mesh;
@@ -150,7 +152,8 @@ struct ShadedMesh {
     for (std::size_t v = 0; v < n * n; ++v) {
       const bool moves = random.below(3) > 0;
       const double side = moves ? 0.35 : 0, up = moves ? 0.7 : 0;
-      // Draws one number per statement, since the compiler chooses the order in which arguments are evaluated.
+      // Each number is drawn in its own statement, since the order in which the arguments of a function are evaluated
+      // depends on the compiler.
       const double x = random.uniform(-side, side), y = random.uniform(-side, side);
       push(target.positions, x, y, random.uniform(-up, up));
       const double nx = random.uniform(-0.5, 0.5), ny = random.uniform(-0.5, 0.5);
@@ -158,7 +161,7 @@ struct ShadedMesh {
     }
   }
   const std::vector<double> none(target_count);
-  std::vector<float> normals;  // set at the end, since mesh.normal() compares stored normals
+  std::vector<float> normals;  // set after the loop, since mesh.normal() compares stored normals
   for (std::size_t v = 0; v < n * n; ++v) {
     const Vector geometry = unit_of(mesh.normal(v, none));
     const Vector stored = unit_of(plus(geometry, {random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), 0}));

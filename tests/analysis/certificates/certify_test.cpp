@@ -1,6 +1,6 @@
-// Compares certificates of every scheme with integers of any size: at 64 exact times per element, no error exceeds the
-// upper bound, and at the named time the error is not below the lower bound. There are 600 elements from fixed seeds,
-// or as many as CHRONORMAL_FULL_CASES asks for, 200,000 at most (./test --full exact).
+// Compares certificates of every scheme with integers of any size. At 64 exact times per element, no error may exceed
+// the upper bound; at the time that the certificate names, the error may not be below the lower bound. The test has 600
+// elements from fixed seeds, or as many as CHRONORMAL_FULL_CASES asks for, up to 200,000 (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
 #include "chronormal/core/polynomial.h"
@@ -33,7 +33,7 @@ using test::IntegerVector;
 
 constexpr std::uint64_t kSeed = 8200;
 constexpr std::size_t kTimes = 64;
-constexpr double kOracle = 1e-12;  // the largest error of the oracle, in radians
+constexpr double kOracle = 1e-12;  // the largest error of the angles that the oracle computes, in radians
 
 const std::vector<std::string>& all_schemes() {
   static const std::vector<std::string> names = [] {
@@ -77,11 +77,11 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// The counts of elements of one scheme, by the result of the comparison, and the tightness of the bounds.
+// The number of elements of a scheme with each result of the comparison, and the tightness of the bounds.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
-  double largest_share = 0;  // largest ratio of a sampled error to the upper bound
-  double gap = 0;            // sum of upper bound minus lower bound, over the elements with a bound
+  double largest_share = 0;  // largest ratio of a measured error to the upper bound
+  double gap = 0;            // sum of upper bound minus lower bound in radians, over the elements with a bound
   std::string first;
 };
 
@@ -162,7 +162,8 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
        {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
         fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
     for (std::size_t first = 0; first < each; first += 400) {
-      // The motion is certified in parts. The time of the largest error then differs from part to part.
+      // Certifies the motion in parts of at most 400 faces, since the time of the largest error differs from part to
+      // part.
       Motion part = motion;
       part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
       for (Motion::Keyframe& keyframe : part.keyframes) {
@@ -224,7 +225,7 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // Only rounding remains as error if one end normal has its best length.
+  // If the length of one end normal is optimal, only rounding errors remain.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -235,13 +236,14 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     if (scheme == "recompute") continue;
     EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
   }
-  // Sums of opposite end normals are zero at t = 1/2, where the direction changes abruptly as well.
+  // The end normals are opposite, so their sum is zero at t = 1/2. There the direction changes abruptly, as it does at
+  // t = 1/4.
   for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
     const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // If the normal is recomputed from positions, its direction is known up to the instant of the collapse.
+  // A normal that is recomputed from positions has a certain direction right up to the collapse.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
@@ -263,7 +265,7 @@ TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
       EXPECT_NEAR(bounds[0].from, 0.5, 1e-6);
       EXPECT_NEAR(bounds[0].to, 0.5, 1e-6);
     } else {
-      // Slerp avoids the zero by turning about a fixed perpendicular of the start.
+      // Slerp does not pass through zero: it turns the normal about a fixed axis, perpendicular to the start normal.
       EXPECT_LT(bounds[0].upper, std::numbers::pi);
     }
   }
@@ -335,8 +337,8 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
 
 // ---- sums that cancel ----------------------------------------------------------------------------------------------
 
-// In double, the sum of faces that cancel is only rounding error. The certificate must account for the error, or the
-// normals must be computed more precisely.
+// If the normals of the faces cancel, their sum in double is only rounding error. The certificate must include this
+// error, or the normals must be computed more precisely.
 TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   std::size_t judged = 0, known = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -415,7 +417,7 @@ class KnownEasedLine : public EasedLine {
   [[nodiscard]] WeightBasis basis() const { return {3, {{1, 1, 0, 0}, {0, 0, 1, 1}}}; }
 };
 
-// A scheme with five weights of degree 9, which no other scheme has: powers of the eased time.
+// A sum of vectors with five weights of degree 9, which are powers of the eased time. No other scheme has such weights.
 class LongSum {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 12; }
@@ -444,7 +446,7 @@ class LongSum {
   }
 };
 
-// A scheme of an arc in eased time, for which certify() knows no formula.
+// A scheme that follows an arc in eased time. certify() knows no formula for this curve.
 class EasedArc {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 7; }
@@ -474,8 +476,8 @@ class Silent final : public Scheme {
   std::size_t count_ = 0;
 };
 
-// Samples 400 times and fails if a bound is exceeded. Returns the largest error over all elements with a bound below
-// half a turn.
+// Measures the errors of a scheme at 400 samples and fails if an error exceeds its bound. Returns the largest error, in
+// radians, over all elements with a bound below half a turn, and adds their number to `known`.
 double held_against_samples(Scheme& scheme, std::size_t& known) {
   double largest = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {

@@ -1,6 +1,7 @@
-// Tests bounds of meshlets while the mesh deforms. Meshoptimizer's culling tests with these bounds must never reject a
-// meshlet with a face that is front-facing at an instant of the interval, as decided in integers. Bounds of a single
-// instant fail this test. Uses a sheet of 512 faces, and built-in morphs under ./test --full exact.
+// Tests bounds of meshlets while the mesh deforms. If meshoptimizer's culling tests use these bounds, they must not
+// reject a meshlet with a face that is front-facing at some instant of the interval. Integers decide whether a face is
+// front-facing. Bounds from a single instant fail this test. The mesh is a sheet of 512 faces; ./test --full exact adds
+// the built-in morphs.
 
 #include "chronormal/analysis/cones.h"
 
@@ -48,8 +49,9 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The functions below repeat the tests of meshoptimizer.h in float32. Only squares are summed in double: in float32,
-// the squares of lengths below 1e-19 underflow, so every test that uses a length would fail for this reason alone.
+// The functions below repeat the tests in the comments of meshoptimizer.h in float32. Only sums of squares are computed
+// in double: in float32, squares of lengths below 1e-19 underflow, so every test with a length would fail for this
+// reason alone.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -69,7 +71,7 @@ bool rejects_view(const meshopt_Bounds& b, const Vec3f& view) {
 }
 
 struct Meshlets {
-  Motion motion;  // the faces are in the order of meshlets
+  Motion motion;  // the faces are sorted by meshlet
   std::vector<std::vector<std::uint32_t>> faces;
 
   [[nodiscard]] std::vector<ClusterBounds> bounds(double t0, double t1) const {
@@ -115,10 +117,10 @@ Meshlets meshlets_of(Motion motion, std::size_t segment) {
   return result;
 }
 
-// Faces and their first corners at one instant, in integers with a common scale.
+// The normals and first corners of the faces at one instant, as integers with a common scale.
 struct Instant {
   std::vector<IntegerVector> normals, corners;
-  mpz_class unit;  // the unit of corners, as a multiple of the unit of floats
+  mpz_class unit;  // the unit of the integers in `corners`, as a multiple of the unit of floats
 
   Instant(const Segment& segment, double t) {
     const IntegerTime time = IntegerTime::of(t);
@@ -151,8 +153,8 @@ struct Count {
 };
 using Rejects = std::function<bool(const meshopt_Bounds&, const Vec3f&)>;
 
-// Counts the pairs of a meshlet and a camera that a test rejects. Among these, also counts the pairs in which some face
-// is front-facing at some instant, since these rejections are wrong.
+// Counts the pairs of a meshlet and a camera that `rejects` rejects. Also counts the wrong rejections, where some face
+// is front-facing at some instant.
 Count judged(const Meshlets& meshlets, const std::vector<meshopt_Bounds>& bounds, const std::vector<Instant>& instants,
              const std::vector<Vec3f>& cameras, const Rejects& rejects, bool is_view) {
   Count result;
@@ -216,7 +218,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
         const fixtures::Point p = random.in_cube(i % 3 == 0 ? 1 : 4);
         cameras.push_back(to_float({p[0], p[1], p[2]}));
       }
-      // Some cameras stand just behind the apexes, where the test is sharp.
+      // Puts some cameras just behind the apexes, where a small error of the bounds changes the result of the test.
       for (std::size_t m = 0; m < bounds.size(); m += 5)
         cameras.push_back(vector_of(bounds[m].cone_apex) - 0.01F * vector_of(bounds[m].cone_axis));
       const auto add = [&](Count& to, const Rejects& rejects, bool is_view, const std::vector<meshopt_Bounds>& of) {
@@ -244,7 +246,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
     EXPECT_GT(c.rejected, 100u);
   }
   EXPECT_LE(apex_s8.rejected, apex.rejected);
-  EXPECT_GT(rival.wrong, 20u);  // wrong bounds are detected
+  EXPECT_GT(rival.wrong, 20u);  // shows that the test detects wrong bounds
 }
 
 // Tests one or a few faces of each family of hard faces, from cameras all around.
@@ -308,7 +310,7 @@ TEST(ClusterBounds, have_every_vertex_in_their_sphere_at_any_instant) {
   }
 }
 
-// Polynomials with rational coefficients, in powers of their argument.
+// Polynomials with rational coefficients, as arrays of the coefficients of 1, x, x^2 and x^3.
 using Rational = mpq_class;
 using Powers = std::array<Rational, 4>;
 
@@ -332,13 +334,13 @@ Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
   return result;
 }
 
-// Returns the Bernstein coefficients of the cubic with these power coefficients. Each is a weighted sum of power
-// coefficients, with ratios of binomials as weights.
+// Returns the Bernstein coefficients of a cubic, given its coefficients of 1, x, x^2 and x^3. Each Bernstein
+// coefficient is a weighted sum of these, and the weights are ratios of binomial coefficients.
 std::array<Rational, 4> bernstein_of(const Powers& p) {
   return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
 }
 
-// The normal of a triangle and its first corner over [t0, t1], as cubics in the share of the interval.
+// The normal and the first corner of a triangle over [t0, t1], as cubics in a parameter that goes from 0 to 1.
 struct MovingPlane {
   std::array<Powers, 3> normal, corner;
 
@@ -373,8 +375,8 @@ std::array<Powers, 3> constant(const float (&v)[3]) {
   return result;
 }
 
-// The apex moves back from the center only as far as some Bernstein coefficient of some face requires. Each of the four
-// coefficients decides some of the cases.
+// The library moves the apex back from the center only as far as some Bernstein coefficient of some face requires. The
+// test makes sure that each of the four coefficients decides in some cases.
 TEST(ClusterBounds, have_the_nearest_apex_that_bernstein_coefficients_put_behind_all_faces) {
   constexpr std::uint64_t kSeed = 914;
   fixtures::Random random(kSeed);

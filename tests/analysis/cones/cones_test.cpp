@@ -1,5 +1,5 @@
-// Compares normal cones with integers of any size: no exact normal of the interval may lie outside. There is one
-// element for every 50 cases, at 64 instants each: 2,000 elements, or 200,000 under ./test --full exact.
+// Compares normal cones with integers of any size: no exact normal of the interval may lie outside its cone. An element
+// has 64 instants. The test has one element for every 50 cases: 2,000 elements, or 200,000 under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -62,7 +62,8 @@ std::vector<NormalCone> cones_of_faces(const Segment& segment, const Interval& p
   return cones;
 }
 
-// Returns the cones of the normals at both ends, which assume a straight line between them.
+// Returns cones around the normals at both ends of the interval alone. Such cones are right only if n(t) follows a
+// straight line between the ends.
 std::vector<NormalCone> cones_of_ends(const Segment& segment, const Interval& part) {
   std::vector<ControlNormals> ends = all_face_control_normals(segment);
   for (ControlNormals& c : ends) {
@@ -197,8 +198,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // Over the first half, the control normals {zero, zero, x} still begin with zeros. Over the second half, none of them
-  // is zero.
+  // Over the first half, the control normals of element 1 are {zero, zero, x}, which begin with zeros. Over the second
+  // half, none of its control normals is zero.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);
@@ -254,7 +255,7 @@ TEST(Cones, are_the_smallest_around_three_directions) {
   }
 }
 
-// A face opens out of a line at exactly t = 1/2, where it turns over, so each half has one direction.
+// A face collapses to a line at exactly t = 1/2 and turns over there, so the normal has one direction in each half.
 TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   const fixtures::Point o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, minus_y{0, -1, 0};
   const Motion motion = test::soup_of({{{o, x, minus_y}, {o, x, y}}});
@@ -267,8 +268,8 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// Compares each cone with half of the largest angle between any two of 21 normals, which is a lower bound of the cone's
-// half-angle.
+// Compares the half-angle of each cone with half of the largest angle between any two of 21 normals, which is a lower
+// bound.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();
@@ -310,7 +311,7 @@ TEST(EnclosingCone, of_a_hierarchy_contains_the_normals_of_all_faces_below) {
     const Motion motion = fixtures::soup({.face_count = 256, .seed = 5, .motion = motion_size});
     Segment segment = motion.segment(0);
     std::vector<NormalCone> level = cones_of_faces(segment, {0.1, 0.8});
-    // Sorts faces by their axes, so that the clusters are not all as wide as the whole sphere.
+    // Sorts faces by their axes, so that each cluster has similar axes and its cone is narrow.
     std::vector<std::size_t> order(level.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {

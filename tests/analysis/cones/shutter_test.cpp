@@ -1,6 +1,6 @@
-// Compares means over an open shutter with oracles that share no code with the library. If n(t) is a straight line, the
-// oracle is a closed form, also for lines that pass close to zero. Otherwise it is dense Gaussian quadrature in long
-// double, from positions.
+// Compares the means of normals over an open shutter with oracles that share no code with the library. If n(t) is a
+// straight line, the oracle is a closed form, also for lines that pass close to zero. Otherwise the oracle integrates
+// normals, which it computes from positions, by dense Gaussian quadrature in long double.
 
 #include "chronormal/analysis/cones.h"
 
@@ -29,7 +29,7 @@ using Vector = std::array<Real, 3>;
 Real length_of(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 Real distance(const Vec3d& a, const Vector& b) { return length_of({a.x - b[0], a.y - b[1], a.z - b[2]}); }
 
-// Returns n(t) by the cross product of corners.
+// Returns n(t) as the cross product of two edges at t.
 Vector normal_of(const Segment& segment, std::size_t f, Real t) {
   const auto face = segment.topology->face(f);
   const auto at = [&](std::size_t c) {
@@ -45,7 +45,7 @@ struct Means {
   Vector mean{}, unit{};
 };
 
-// Integrates by Gauss's rule with three nodes in each of `pieces`.
+// Integrates from t0 to t1 by Gauss's rule with three nodes in each of `pieces` equal parts.
 Means dense_means(const Segment& segment, std::size_t f, double t0, double t1, int pieces) {
   const Real node = std::sqrt(Real{0.6});
   Means means;
@@ -86,7 +86,7 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   for (std::size_t i = 0; i < wanted; ++i) {
     const fixtures::Point d = random.in_cube(1), g = random.in_cube(1);
     const double when = random.uniform(-0.2, 1.2), gap = std::ldexp(1, -static_cast<int>(random.below(40)));
-    // The control normals are floats, so their exact values are known.
+    // Rounds the control normals to floats, so that their exact values are known.
     const auto end = [&](double t) {
       return to_double(
           to_float({(t - when) * d[0] + gap * g[0], (t - when) * d[1] + gap * g[1], (t - when) * d[2] + gap * g[2]}));
@@ -151,7 +151,7 @@ TEST(Shutter, of_faces_is_within_its_bound_of_dense_quadrature) {
 }
 
 TEST(Shutter, of_a_face_that_turns_over_is_what_is_left_of_both_sides) {
-  // The normal is exactly z before the collapse at t = 1/4, and -z after it: the mean is z/4 - 3 z/4.
+  // The normal is exactly z before the collapse at t = 1/4 and -z after the collapse, so the mean is z/4 - 3 z/4.
   const fixtures::Point o{0, 0, 0}, x{1, 0, 0};
   const Motion motion = test::soup_of({{{o, x, {0, 1, 0}}, {o, x, {0, -3, 0}}}});
   ShutterNormal s;

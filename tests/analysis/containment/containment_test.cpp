@@ -1,6 +1,6 @@
-// Compares containment and crossings with winding numbers in integers and roots in rational numbers: 100,000 cases from
-// a fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for. A case is one point that moves through one
-// mesh.
+// Compares containment and crossings with winding numbers in integers and roots in rational numbers. A case is one
+// point that moves through one mesh. The test has 100,000 cases from a fixed seed, or as many as the variable
+// CHRONORMAL_FULL_CASES asks for.
 
 #include "chronormal/analysis/containment.h"
 
@@ -30,7 +30,8 @@ using fixtures::Random;
 
 constexpr std::uint64_t kSeed = 20230;
 
-// The outward faces of a tetrahedron, a double pyramid and a cube, as indices of vertices.
+// The faces of a tetrahedron, a double pyramid and a cube, as indices of vertices, counterclockwise as seen from
+// outside.
 const std::array<std::vector<Corners>, 3> kMeshes{{
     {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}},
     {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
@@ -60,7 +61,7 @@ std::vector<float> flat(const std::vector<Vec3f>& points) {
 }
 VectorView<const float> view(const std::vector<float>& xyz) { return VectorView<const float>::packed(xyz); }
 
-// A closed mesh in one segment, and moving points.
+// A closed mesh and some points, all of which move over one segment.
 struct Scene {
   std::vector<Corners> faces;
   Topology topology;
@@ -91,7 +92,8 @@ struct Scene {
   }
 };
 
-// Returns the winding number of a point after all of its crossings before t.
+// Returns the winding number at time t of a point that has the winding number `start` at first, by counting its
+// crossings before t.
 int winding_before(int start, std::span<const Crossing> crossings, double t) {
   for (const Crossing& crossing : crossings) start += crossing.t < t ? (crossing.inward ? 1 : -1) : 0;
   return start;
@@ -111,7 +113,7 @@ Vec3f lattice_point(Random& random, std::size_t half) {
   return {x, y, coordinate()};
 }
 
-// Moves vertices on a lattice. Many vertices stay, or move by the same vector.
+// Moves vertices from and to points of a lattice. Many vertices stay in place, or many move by the same vector.
 std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& random) {
   const std::size_t kind = random.below(4);
   const Vec3f shift = lattice_point(random, 4);
@@ -124,7 +126,7 @@ std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& ra
   return result;
 }
 
-// Returns a position at t = 1/2, which is often on a vertex, an edge or a face. The position is doubled, so that its
+// Returns twice a position that is often on a vertex, an edge or a face at t = 1/2. The position is doubled so that its
 // coordinates are integers.
 Vec3f twice_a_place(const Scene& scene, Random& random) {
   const auto twice = [&](std::uint32_t v) { return scene.segment().from[v] + scene.segment().to[v]; };
@@ -164,15 +166,15 @@ void add_lattice_points(Scene& scene, std::size_t count, Random& random) {
   }
 }
 
-// Tells whether a point touches an edge at t without crossing it: right before and right after t, the winding number is
-// `winding`.
+// Tells whether a point touches an edge at t without crossing it: just before and just after t, the winding number must
+// be `winding`.
 bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   constexpr double kBeside = 0x1p-44;
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares winding numbers at both ends and at a time in between with the oracle, and with the sums of the crossings
-// before.
+// Compares the winding numbers at both ends, and at a time in between, with the oracle and with the sums of the earlier
+// crossings.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -208,7 +210,8 @@ TEST(ExactContainment, windings_between_crossings_are_those_of_whole_numbers) {
   std::cout << "seed " << kSeed << ": " << cases << " cases\n";
 }
 
-// Makes a scene of arbitrary floats, in which some faces are needles, and points come close to an edge at any distance.
+// Makes a scene with arbitrary floats as coordinates. Some faces are needles, and points come arbitrarily close to
+// edges.
 Scene hard_scene(Random& random, std::size_t shape) {
   const double size = std::ldexp(1, static_cast<int>(random.below(60)) - 30);
   const auto any = [&](double scale) {
@@ -307,7 +310,8 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
 }
 
 TEST(Containment, the_surface_may_pass_points_that_rest) {
-  // The cube becomes twice as large, and the normal of a crossing is the face's normal at that time.
+  // The cube doubles its size while the points rest. The normal of a crossing must be the normal of the face at that
+  // time.
   Scene scene = resting_cube();
   for (float& x : scene.mesh_to) x = 2 * x;
   scene.from = scene.to = {{1.5F, 0.25F, 0.125F}, {0.5F, 0.75F, 0.25F}, {2.5F, 1, 1}};
@@ -321,7 +325,7 @@ TEST(Containment, the_surface_may_pass_points_that_rest) {
 }
 
 TEST(Containment, a_touch_changes_the_winding_number_for_a_moment_only) {
-  // At t = 15/32, and only then, the point is on the edge (5, 6), without crossing a face.
+  // At t = 15/32 only, the point is on the edge between vertices 5 and 6, but crosses no face.
   Scene scene(kMeshes[2],
               {{3, 2, 1}, {-1, -6, -5}, {-5, -4, -2}, {8, -7, -4}, {4, 5, 3}, {-2, 6, -7}, {7, -8, -6}, {-3, -1, 5}},
               {{6, 0, -8}, {8, 0, 0}, {7, 1, -6}, {3, -2, -6}, {2, 4, 8}, {0, -6, 6}, {8, 1, -4}, {-1, 5, -8}});

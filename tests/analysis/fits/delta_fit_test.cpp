@@ -11,7 +11,7 @@
 namespace chronormal::delta_fit_test {
 namespace {
 
-// Makes three elements: target 0 moves all of them, target 1 the last two, target 2 the last.
+// Makes deltas for three elements: target 0 moves all three, target 1 the last two, and target 2 only the last.
 DeltaNormals some_deltas(std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   DeltaNormals result;
@@ -27,7 +27,7 @@ DeltaNormals some_deltas(std::mt19937& random) {
   return result;
 }
 
-// Adds a row to the fit that asks for the normals which `wanted` gives at these weights.
+// Adds a row to the fit, with the normals that `wanted` gives at these weights as the goal.
 void ask_for(const DeltaNormals& wanted, const std::vector<double>& weights, DeltaFit& fit) {
   std::vector<Vec3d> shown(3), missing(3);
   shown_normals(fit.deltas(), weights, shown);
@@ -72,7 +72,7 @@ TEST(DeltaFit, what_no_row_tells_stays_as_it_was) {
 }
 
 TEST(DeltaFit, leaves_the_smallest_sum_of_squares) {
-  // No linear function equals w^2; the best linear fit at 1/2 and 1 is (sum w^3 / sum w^2) w = 0.9 w.
+  // A linear function of w cannot equal w^2. The best linear fit at w = 1/2 and w = 1 is (sum w^3 / sum w^2) w = 0.9 w.
   DeltaNormals start;
   start.base = {0, 0, 1};
   start.deltas.push_back({"", {0}, {0, 0, 0}});

@@ -1,5 +1,6 @@
-// Prints a hash of all results of chronormal_core.h for some meshes. The hash must be the same with the two files and
-// with the library. The meshes are made of whole numbers and powers of two.
+// Prints a hash of all results of chronormal_core.h for some meshes. The hash must be the same with the two files that
+// tools/two_files.py makes and with the library. The coordinates of the meshes are integers times powers of two, so
+// they are the same everywhere.
 #include "chronormal_core.h"
 
 #include <cstdint>
@@ -35,8 +36,8 @@ struct Mesh {
   std::vector<float> from, to;
 };
 
-// Makes a grid whose bands of rows rest, move along, turn, shrink to a point, turn inside out, or move freely. The
-// vertices of the last column coincide with the first column, so that they are welded.
+// Makes a grid with bands of rows that rest, translate, turn, shrink to a point, turn inside out, or move freely. The
+// vertices of the last column coincide with those of the first column, so the two columns are welded.
 Mesh grid(std::uint32_t cells, std::mt19937_64& random) {
   const auto noise = [&random](unsigned bits) {
     return static_cast<float>(static_cast<std::int64_t>(random() & ((1u << bits) - 1)) - (1 << bits) / 2) * 0x1p-12f;

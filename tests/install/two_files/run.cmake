@@ -1,7 +1,7 @@
 # cmake -DSOURCE=... -DFOLDER=... -DCOMPILER=... [-DFLAGS=...] [-DRUN=...] [-DLIBRARY=...] -P: tests tools/two_files.py.
-# Writes the two files, and compiles them with the example of docs/cpp.md by the command of that page. The example and
-# bits.cpp must print the same when they are linked with the library. LIBRARY is the command line for linking it;
-# without LIBRARY, the output that an earlier run left in FOLDER is used.
+# Makes the two files, and compiles them together with the example of docs/cpp.md, by the command on that page. The
+# example and bits.cpp must print the same text when they are linked with the library instead. LIBRARY is the command
+# line for linking the library. Without LIBRARY, their output from an earlier run in FOLDER is used.
 file(MAKE_DIRECTORY ${FOLDER})
 function(run output)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE errors)

@@ -1,4 +1,4 @@
-// Checks that checksums have their published values, and detect changes.
+// Checks that checksums have their published values, and change if the data change.
 #include "io/bytes/checksum.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Tests the limits on memory and output that a small file can cause. Every file here declares far more than it stores,
-// and can be read only with --max-expansion.
+// Tests the limits on the memory and the output that a small file can cause. Every file here declares far more data
+// than it stores, and can be read only with --max-expansion.
 
 #include "io/bytes/expansion.h"
 
@@ -75,7 +75,7 @@ TEST(Expansion, of_deflated_arrays_is_asked_for_before_they_are_unpacked) {
   expect_refused(error_of(read_npz(bomb, "bomb.npz")));
   EXPECT_TRUE(read_npz(bomb, "bomb.npz", 1, kEnough).ok());
   EXPECT_TRUE(read_npz(zeros(2, 1000000, false), "stored.npz").ok()) << "what is stored is there";
-  // A keyframe of one vertex takes more memory for its own fields than for its positions.
+  // A keyframe of one vertex needs more memory for the fields of its struct than for its position.
   expect_refused(error_of(read_npz(zeros(400000, 3, true), "frames.npz")));
 }
 
@@ -93,7 +93,7 @@ TEST(Expansion, of_many_targets_of_one_line_is_asked_for_one_by_one) {
   expect_refused(error_of(test::read_motion(options)));
 }
 
-// Makes a base of zeros that takes no bytes, and many equal targets.
+// Makes a base mesh of zeros, which takes no bytes in the file, and many equal targets.
 GltfBuilder zero_targets(std::size_t vertices, std::size_t targets) {
   GltfBuilder builder;
   const auto zeros = builder.add_accessor_over(std::nullopt, "VEC3", 5126, vertices);
@@ -142,8 +142,8 @@ TEST(Expansion, of_compressed_views_is_asked_for_before_they_are_decompressed) {
   EXPECT_NE(error.find("EXT_meshopt_compression"), std::string::npos) << error;
 }
 
-// The files begin with "DRACO", version 2.2, and a mesh without metadata. In sequential encoding, the number of faces
-// comes first. In edgebreaker encoding, it comes after one byte and the number of vertices.
+// The files begin with "DRACO", version 2.2, and a mesh without metadata. In the sequential encoding, the number of
+// faces follows immediately. In the edgebreaker encoding, a byte and the number of vertices precede it.
 TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_decoded) {
   const std::string many("\xFF\xFF\xFF\x7F", 4), few("\x03", 1), head("DRACO\x02\x02\x01", 8), no_flags("\0\0", 2);
   for (const std::string& coded :
@@ -173,7 +173,8 @@ TEST(Expansion, counts_the_files_of_buffers_each_once) {
   EXPECT_EQ(document.expansion().most(), 100 * (text.size() + 1000000));
 }
 
-// Makes a spline that changes so fast that the product with itself needs very many keys.
+// Makes a file with a cubic spline that changes so fast that the product of the spline with itself needs very many
+// keys.
 std::string steep_spline(std::size_t keys) {
   GltfBuilder builder = test::quad_document();
   std::vector<float> times, values;

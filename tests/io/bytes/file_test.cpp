@@ -45,14 +45,14 @@ mode_t permissions_of(const std::string& path) {
   return status.st_mode & 07777;
 }
 
-// Returns more bytes than a pipe can buffer.
+// Returns more bytes than the buffer of a pipe can hold.
 std::string many_bytes() {
   std::string bytes(3000001, ' ');
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7 + i / 251);
   return bytes;
 }
 
-// A replacement of a descriptor by another one, which ends with this object.
+// A file descriptor that refers to another file as long as this object lives.
 class Redirect {
  public:
   Redirect(int from, int to) : from_(from), saved_(::dup(from)) {
@@ -88,7 +88,7 @@ TEST(FileBytes, pipe_and_standard_input_are_read_to_the_end) {
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const bool as_stdin : {false, true}) {
-    // The writer calls write_output(), which must not rename a file over the pipe.
+    // write_output() must write into the pipe, and must not rename a file over it.
     std::thread writer([&] { EXPECT_TRUE(write_output(pipe, bytes, false).ok()); });
     if (as_stdin) {
       const int opened = ::open(pipe.c_str(), O_RDONLY);
@@ -263,12 +263,12 @@ TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
   EXPECT_EQ(error, "<stdout>: No space left on device");
 }
 
-// A socket on which nobody listens cannot be opened, and no file may replace it.
+// A socket on which nobody listens cannot be opened, and an output must not replace it.
 TEST(WriteOutput, a_socket_is_no_place_for_a_file) {
   const TemporaryFolder folder;
   const std::string path = folder / "socket";
-  // The name of a socket has at most 107 bytes, so the path goes through a descriptor: the folder's own path may be
-  // longer.
+  // The path of a socket has at most 107 bytes, and the path of the folder may be longer. The test therefore names the
+  // folder by a descriptor.
   const int descriptor = ::open(folder.path().c_str(), O_PATH | O_DIRECTORY);
   const std::string name = "/proc/self/fd/" + std::to_string(descriptor) + "/socket";
   sockaddr_un address{};
@@ -336,7 +336,7 @@ TEST(WriteOutput, failure_leaves_no_temporary_and_the_old_file) {
   EXPECT_EQ(folder.entry_count(), 1U);
 }
 
-// A limit on the size of files acts like a full disk.
+// A limit on the size of files has the same effect as a full disk.
 TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a", "old");

@@ -1,5 +1,5 @@
-// Checks the message about a file whose extension is that of another format. If the kind of the file is known by its
-// first bytes, the message must name it.
+// Checks the message about a file that has the extension of another format. If the first bytes of the file reveal its
+// kind, the message must name that kind.
 #include "io/bytes/known_kinds.h"
 
 #include <gtest/gtest.h>
@@ -55,8 +55,8 @@ const std::vector<Sample> kSamples = {
 
 class KnownKinds : public ::testing::Test {
  protected:
-  // Returns the message about a file with this name and these bytes. If the file is a cache by its name, it is read
-  // together with a mesh.
+  // Returns the message about a file with this name and these bytes. If the extension is that of a cache, the file is
+  // read together with a mesh.
   std::string said(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -77,7 +77,7 @@ TEST_F(KnownKinds, are_named_whatever_the_name_of_the_file_says) {
   for (const std::string name : {"a.glb", "a.gltf", "a.vrm", "a.obj", "a.ply", "a.npz", "a.md2", "a.pc2", "a.mdd",
                                  "a.npy", "a.target", "a.png", "a"}) {
     for (const auto& [bytes, kind] : kSamples) {
-      if (name == "a.target" && kind == "gzip data") continue;  // a target may really be gzipped
+      if (name == "a.target" && kind == "gzip data") continue;  // a .target file may be compressed by gzip
       EXPECT_NE(said(name, bytes).find(kind), std::string::npos) << name << ' ' << kind << ": " << said(name, bytes);
     }
   }
@@ -108,13 +108,13 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
   for (int round = 0; round < 20000; ++round) {
     std::string bytes(random() % 40, '\0');
     for (char& c : bytes) c = static_cast<char>(random() % 256);
-    // The random text consists of elements of text formats: numbers, words and brackets.
+    // The random text consists of parts that occur in text formats: numbers, words and brackets.
     std::string text;
     for (int word = 0; word < 6; ++word)
       text += std::vector<std::string>{"v ",  "f ",       "# ", "{\"asset\":", "1.5 ",   "\n",
                                        "-2 ", "o solid ", " <", "[",           "mtllib "}[random() % 11];
     EXPECT_EQ(known_kind(text), "") << text;
-    // Some kinds are recognised by only two or three bytes, with which random bytes often begin.
+    // Some kinds are recognised by their first two or three bytes, and random bytes often begin with these.
     const bool may_be_one =
         std::any_of(kShort.begin(), kShort.end(), [&](const std::string& begin) { return bytes.starts_with(begin); });
     EXPECT_TRUE(may_be_one || known_kind(bytes).empty()) << known_kind(bytes);

@@ -1,5 +1,5 @@
-// Checks that a spool returns all of its data, whether in memory or on disk, and that its file is never visible in a
-// folder.
+// Checks that a spool returns all of its data, whether it keeps them in memory or on disk, and that its file is never
+// visible in a folder.
 #include "io/bytes/spool.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ std::string all_of(const Spool& spool, std::uint64_t at, std::uint64_t size) {
   return bytes;
 }
 
-// Makes parts of various lengths, one of them longer than the buffer for reading files.
+// Makes parts of various lengths. One part is longer than the buffer through which files are read.
 std::vector<std::string> parts() {
   std::vector<std::string> result = {"a", "", "bc", "def", std::string(1, '\0'), ""};
   std::string large;
@@ -150,7 +150,7 @@ TEST(Spool, in_a_folder_that_is_not_there_says_so) {
             "none/out.glb: the folder of the output cannot be written to: No such file or directory");
 }
 
-// Returns the path by which the system reaches the unnamed file of a spool in a folder.
+// Returns the path in /proc through which the unnamed file of a spool can be opened.
 std::string file_of_spool(const TemporaryFolder& folder) {
   std::string found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
@@ -173,7 +173,7 @@ TEST(Spool, room_of_what_is_given_away_is_free_again) {
   };
   const auto before = blocks();
   std::size_t given = 0;
-  decltype(blocks()) most = 0;  // the most blocks on disk while the last quarter is read
+  decltype(blocks()) most = 0;  // the largest number of blocks on disk while the last quarter is read
   const Status status = spool.give_away(0, spool.size(), [&](std::string_view bytes) -> Status {
     given += bytes.size();
     if (given > std::size_t{25} << 20) most = std::max(most, blocks());

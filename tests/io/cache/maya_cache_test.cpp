@@ -23,7 +23,7 @@ void expect_turning(const Result<PositionCache>& cache) {
   EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
 }
 
-// Makes a file of one time. Its groups have no TIME, since the header has the time.
+// Makes a cache file for one point in time. The groups of the file have no tag TIME, since the header has the time.
 std::string frame_bytes(bool wide, std::int32_t ticks, const std::vector<float>& positions) {
   const test::MayaWriter writer(wide);
   return writer.header(ticks) + writer.group("MYCH", writer.points<float>("body", positions));
@@ -151,7 +151,7 @@ TEST(ReadMayaCache, reads_a_file_per_frame_in_the_order_of_time_and_no_other_fil
   EXPECT_EQ(cache.value().samples[1].time, 2375.0 / 6000);
   EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
 
-  // Alphabetically, cFrame10 comes before cFrame9.
+  // In the order of the alphabet, cFrame10 comes before cFrame9, although the number 10 comes after 9.
   folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcx", 125, 2375, 2500));
   std::filesystem::rename(folder / "cFrame1.mcx", folder / "cFrame10.mcx");
   folder.write("cFrame10.mcx", frame_bytes(true, 2500, test::kTurning[0]));

@@ -1,5 +1,5 @@
-// Checks that the array `velocities` of .npz is read back as it was written, and is refused unless it has one velocity
-// for each vertex.
+// Checks that the array `velocities` of an .npz file is read back as it was written, and that the reader refuses an
+// array without exactly one velocity per vertex.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Reads caches and models by other people. Needs the environment variable CHRONORMAL_DATA, which names their folder.
+// Reads caches and models from other projects. Skipped unless the environment variable CHRONORMAL_DATA names their
+// folder.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -29,7 +30,8 @@ class RealCaches : public ::testing::Test {
     data_ = folder;
   }
 
-  // Reads a cache as a motion. The mesh has one triangle, and as many points as the cache.
+  // Reads a cache as a motion, together with a mesh that has one triangle and as many points as the cache. Compares the
+  // number and the times of the samples.
   void expect_maya(const std::string& folder, std::size_t samples, double first, double last) const {
     SCOPED_TRACE(folder);
     std::string obj;
@@ -38,7 +40,7 @@ class RealCaches : public ::testing::Test {
     const std::string mesh = temporary.write("mesh.obj", obj + "f 1 2 3\n");
     const std::string xml = (data_ / "caches" / folder / "cache.xml").string();
     const Result<Motion> ambiguous = test::read_motion(test::files({mesh, xml}));
-    ASSERT_FALSE(ambiguous.ok());  // both channels have 36 points, so neither can be chosen
+    ASSERT_FALSE(ambiguous.ok());  // both channels have 36 points, so the reader cannot choose one
     EXPECT_NE(ambiguous.error().message.find("'pCubeShape1' (36), 'pCubeShape2' (36)"), std::string::npos);
     for (const char* const channel : {"#pCubeShape1", "#pCubeShape2"}) {
       const Result<Motion> motion = test::read_motion(test::files({mesh, xml + channel}));
@@ -59,7 +61,7 @@ TEST_F(RealCaches, maya_caches_of_every_kind_are_read) {
   expect_maya("sine_mxmd_oversample", 34, 10, 19.9);
 }
 
-// There are four caches of one animation. Where several have a sample at the same time, the samples must be equal.
+// There are four caches of one animation. Samples of several caches at the same time must be equal.
 TEST_F(RealCaches, maya_caches_of_one_animation_agree) {
   const auto at_frame_11 = [&](const std::string& folder) -> std::vector<float> {
     const auto cache = read_maya_cache((data_ / "caches" / folder / "cache.xml").string(), {1, 0, "pCubeShape1"});
@@ -93,7 +95,7 @@ TEST_F(RealCaches, maya_description_full_of_entities_is_read_and_its_missing_fra
   EXPECT_TRUE(read_maya_points(points.value().bytes(), "cacheFrame1.mc", {1, 36, "pCubeShape2"}).ok());
 }
 
-// Sample 4 equals the mesh up to the order of vertices and a translation.
+// Sample 4 has the positions of the mesh, except for the order of the vertices and a translation.
 TEST_F(RealCaches, pc2_of_3ds_max_is_read_and_fits_its_mesh_through_the_permutation) {
   const fs::path folder = data_ / "caches/max_cache_box";
   const Result<FileBytes> file = FileBytes::open((folder / "max_cache_box.pc2").string());

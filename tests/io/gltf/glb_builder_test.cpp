@@ -1,4 +1,4 @@
-// Checks that the bytes of a file from GlbBuilder are the same, whether its arrays wait in memory or on disk.
+// Checks that GlbBuilder writes the same bytes, whether it keeps arrays in memory or on disk.
 #include "io/gltf/glb/glb_builder.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +20,8 @@ std::vector<float> vectors(float first, std::size_t nonzero) {
   return result;
 }
 
-// Adds arrays of every kind: dense, sparse, all zeros, repeated, and with the same numbers and bounds in another order.
-// Returns the accessors of these arrays.
+// Adds arrays of every kind: dense, sparse, all zeros, a repetition, and one with the same numbers and bounds in a
+// different order. Returns the indices of their accessors.
 std::vector<std::size_t> add_all(GlbBuilder& builder) {
   std::vector<std::size_t> accessors = {builder.set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices)};
   std::vector<float> dense = vectors(1, 3 * kVertices), sparse = vectors(1, 30);
@@ -67,7 +67,7 @@ TEST(GlbBuilder, an_array_is_stored_once_and_no_other_for_it) {
 TEST(GlbBuilder, arrays_in_another_order_are_those_that_were_added_in_that_order) {
   const std::vector<std::vector<float>> arrays = {vectors(1, 3 * kVertices), vectors(7, 30), vectors(3, 3 * kVertices),
                                                   vectors(9, 40), vectors(5, 0)};
-  const std::vector<std::size_t> order = {3, 1, 5, 2, 4};  // accessors
+  const std::vector<std::size_t> order = {3, 1, 5, 2, 4};  // indices of accessors
   GlbBuilder sorted, expected;
   for (GlbBuilder* const builder : {&sorted, &expected})
     (void)builder->set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices);

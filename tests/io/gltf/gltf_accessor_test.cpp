@@ -1,4 +1,5 @@
-// Tests how the bytes of buffers become numbers: strides, sparse accessors, and quantised components.
+// Tests how the glTF reader turns the bytes of buffers into numbers: strides, sparse accessors, and quantised
+// components.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +38,8 @@ TEST(GltfAccessors, elements_may_stand_apart) {
 }
 
 TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
-  // The order is position, normal, position, normal, ...; the last element ends with the view.
+  // The view has a position, a normal, a position, a normal and so on. The last normal ends exactly at the end of the
+  // view.
   std::vector<float> mixed;
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -55,7 +57,7 @@ TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
   EXPECT_EQ(geometry_of(builder).normals, normals);
 
-  // This view ends with the last element, so its last stride is incomplete.
+  // The view ends with the last position, so the last stride is incomplete.
   builder.json["bufferViews"][view]["byteLength"] = 24 * 3 + 12;
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
@@ -79,7 +81,8 @@ TEST(GltfAccessors, whole_numbers_may_be_written_as_floats) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
 }
 
-// A sparse accessor replaces elements 1 and 3 of the quad.
+// A sparse accessor replaces elements 1 and 3 of the quad. kReplacedZeros is the result if the other elements are
+// zeros.
 const std::vector<float> kReplacing = {5, 6, 7, 8, 9, 10};
 const std::vector<float> kReplaced = {0, 0, 0, 5, 6, 7, 1, 1, 0, 8, 9, 10};
 const std::vector<float> kReplacedZeros = {0, 0, 0, 5, 6, 7, 0, 0, 0, 8, 9, 10};
@@ -92,7 +95,8 @@ void expect_sparse() {
   over.make_sparse<Index>(replaced, {1, 3}, kReplacing);
   EXPECT_EQ(geometry_of(over).positions, kReplaced);
 
-  // Without a view, the elements that are not replaced are zero, as in a target that moves few vertices.
+  // Without a buffer view, the elements that a sparse accessor does not replace are zero, as in a target that moves few
+  // vertices.
   GltfBuilder alone;
   const std::size_t base = alone.add_positions(test::kQuad);
   const std::size_t target = alone.add_accessor_over(std::nullopt, "VEC3", 5126, 4);
@@ -138,7 +142,8 @@ TEST(GltfSparse, indices_of_corners_may_be_sparse) {
   EXPECT_EQ(geometry_of(builder).corners, (std::vector<std::uint32_t>{3, 1, 2, 0, 2, 1}));
 }
 
-// Computes the formulas of section 3.6.2.2 of the specification in long double. The result must be the nearest float.
+// Returns the number that a component stands for, by the formulas of section 3.6.2.2 of the glTF specification, in long
+// double. The reader must return the nearest float.
 template <class T>
 float as_float(T c, bool normalized) {
   if (!normalized) return static_cast<float>(c);
@@ -146,7 +151,8 @@ float as_float(T c, bool normalized) {
   return static_cast<float>(std::max(f, -1.0L));
 }
 
-// Tests twelve components, including both ends of the range. Every element is padded to a multiple of four bytes.
+// Reads twelve components of type T, including the smallest and the largest value. Every element is padded to a
+// multiple of four bytes.
 template <class T>
 void expect_quantised() {
   constexpr T kMin = std::numeric_limits<T>::min(), kMax = std::numeric_limits<T>::max();
@@ -161,7 +167,7 @@ void expect_quantised() {
     const std::size_t base = builder.add_strided("VEC3", values, (3 * sizeof(T) + 3) / 4 * 4, normalized);
     builder.add_mesh(GltfBuilder::primitive(base, builder.add_indices(test::kQuadCorners), {{{"POSITION", base}}}));
     builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-    // Targets must be signed.
+    // Components of targets must be signed integers.
     const bool is_target = std::is_signed_v<T>;
     if (!is_target) builder.json["meshes"][0]["primitives"][0].erase("targets");
     const GltfGeometry geometry = geometry_of(builder);

@@ -1,5 +1,5 @@
-// Reads files in which one number or byte or the length is wrong. Each file must give an error with a place, or a valid
-// result.
+// Reads glTF files in which one number, one byte or the length is wrong. Each file must give an error with a place, or
+// a valid result.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,10 +26,10 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// A reader of arbitrary files, which counts refused files and collects complaints about broken invariants.
+// Reads any number of files, counts refused files, and collects complaints about broken invariants.
 class Batch {
  public:
-  // Reads a file, or under a sanitizer, which is slow, only every seventh file.
+  // Reads a file. A sanitizer makes reading slow, so with a sanitizer only every seventh file is read.
   void read(const std::string& label, const std::string& bytes) {
     last_refused_ = true;
     if (++count_ % 7 != 0 && test::is_sanitized()) return;
@@ -45,7 +45,7 @@ class Batch {
   void complain(const std::string& label) { complaints_ += label + "\n"; }
   [[nodiscard]] bool last_was_refused() const { return last_refused_; }
 
-  // Returns the number of files, the number of refused files, and the complaints, in one text.
+  // Returns one text with the number of files, the number of refused files, and the complaints.
   [[nodiscard]] std::string summary() const {
     return std::to_string(count_) + " " + std::to_string(refused_) + " " + complaints_;
   }
@@ -69,13 +69,13 @@ void expect_good_batch(std::size_t least_count, const std::function<void(Batch&)
   EXPECT_GT(refused, 0U);
   EXPECT_EQ(run.text, std::to_string(count) + " " + std::to_string(refused) + " ");
   if (!test::is_sanitized()) {
-    EXPECT_LT(run.peak_growth, kMostGrowth);  // a sanitizer keeps freed memory
+    EXPECT_LT(run.peak_growth, kMostGrowth);  // a sanitizer keeps freed memory, so it would fail
   }
   std::printf("%zu files, %zu of them refused, in %.2f s, %zu KiB\n", count, refused, run.seconds,
               run.peak_growth / 1024);
 }
 
-// Calls visit() with a JSON pointer to every number of a document.
+// Calls visit() for every number in a JSON document, with the JSON pointer to the number.
 void for_each_number(const Json& value, const Json::json_pointer& at,
                      const std::function<void(const Json::json_pointer&)>& visit) {
   if (value.is_number()) visit(at);
@@ -135,7 +135,7 @@ TEST(GltfBoundary, every_value_of_a_document_of_another_type_or_missing) {
     for (const auto& [name, builder] : test::all_documents()) {
       const Json whole = Json::parse(builder.gltf()), flat = whole.flatten();
       for (const auto& [key, unused] : flat.items()) {
-        // Replaces the value itself, and then every value that contains it.
+        // Replaces the value at the pointer, and then, one after the other, every value that contains it.
         for (Json::json_pointer at(key); !at.empty(); at.pop_back()) {
           for (const Json& value : values) {
             Json broken = whole;
@@ -221,7 +221,8 @@ TEST(GltfBoundary, every_bit_and_count_of_compressed_bytes) {
       for (std::size_t at = 0; at < builder.buffer.size(); ++at) {
         for (int bit = 0; bit < 8; ++bit)
           read_with(at, std::string(1, static_cast<char>(builder.buffer[at] ^ (1 << bit))));
-        // Draco encodes these counts in 7, 14, 21, 28 and 32 bits, or as plain numbers of 32 bits.
+        // Draco encodes counts in 7, 14, 21, 28 or 32 bits, or as plain numbers of 32 bits. The test tries large counts
+        // in each encoding.
         for (const char* const count : {"\x7F", "\xFF\x7F", "\xFF\xFF\x7F", "\xFF\xFF\xFF\x7F", "\xFF\xFF\xFF\xFF\x0F",
                                         "\xFF\xFF\xFF\xFF", "\xAA\xAA\xAA\x0A", "\x80\x80\x80\x80\x08"}) {
           if (at + std::strlen(count) <= builder.buffer.size()) read_with(at, count);

@@ -1,4 +1,5 @@
-// Tests EXT_meshopt_compression and KHR_draco_mesh_compression, with data from the encoders of their makers.
+// Tests the extensions EXT_meshopt_compression and KHR_draco_mesh_compression. The data come from the encoders of the
+// libraries meshoptimizer and Draco.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,11 +33,11 @@ GltfGeometry geometry_of(const GltfFixture& file) {
   return geometry ? geometry.value() : GltfGeometry{};
 }
 
-// A grid with enough vertices that more than one block is coded.
+// A grid of vertices that is so large that the encoder makes more than one block.
 struct Grid {
   std::vector<float> positions;
   std::vector<float> normals;
-  std::vector<float> bulge;  // the deltas of a target
+  std::vector<float> bulge;  // the position deltas of a target
   Corners corners;
 };
 
@@ -73,7 +74,7 @@ TEST(GltfMeshopt, attributes_and_triangles_come_back_bit_for_bit) {
   EXPECT_EQ(geometry.positions, grid.positions);
   ASSERT_EQ(geometry.targets.size(), 1U);
   EXPECT_EQ(geometry.targets[0].positions, grid.bulge);
-  // The encoder keeps the order of triangles and their winding, but not their first corner.
+  // The encoder keeps the order of triangles and their winding, but may begin a triangle with another corner.
   ASSERT_EQ(geometry.corners.size(), grid.corners.size());
   for (std::size_t f = 0; f < grid.corners.size(); f += 3) {
     std::array<std::uint32_t, 3> read{}, written{};
@@ -108,8 +109,8 @@ TEST(GltfMeshopt, triangles_of_two_bytes_come_back) {
   EXPECT_EQ(geometry_of(GltfFixture(builder)).corners, kCorners);
 }
 
-// Decodes a normal by the formula in appendix B of the extension's specification. x, y and the z that stands for 1 are
-// integers.
+// Decodes an octahedral normal by the formula in appendix B of the specification of EXT_meshopt_compression. The three
+// numbers are integers; the third is the number that stands for 1.
 std::array<double, 3> octahedral(const std::array<int, 3>& coded, int largest) {
   const double one = coded[2];
   double x = coded[0] / one, y = coded[1] / one;
@@ -128,7 +129,7 @@ template <class T>
 void expect_octahedral(int bits) {
   const Grid grid = make_grid(20);
   const std::size_t vertices = grid.positions.size() / 3;
-  std::vector<float> four;  // the encoder requires four components
+  std::vector<float> four;  // the encoder takes four components per normal
   for (std::size_t i = 0; i < vertices; ++i) {
     for (std::size_t k = 0; k < 3; ++k) four.push_back((i % 2 == 0 ? 1.0F : -1.0F) * grid.normals[3 * i + k]);
     four.push_back(0);
@@ -152,7 +153,7 @@ void expect_octahedral(int bits) {
   for (std::size_t i = 0; i < vertices; ++i) {
     const auto expected = octahedral({filtered[4 * i], filtered[4 * i + 1], filtered[4 * i + 2]}, largest);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The function computes in float32, so the last digit may be rounded either way.
+      // The reader computes in float32, so the last digit of a component may be rounded up or down.
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), expected[k], 1.001 / largest) << i;
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), static_cast<double>(four[4 * i + k]),
                   4.0 / (1 << (bits - 1)))
@@ -220,7 +221,7 @@ TEST(GltfMeshopt, stride_of_a_view_must_be_that_of_its_compressed_elements) {
 }
 
 TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_the_view) {
-  // An element of the stream has a position and four more bytes.
+  // An element of the stream has 16 bytes: a position and four bytes that are not read.
   std::vector<float> wide;
   for (std::size_t i = 0; i < 12; ++i) {
     wide.push_back(test::kQuad[i]);
@@ -237,7 +238,7 @@ TEST(GltfMeshopt, elements_wider_than_what_is_read_of_them_need_the_stride_of_th
     if (has_stride) {
       EXPECT_EQ(geometry_of(file).positions, test::kQuad);
     } else if (file.ok()) {
-      // Without a stride, elements are packed, as the core specification demands.
+      // If the view has no stride, elements are packed without gaps, as the glTF specification demands.
       const std::vector<float> packed(wide.begin(), wide.begin() + 12);
       EXPECT_EQ(geometry_of(file).positions, packed);
     }
@@ -315,7 +316,8 @@ TEST(GltfDraco, sequential_mesh_comes_back_bit_for_bit_with_its_targets) {
   }
 }
 
-// Returns triangles as coordinates of their corners, rotated to begin with the smallest corner, and sorted.
+// Returns each triangle as the nine coordinates of its corners. Rotates each triangle so that its smallest corner is
+// first, and sorts the triangles.
 std::vector<std::array<float, 9>> sorted_triangles(const std::vector<float>& positions, const Corners& corners) {
   std::vector<std::array<float, 9>> triangles;
   for (std::size_t f = 0; f + 3 <= corners.size(); f += 3) {
@@ -337,7 +339,7 @@ TEST(GltfDraco, quantised_floats_are_within_a_step_of_the_true_ones) {
   builder.add_mesh(test::draco_primitive(builder, coded, grid.positions.size() / 3, grid.corners.size(), false, {}));
   const GltfGeometry geometry = geometry_of(GltfFixture(builder));
   ASSERT_EQ(geometry.positions.size(), grid.positions.size());
-  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // the smallest coordinate is 0
+  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // range of x and y, from 0
   for (std::size_t i = 0; i < grid.positions.size(); ++i)
     EXPECT_NEAR(geometry.positions[i], grid.positions[i], range / 4095) << i;
 }
@@ -439,7 +441,7 @@ TEST(GltfDraco, vertices_that_no_face_names_are_counted) {
   }
 }
 
-// The extension compresses some attributes of the primitive; the others are in ordinary accessors.
+// The Draco mesh holds some attributes of the primitive, and ordinary accessors hold the others.
 TEST(GltfDraco, attributes_that_are_not_compressed_are_read_from_their_accessors) {
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   const auto read = [&](auto edit) {

@@ -1,4 +1,4 @@
-// Tests the structure of documents: containers, meshes, nodes, animations, and how primitives become triangles.
+// Tests the structure of glTF documents: containers, meshes, nodes, animations, and how primitives become triangles.
 #include "chronormal/io/gltf_document.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ TEST(GltfContainer, glb_and_gltf_hold_the_same) {
 }
 
 TEST(GltfContainer, bin_chunk_has_at_most_3_bytes_more_than_its_buffer) {
-  // The specification allows only padding bytes after the chunk.
+  // After the data of the buffer, the chunk may have only the bytes that pad it to a multiple of four.
   GltfBuilder builder = test::quad_document();
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4);
   for (const std::size_t surplus : {std::size_t{0}, std::size_t{1}, std::size_t{3}, std::size_t{4}, std::size_t{5}}) {
@@ -217,7 +217,8 @@ TEST(GltfStructure, target_names_count_only_when_there_is_one_for_each) {
   }
 }
 
-// Programs that rewrite a file may keep only the extras of nodes, and gltfpack puts the mesh into a new node below.
+// A bake leaves a mark in the extras. Programs that rewrite a file may keep only the extras of nodes, and gltfpack
+// moves the mesh into a new child node.
 TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   using Json = nlohmann::json;
   const auto mark = [](double factor) -> Json {
@@ -226,7 +227,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
             {"sequence", false},
             {"extras", {{{"target", 1}, {"linear", Json::array()}, {"quadratic", {{0, 0, factor}}}}}}};
   };
-  // Returns the factor in the mark that is found for the mesh, or 0 if there is no mark.
+  // Returns the factor in the mark that the reader finds for the mesh, or 0 if it finds no mark.
   const auto factor_of = [](const GltfBuilder& builder) {
     const GltfFixture file(builder);
     EXPECT_TRUE(file.ok()) << file.error();
@@ -250,7 +251,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   ASSERT_TRUE(broken->meshes()[0].mark_fault);
   EXPECT_EQ(broken->meshes()[0].mark_fault->place, "a.gltf, /nodes/1/extras/chronormal/version");
 
-  // If a node has its own mesh, its mark belongs only to that mesh.
+  // A mark in a node that has another mesh belongs to that mesh only.
   builder.json["meshes"].push_back(builder.json["meshes"][0]);
   builder.json["nodes"][0]["mesh"] = 1;
   builder.json["nodes"][1].erase("extras");
@@ -307,14 +308,15 @@ TEST(GltfStructure, harmless_required_extensions_are_accepted_and_others_are_ref
   }
 }
 
-// Returns triangles with their smallest corner first: rotated, but never reversed.
+// Rotates each triangle so that its smallest corner is first. Keeps the winding.
 Corners turned(Corners corners) {
   for (auto face = corners.begin(); face != corners.end(); face += 3)
     std::rotate(face, std::min_element(face, face + 3), face + 3);
   return corners;
 }
 
-// Makes five vertices that work for every mode; as a fan they surround the first one.
+// Makes a document with five vertices, which suit every mode of primitives: in a triangle fan, vertex 0 is in the
+// middle.
 GltfGeometry five_vertices(int mode, std::optional<std::vector<std::uint8_t>> indices) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});
@@ -330,7 +332,7 @@ TEST(GltfPrimitiveModes, strips_alternate_their_winding) {
 }
 
 TEST(GltfPrimitiveModes, fans_turn_round_their_first_vertex) {
-  // The specification writes p_i = {v_(i+1), v_(i+2), v_0}.
+  // The specification defines triangle i of a fan as p_i = {v_(i+1), v_(i+2), v_0}.
   EXPECT_EQ(turned(five_vertices(6, std::nullopt).corners), turned(Corners{1, 2, 0, 2, 3, 0, 3, 4, 0}));
   EXPECT_EQ(turned(five_vertices(6, std::vector<std::uint8_t>{3, 1, 0, 2}).corners), turned(Corners{1, 0, 3, 0, 2, 3}));
 }

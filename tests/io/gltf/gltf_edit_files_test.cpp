@@ -1,4 +1,4 @@
-// Tests the destinations of an edited file: containers, folders and streams, and failing writes.
+// Tests where edited files can be written (containers, folders, streams), and what happens if writing fails.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -32,7 +32,8 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Makes two triangles in two buffers with one view each; some bytes of the second buffer are unused.
+// Makes a document with two triangles, whose arrays are in two buffers with one view each. Some bytes of the second
+// buffer are unused.
 GltfBuilder two_buffers(const std::string& first, const std::string& second) {
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", 36}, {"name", "one"}, {"extras", "\xC3\xA9"}}, {{"byteLength", 41}}};
@@ -49,8 +50,8 @@ std::string first_bytes() { return bytes_of(kFirst); }
 std::string second_bytes() { return "skip" + bytes_of(kSecond) + "x"; }
 std::string as_data(const std::string& bytes) { return "data:application/octet-stream;base64," + base64(bytes); }
 
-// Opens a written file, and compares its arrays with those of two_buffers(). With with_third, the file must also have
-// an added third array.
+// Opens a file and compares its arrays with those of two_buffers(). If with_third, the file must also have a third
+// array.
 void expect_arrays(const std::string& path, bool with_third) {
   const Result<GltfDocument> document = GltfDocument::open(path);
   ASSERT_TRUE(document.ok()) << document.error().text();
@@ -265,7 +266,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   constexpr std::uintmax_t kSize = 4294967296;
   folder.write("b.bin", std::string(static_cast<std::size_t>(kSize / 99), '\0'));
   std::error_code error;
-  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // a hole fills the file up to the largest allowed size
+  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // makes a hole up to the largest allowed size
   if (error) GTEST_SKIP() << "the file system has no files of 4 GiB: " << error.message();
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", kSize}, {"uri", "b.bin"}}};
@@ -311,7 +312,7 @@ TEST(GltfEditFiles, failed_write_leaves_the_old_file_and_no_temporary) {
   EXPECT_TRUE(read_whole(path) == source);
   EXPECT_EQ(folder.entry_count(), 1U);
 
-  // The source is still mapped while it is replaced.
+  // The program still has the source mapped into memory while it replaces the source.
   const std::string expected = bytes_or_error(edit, path);
   ASSERT_TRUE(edit.write(path, true).ok());
   EXPECT_TRUE(read_whole(path) == expected);

@@ -28,7 +28,7 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Checks everything that an edit of a GLB file must keep.
+// Checks that an edit of a GLB file changes nothing but what it should.
 void expect_the_rest_unchanged(const std::string& before, const GltfEdit& edit) {
   const GlbParts source = take_apart(before), result = take_apart(bytes_or_error(edit));
   EXPECT_EQ(fuzz::difference_beside(fuzz::JsonTokens(source.json.substr(0, source.json.find_last_of('}') + 1)),
@@ -39,7 +39,7 @@ void expect_the_rest_unchanged(const std::string& before, const GltfEdit& edit) 
   EXPECT_EQ(result.rest, source.rest);
 }
 
-// A chunk of a kind that the specification does not define.
+// A chunk of a type that the specification does not define. Readers must ignore such chunks.
 const std::string kUnknownChunk("\x08\0\0\0XTRA12345678", 16);
 
 std::string with_chunk(std::string glb, const std::string& chunk) {
@@ -69,7 +69,7 @@ TEST(GltfEdit, without_changes_writes_the_same_bytes) {
   }
 }
 
-// Text that a DOM would change when it prints it again.
+// JSON that would change if a program parsed it and printed it again.
 const char* const kNastyJson =
     "{\r\n"
     R"(  "asset" : {"version" : "2.0", "generator" : "caf\u00e9 \ud834\udd1e \"{[,]}\" é", "extras" : 1e400},
@@ -157,7 +157,7 @@ TEST(GltfEdit, number_beyond_double_is_kept_and_refused_where_it_is_read) {
   EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: the value must be a string, not a number");
 }
 
-// Returns the accessor of an array that was added to a file without arrays.
+// Adds an array with these options to a file, and returns the JSON of the accessor of this array.
 Json accessor_of(const std::vector<float>& values, const GltfVectors& options, bool scalars = false) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(scalars ? 3 : values.size(), 1.0F));

@@ -1,4 +1,5 @@
-// Reads malicious files: huge structures, and invalid files of other projects from CHRONORMAL_DATA.
+// Reads malicious files with huge structures, and the invalid files of other projects in the folder that
+// CHRONORMAL_DATA names.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,8 +29,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads a file of any size in a child process, and returns "" for success or the first error. Fails if reading takes
-// more memory than allowed, in addition to the file itself, or breaks an invariant.
+// Reads a file of any size in a child process. Returns "" or the first error. Fails if reading breaks an invariant, or
+// takes more memory than is allowed in addition to the file itself.
 std::string read_apart(const std::string& label, const std::string& bytes) {
   const test::ChildRun run = test::run_in_child(120, [&]() -> std::string {
     const Result<GltfDocument> document = GltfDocument::read(bytes, "a.gltf");
@@ -53,7 +54,7 @@ constexpr const char* kSlow = "under a sanitizer memory is not measured, and thi
 
 constexpr const char* kHead = R"({"asset": {"version": "2.0"}, )";
 
-// Makes a chain of nodes 0 -> 1 -> 2 ..., the last of which has the child `back`, if any.
+// Makes a document with a chain of nodes 0 -> 1 -> 2 ... The last node has the child `back`, unless `back` is empty.
 std::string chain(std::size_t count, const std::string& back) {
   std::string text = std::string(kHead) + R"("nodes": [)";
   for (std::size_t i = 0; i + 1 < count; ++i) text += std::string(R"({"children":[)") + std::to_string(i + 1) + "]},";
@@ -75,7 +76,7 @@ TEST(GltfHuge, nested_arrays_are_refused_at_the_level_that_is_too_deep) {
   std::string objects = head;
   for (int i = 0; i < 200000; ++i) objects += R"({"a":)";
   EXPECT_TRUE(read_apart("objects", objects).starts_with("a.gltf, byte "));
-  // Brackets inside a string do not nest.
+  // Brackets inside a string do not count as nested.
   EXPECT_TRUE(read_apart("text", head + "\"\\\"" + std::string(200000, '[') + "\"}").starts_with("a.gltf: "));
 }
 
@@ -107,12 +108,13 @@ TEST(GltfHuge, numbers_and_texts_of_a_million_digits) {
   EXPECT_TRUE(read_apart("exponent", std::string(kHead) + "\"extras\": 1e-" + digits + "}").starts_with("a.gltf"));
   EXPECT_TRUE(read_apart("version", std::string(R"({"asset": {"version": ")") + digits + "\"}}")
                   .starts_with("a.gltf, /asset/version: "));
-  // An unused extension is only a note; the error is that the file is empty.
+  // An unknown extension that the file does not use is only a note. The error is that nothing in the file moves.
   EXPECT_TRUE(read_apart("extension", std::string(kHead) + R"("extensionsRequired": [")" + digits + "\"]}")
                   .starts_with("a.gltf: nothing in this file moves"));
 }
 
-// Makes a small file that demands much memory: equal deltas in many targets, or zeros without a view.
+// Makes a small file that needs much memory: many targets share the same deltas, or have zeros that the file does not
+// store.
 std::string many_targets(std::size_t vertex_count, std::size_t target_count, bool has_view) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(3 * vertex_count, 1.0F));
@@ -150,7 +152,8 @@ TEST(GltfHuge, keys_that_nothing_backs_are_refused_before_they_are_made) {
   EXPECT_TRUE(read_apart("keys", builder.glb()).starts_with("a.gltf, /"));
 }
 
-// Many tracks share their arrays. If each track copied the arrays, a small file would need a lot of memory.
+// Many tracks share the same arrays of keys. If the reader copied the arrays for each track, a small file would need
+// much memory.
 TEST(GltfHuge, tracks_that_share_their_keys_are_refused_before_these_are_copied) {
   if (test::is_sanitized()) GTEST_SKIP() << kSlow;
   GltfBuilder builder = test::quad_document();
@@ -205,7 +208,7 @@ TEST(GltfHuge, hundred_thousand_channels_are_read_in_a_breath) {
   }
 }
 
-// Provides the invalid files of other projects.
+// Finds the invalid files of other projects, and skips the test if they are missing.
 class HostileData : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -216,7 +219,7 @@ class HostileData : public ::testing::Test {
   fs::path data_;
 };
 
-// Reads a file strictly, so that a note becomes an error, or leniently like users.
+// Reads a file. If `strict`, notes are errors; otherwise the file is read as for users.
 fuzz::GltfReading read_file(const fs::path& path, bool strict = true) {
   const Result<GltfDocument> document = GltfDocument::open(path.string(), {.strict = strict});
   return fuzz::read_all_of(document, path.filename().string(), GltfMotionOptions().most_bytes);
@@ -244,7 +247,8 @@ TEST_F(HostileData, gltf_files_are_read_or_refused_with_a_place_within_a_second)
   std::printf("%zu files, %zu of them refused\n", count, refused);
 }
 
-// Errors of the Khronos validator about parts of a file that we read. A file with such an error must be refused.
+// Codes of errors that the Khronos validator reports about parts of a file that our reader reads. Our reader must
+// refuse a file with such an error.
 const std::set<std::string_view> kRead = {
     "ACCESSOR_INDEX_OOB",
     "ACCESSOR_INDEX_PRIMITIVE_RESTART",
@@ -266,7 +270,8 @@ const std::set<std::string_view> kRead = {
     "VALUE_NOT_IN_RANGE",
 };
 
-// Errors about parts of a file that we do not read, or read only when they are used, each with the reason.
+// Codes of errors about parts of a file that our reader does not read, or reads only if they are used. The text gives
+// the reason.
 const std::map<std::string_view, const char*> kNotRead = {
     {"ACCESSOR_INVALID_SIGN", "the sign of tangents does not touch geometry"},
     {"ACCESSOR_JOINTS_INDEX_DUPLICATE", "skins are not read"},
@@ -302,13 +307,14 @@ const std::map<std::string_view, const char*> kNotRead = {
     {"MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", "the file has it in colours, which are not read"},
 };
 
-// Files with types of later versions, for which the validator only warns.
+// Files with types from later versions of glTF. The validator only warns of such types.
 const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 
-// Tells whether a message is about a part that we read. If a code also occurs in other parts, its JSON pointer decides.
+// Tells whether a message of the validator is about a part of the file that our reader reads. Some codes also occur in
+// other parts; the JSON pointer then decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
-    // Items of these lists are not read at all.
+    // Our reader never reads the entries of these lists.
     for (const char* const list : {"/materials", "/textures", "/images", "/samplers", "/skins", "/cameras", "/scenes"})
       if (pointer.starts_with(list)) return false;
     return !pointer.ends_with("/material");

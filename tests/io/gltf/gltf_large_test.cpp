@@ -1,4 +1,4 @@
-// Checks that reading a part of a large file costs time and memory for that part only.
+// Checks that reading a part of a large file takes only the time and the memory that this part needs.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -20,14 +20,14 @@ void append_word(std::string& text, std::uint32_t value) {
   for (int shift = 0; shift < 32; shift += 8) text += static_cast<char>((value >> shift) & 0xFF);
 }
 
-// Writes a GLB of 180 MB. A grid of 64 x 64 vertices in it morphs. The mesh in front of the grid has 15 million
-// vertices, does not morph, and is a hole in the file.
+// Writes a GLB of 180 MB with two meshes. The first mesh has 15 million vertices and does not morph; its data are a
+// hole in the file, which takes no space on the disk. The second mesh is a grid of 64 x 64 vertices that morphs.
 std::string write_large_glb(const TemporaryFolder& folder) {
   constexpr std::uint32_t kStill = 15'000'000, kSide = 64, kMoving = kSide * kSide;
   constexpr std::uint64_t kStillBytes = std::uint64_t{12} * kStill;
   std::string moving, indices;
   const auto append_float = [&](float value) { append_word(moving, std::bit_cast<std::uint32_t>(value)); };
-  for (const float height : {0.0F, 1.0F}) {  // the base, then the deltas
+  for (const float height : {0.0F, 1.0F}) {  // the height of the base, then that of the deltas
     for (std::uint32_t i = 0; i < kMoving; ++i) {
       append_float(height == 0 ? static_cast<float>(i % kSide) : 0);
       append_float(height == 0 ? static_cast<float>(i / kSide) : 0);
@@ -109,7 +109,7 @@ TEST(GltfLarge, what_stands_still_is_read_when_it_is_asked_for) {
   const test::ChildRun run = test::run_in_child(60, read_still);
   ASSERT_TRUE(run.finished) << run.text;
   EXPECT_EQ(run.text, "15000000 vertices");
-  EXPECT_GT(run.peak_growth, std::size_t{180} << 20);  // otherwise the test above would measure nothing
+  EXPECT_GT(run.peak_growth, std::size_t{180} << 20);  // otherwise, the test above would measure nothing
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Tests targets and animations as motions.
+// Tests how the reader turns targets and animations of glTF files into motions.
 #include "io/gltf/gltf_motion.h"
 
 #include <gtest/gtest.h>
@@ -102,9 +102,9 @@ TEST(GltfTargets, sums_are_rounded_once_to_the_nearest_float) {
   }
 }
 
-// The document has two meshes that morph and one that does not, with several primitives, and nodes in another order:
-//   mesh 0: primitive 0 a triangle, primitive 1 the quad, primitive 2 points; one target
-//   mesh 1: nothing to morph
+// Makes a document with three meshes, two of which morph, and with nodes in another order than the meshes:
+//   mesh 0: primitive 0 is a triangle, primitive 1 the quad, primitive 2 points; one target
+//   mesh 1: no targets
 //   mesh 2: a triangle; two targets, of which the first has normals only
 const std::vector<float> kFirst = {0, 0, 0, 1, 0, 0, 0, 1, 0}, kFirstMove = {0, 0, 1, 0, 0, 1, 0, 0, 1};
 const std::vector<float> kLast = {5, 0, 0, 6, 0, 0, 5, 1, 0}, kLastMove = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -235,15 +235,16 @@ TEST(GltfLinear, normalised_integers_are_weights) {
   check(std::uint16_t{}, {0, 1, 1 / 65535.0, 0.2}, 0, 65535, 1, 13107);
 }
 
-// A track of a node. Two nodes have the same mesh, and a third one has another mesh and other times.
+// A weight track for a node. Two of the nodes have the same mesh, and a third node has another mesh and other key
+// times.
 struct Track {
   std::size_t node;
   GltfInterpolation interpolation;
   std::vector<float> times, values;
 };
 
-// Returns the true positions of a part: applies the weights of its node at a time by the formulas of the specification,
-// in code that shares nothing with the reader.
+// Returns the true positions of a part at a time. Evaluates the weights by the formulas of the specification, in code
+// that shares nothing with the reader.
 std::vector<double> true_positions(const Track& track, const std::vector<float>& base,
                                    const std::vector<std::vector<float>>& targets, double time) {
   return test::morphed(base, targets,
@@ -263,7 +264,8 @@ TEST(GltfLinear, nodes_with_different_keys_are_exact_at_every_time) {
   const std::vector<Track> tracks = {{3, GltfInterpolation::kLinear, {0, 1, 4}, {0, 0, 1, 2, -1, 0.5F}},
                                      {2, GltfInterpolation::kLinear, {0.25F, 1, 2, 5}, {0, 1, 0.5F, 3}}};
   const GltfMotion result = motion_of(two_nodes(tracks), "two");
-  // Parts are in the order of nodes: first node 2 (mesh 0: a triangle and the quad), then node 3 (mesh 2).
+  // The parts are in the order of the nodes: first node 2 (mesh 0, with the triangle and the quad), then node 3 (mesh
+  // 2).
   ASSERT_EQ(result.parts.size(), 3U);
   ASSERT_EQ(result.parts[0].node, 2U);
   EXPECT_EQ(result.parts[1].node, 2U);
@@ -357,7 +359,7 @@ TEST(GltfStep, holds_still_between_keys_and_jumps_at_them) {
     EXPECT_EQ(from.positions, held[s]);
     EXPECT_EQ(to.positions, held[s]);
   }
-  // A key between the ends has two keyframes: just before and just after it.
+  // A key between the first and the last becomes two keyframes: just before the key and just after it.
   EXPECT_EQ(std::count_if(motion.keyframes.begin(), motion.keyframes.end(), [](const auto& k) { return k.time == 1; }),
             2);
 }
@@ -368,7 +370,7 @@ TEST(GltfStep, beside_a_linear_track_each_keeps_its_own_way) {
   const GltfMotion result = motion_of(two_nodes(tracks), "two");
   const std::vector<float> still(9, 0.0F);
   for (int i = 0; i < 1000; ++i) {
-    const double time = 2 * (i + 0.5) / 1000.0;  // chosen so that it is never a key
+    const double time = 2 * (i + 0.5) / 1000.0;  // never exactly the time of a key
     const std::vector<double> read = positions_at(result.motion, time);
     std::vector<double> expected = true_positions(tracks[0], kFirst, {kFirstMove}, time);
     for (const auto& more : {true_positions(tracks[0], test::kQuad, {test::kLift}, time),
@@ -379,7 +381,7 @@ TEST(GltfStep, beside_a_linear_track_each_keeps_its_own_way) {
   }
 }
 
-// Makes a triangle whose third vertex rises by 1, on two nodes; the keys are 0 and 1, at 0 s and 1 s.
+// Makes two nodes with the same mesh: a triangle whose third vertex rises by 1. The weight is 0 at 0 s and 1 at 1 s.
 GltfBuilder two_nodes() {
   GltfBuilder builder;
   const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -399,7 +401,7 @@ TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
   samplers[1]["input"] = samplers[0]["input"];
   samplers[1]["output"] = samplers[0]["output"];
   const GltfMotion result = motion_of(builder, "both");
-  // The second node rests until 1 s and then jumps, so halfway only the first node has moved.
+  // The second node rests until it jumps at 1 s, so in keyframe 1, just before 1 s, only the first node has moved.
   const Motion& motion = result.motion;
   ASSERT_EQ(motion.keyframes.size(), 4U);
   EXPECT_EQ(motion.keyframes[1].positions[3 * 2 + 2], 1);
@@ -408,8 +410,8 @@ TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
 }
 
 TEST(GltfSharedKeys, mean_different_weights_for_another_number_of_targets) {
-  // The first node has three targets and LINEAR keys; the second has one target and CUBICSPLINE keys. Both use the same
-  // six numbers.
+  // The mesh of the first node has three targets and LINEAR keys. The mesh of the second node has one target and
+  // CUBICSPLINE keys. Both tracks use the same six numbers as values.
   GltfBuilder builder = two_nodes();
   const auto& target = builder.json["meshes"][0]["primitives"][0]["targets"][0];
   auto three = builder.json["meshes"][0]["primitives"][0];
@@ -432,7 +434,7 @@ TEST(GltfSharedKeys, mean_different_weights_for_another_number_of_targets) {
 TEST(GltfBodies, meshes_and_nodes_are_never_one_point) {
   const GltfMotion result = motion_of(two_nodes(), "both");
   EXPECT_EQ(result.motion.body_of_vertex, (std::vector<std::uint32_t>{0, 0, 0, 1, 1, 1}));
-  // In the keyframe at 0 s the triangles of both nodes coincide.
+  // In the keyframe at 0 s, the triangles of both nodes are at the same place, but must not be welded.
   const Motion start{result.motion.topology, {result.motion.keyframes[0]}, {}, result.motion.body_of_vertex};
   EXPECT_EQ(weld_coincident(start).count, 6U);
 }

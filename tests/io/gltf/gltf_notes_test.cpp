@@ -1,5 +1,5 @@
-// Checks that invalid parts of a file are skipped with a note if no other part needs them, and that a strict reader
-// refuses them.
+// Checks that the reader skips an invalid part of a file with a note if no other part needs it, and that a strict
+// reader refuses the file.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -24,10 +24,10 @@ using Json = nlohmann::json;
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the beginning that the place of the note must have
+  const char* pointer;  // the place of the note must begin with this
 };
 
-// Makes a quad with two targets, and an animation of them.
+// Makes a document with a quad, two targets, and an animation of the two weights.
 GltfBuilder animated() {
   GltfBuilder builder = test::quad_document();
   builder.add_track<float>(builder.add_animation("a"), 0, {0, 1, 2}, {0, 0, 1, 0, 0, 1});
@@ -168,10 +168,10 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // An animation whose parts are all skipped keeps its number, and selecting it is an error.
+    // If all parts of an animation are skipped, the animation keeps its number. To select this animation is an error.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("drives no morph targets"), std::string::npos) << error.text();
-    // The targets still move as before.
+    // The targets themselves can still be read.
     const Result<GltfMotion> motion = read_gltf_motion(*file, {});
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     EXPECT_GE(motion.value().motion.segments.size(), 2U);
@@ -192,7 +192,8 @@ TEST(GltfNotes, what_the_geometry_needs_is_an_error) {
               f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
             }).find("/nodes/0/rotation"),
             std::string::npos);
-  // An extension of a part that is read may change the part's meaning, so it is an error.
+  // If the reader uses a part of the file, an unknown extension of that part may change its meaning, and is therefore
+  // an error.
   for (const char* const pointer : {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0",
                                     "/buffers/0", "/animations/0/samplers/0"}) {
     GltfBuilder builder = animated();
@@ -218,7 +219,7 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   const GltfFixture file(builder.gltf());
   ASSERT_TRUE(file.ok()) << file.error();
   EXPECT_EQ(file->geometry(0, 0, {}).value().positions, test::kQuad);
-  // The first byte of a compressed array holds the version of the codec.
+  // The first byte of a compressed array is the version of the codec, which this test increases.
   for (char& byte : builder.buffer)
     if (byte == '\xA0') byte = '\xA1';
   const GltfFixture later(builder.gltf());
@@ -228,8 +229,8 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
   EXPECT_NE(error.find("gltfpack -c"), std::string::npos) << error;
 }
 
-// If a strict reader accepts a file, a lenient reader reads the same from it, without a note. If only the lenient
-// reader accepts a file, it gives a note.
+// If a strict reader accepts a file, a lenient reader must give the same result without a note. If only the lenient
+// reader accepts a file, it must give a note.
 TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
   constexpr std::uint32_t kSeed = 5404;
   std::cout << "seed " << kSeed << '\n';
@@ -240,7 +241,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     for (std::size_t c = random() % 3; c > 0; --c) {
       try {
         kCases[random() % kCases.size()].edit(builder);
-      } catch (const Json::exception&) {  // an earlier case has removed the member that this case changes
+      } catch (const Json::exception&) {  // an earlier case has removed the member that this case would change
       }
     }
     std::string text = builder.gltf();
@@ -261,7 +262,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     } else {
       ++noted;
       ASSERT_FALSE(strictly.errors.empty()) << file->notes()[0].text() << text;
-      // Arrays must stay at the places where other programs look for them, so the file can be written again.
+      // The file can still be edited and written: its arrays remain where other programs look for them.
       ASSERT_TRUE(GltfEdit(*file).bytes("").ok());
     }
   }

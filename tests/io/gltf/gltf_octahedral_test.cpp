@@ -1,5 +1,5 @@
-// Tests the octahedral normals of EXT_meshopt_compression, by the formula of the extension's specification in double,
-// and bit for bit against npm meshoptimizer in browsers.
+// Tests how octahedral normals of EXT_meshopt_compression are decoded. Compares the results with the formula of the
+// specification in double and, bit by bit, with those of the npm package meshoptimizer in browsers.
 #include "io/gltf/decode/gltf_octahedral.h"
 
 #include <gtest/gtest.h>
@@ -20,9 +20,9 @@
 namespace chronormal::gltf_octahedral_test {
 namespace {
 
-// Returns coded normals for each number of bits: every (x, y) on a grid of at most most_steps steps along each side of
-// the square. With few bits, these are all possible values. w is a component that must not change. The same loop is in
-// tests/viewers/filters.test.mjs.
+// Returns encoded normals for each number of bits from least_bits to most_bits: all (x, y) on a grid with at most
+// most_steps steps along each side of the square. If there are few bits, these are all possible values. The fourth
+// component, w, must not change. tests/viewers/filters.test.mjs has the same loop.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;
@@ -46,7 +46,8 @@ std::vector<T> decoded(const std::vector<T>& elements) {
   return result;
 }
 
-// Returns the unrounded normal: a point on the octahedron |x| + |y| + |z| = one, projected onto the sphere.
+// Returns the normal for the encoded (x, y) without rounding: a point on the octahedron |x| + |y| + |z| = one, which is
+// scaled to the given length.
 std::array<double, 3> normal_of(int x, int y, int one, double length) {
   const int z = one - std::abs(x) - std::abs(y);
   const auto fold = [&](int a, int b) { return z < 0 ? (a < 0 ? -1 : 1) * (one - std::abs(b)) : a; };
@@ -56,7 +57,7 @@ std::array<double, 3> normal_of(int x, int y, int one, double length) {
   return {place[0] * scale, place[1] * scale, place[2] * scale};
 }
 
-// Returns the largest difference between a component and its unrounded value.
+// Returns the largest rounding error of a component, compared with the normal that is not rounded.
 template <class T>
 double worst_rounding(const std::vector<T>& elements) {
   const std::vector<T> result = decoded(elements);
@@ -69,7 +70,7 @@ double worst_rounding(const std::vector<T>& elements) {
   return worst;
 }
 
-// Hashes bytes by FNV-1a.
+// Returns the FNV-1a hash of the bytes of all elements.
 template <class T>
 std::uint32_t hash(const std::vector<T>& elements) {
   std::uint32_t value = 0x811C9DC5U;
@@ -86,7 +87,8 @@ TEST(GltfOctahedral, normals_of_16_bits_are_the_nearest_but_for_float) {
   EXPECT_LE(worst_rounding(kManyOf16Bits), 0.5 + 0.004);
 }
 
-// The constants are the results of npm meshoptimizer 1.3.0, computed in tests/viewers/filters.test.mjs.
+// The constants are hashes of what the npm package meshoptimizer 1.3.0 returns. tests/viewers/filters.test.mjs computes
+// the same hashes.
 TEST(GltfOctahedral, normals_are_bit_for_bit_those_of_browsers) {
   EXPECT_EQ(hash(decoded(kEveryOf8Bits)), 4083453700U);
   EXPECT_EQ(hash(decoded(kManyOf16Bits)), 995496109U);

@@ -1,4 +1,5 @@
-// Compares with tinygltf and Assimp on files by other people. Needs CHRONORMAL_DATA, which names their folder.
+// Compares the glTF reader with tinygltf and Assimp, on files of other projects. Skipped unless CHRONORMAL_DATA names
+// the folder of these files.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
@@ -48,7 +49,7 @@ double component(int type, const unsigned char* at, bool normalized) {
   }
 }
 
-// Returns all components of an accessor, from the raw buffers that tinygltf has read.
+// Returns all components of an accessor as numbers, from the raw buffers that tinygltf has read.
 std::vector<double> numbers(const tinygltf::Model& model, int index) {
   const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
   const auto width =

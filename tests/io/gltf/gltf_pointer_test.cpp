@@ -1,5 +1,5 @@
-// Tests KHR_animation_pointer with pointers to single weights. The channels of one node together form one track, like a
-// channel of all weights.
+// Tests KHR_animation_pointer with pointers to single weights. All channels of a node together must form one track,
+// like a channel that animates all weights.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -16,7 +16,7 @@ using test::GltfBuilder, test::GltfFixture;
 
 const std::vector<float> kTimes = {0, 1, 3};
 
-// Adds a channel for a single weight.
+// Adds a channel that animates a single weight.
 void add_pointer(GltfBuilder& builder, const std::string& pointer, const std::vector<float>& times,
                  const std::vector<float>& values, const char* interpolation = "LINEAR") {
   builder.add_track(0, 0, times, values, interpolation);
@@ -31,7 +31,7 @@ GltfBuilder document() {
   return builder;
 }
 
-// Returns the error of a document, or the keys of its first track.
+// Returns the error of reading a document and its first track, or "" if there is none.
 std::string error_of(const GltfBuilder& builder) {
   const GltfFixture file(builder);
   if (!file.ok()) return file.error();
@@ -96,7 +96,7 @@ TEST(GltfPointers, a_weight_of_a_mesh_is_that_of_each_node_without_weights_of_it
   EXPECT_EQ(tracks[1].same_keys_as, 0U);
 }
 
-// Returns the weight of a channel at a time, by the formulas of appendix C of the specification.
+// Returns the value of a channel at a time, by the formulas in appendix C of the glTF specification.
 double weight_at(const std::vector<float>& times, const std::vector<float>& values, const std::string& interpolation,
                  double time) {
   const bool is_cubic = interpolation == "CUBICSPLINE";
@@ -170,7 +170,7 @@ TEST(GltfPointers, equal_times_in_arrays_of_their_own_are_counted_once) {
 }
 
 TEST(GltfPointers, keys_of_many_channels_count_against_the_expansion_that_is_allowed) {
-  // Each key of each channel becomes a row that has all weights.
+  // Each key of each channel becomes a row with all weights, so few bytes become many numbers.
   GltfBuilder builder = document();
   std::vector<float> times(40000);
   for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<float>(k);

@@ -1,5 +1,5 @@
-// Checks that files that the specification forbids are refused, with a JSON pointer to the fault. Each case is one
-// line.
+// Checks that the reader refuses files that the glTF specification forbids, with a JSON pointer to the fault. Each case
+// is one line.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,9 +18,9 @@ namespace {
 using test::GltfBuilder, test::GltfFixture;
 using Json = nlohmann::json;
 
-// Makes a document that contains everything that the reader checks. The accessors are 0 positions, 1 indices, 2 and 3
-// targets, 4 and 5 keys, 6 a sparse target in place of 3, 7 normals; the views are in the order in which they were
-// made.
+// Makes a document with everything that the reader checks. The accessors are: 0 positions, 1 indices, 2 and 3 targets,
+// 4 and 5 times and values of keys, 6 a sparse target that replaces target 3, 7 normals. The buffer views are in the
+// order in which the accessors were made.
 GltfBuilder rich_document() {
   GltfBuilder builder = test::quad_document();
   builder.add_track<float>(builder.add_animation("a"), 0, {0, 1, 2}, {0, 0, 1, 0, 0, 1});
@@ -37,10 +37,10 @@ GltfBuilder rich_document() {
 struct Case {
   const char* label;
   void (*edit)(GltfBuilder& file);
-  const char* pointer;  // the beginning that the place of the error must have
+  const char* pointer;  // the place of the error must begin with this
 };
 
-// Returns the first error that occurs when all of a file is read, or "".
+// Returns the first error from reading everything in a file, or "" if there is none.
 std::string first_error(const GltfBuilder& builder) {
   const GltfFixture file(builder.gltf());
   const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);

@@ -39,7 +39,7 @@ struct Skinned {
     builder.json["skins"][0]["inverseBindMatrices"] =
         builder.add_accessor_over(builder.add_view(test::bytes_of(numbers)), "MAT4", 5126, count);
   }
-  // Adds a channel of node 1 with keys at 0 and 1.
+  // Adds a channel that animates a property of node 1, with keys at 0 s and 1 s.
   void animate(const char* path, const std::vector<float>& values, const char* type) {
     if (!builder.json.contains("animations")) builder.add_animation("");
     const std::size_t input = builder.add_accessor("SCALAR", std::vector<float>{0, 1});
@@ -51,7 +51,7 @@ struct Skinned {
   }
 };
 
-// Reads all parts of a file, like an audit. Returns the joint weights of the vertices, or the error.
+// Reads the skin of all parts of a file, as an audit does. Returns the joint weights of the vertices, or an error.
 Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std::size_t>* first = nullptr,
                                      std::optional<std::size_t> animation = std::nullopt) {
   EXPECT_TRUE(fixture.ok()) << fixture.error();
@@ -64,7 +64,7 @@ Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std
   return shares;
 }
 
-// Returns the joint weights of every vertex as text: "0 1; 0 0.75, 1 0.25; ...".
+// Returns the joints of every vertex and their weights in percent, as text: "0 100; 0 75, 1 25; ...".
 std::string shares_of(const Skinned& skinned) {
   const GltfFixture fixture(skinned.builder);
   std::vector<std::size_t> first;
@@ -112,7 +112,7 @@ TEST(GltfSkin, joints_and_weights_may_be_of_every_type_that_the_format_has) {
   strided.weights(
       strided.builder.add_strided("VEC4", std::vector<float>{1, 0, 0, 0, 3, 1, 0, 0, 2, 2, 0, 0, 1, 3, 0, 0}, 20));
   EXPECT_EQ(shares_of(strided), kExpected);  // weights need not sum to 1
-  // A sparse accessor may have no other source of values.
+  // A sparse accessor may have no buffer view, so all values come from its sparse arrays.
   Skinned sparse;
   sparse.weights(sparse.builder.add_accessor_over(std::nullopt, "VEC4", 5126, 4));
   sparse.builder.make_sparse(sparse.builder.json["accessors"].size() - 1, std::vector<std::uint8_t>{0, 1, 2, 3},
@@ -228,7 +228,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned), spoilt.error);
-    // The shape can still be read without the skin.
+    // Without the skin, the mesh can still be read.
     const GltfFixture fixture(skinned.builder);
     ASSERT_TRUE(fixture.ok()) << spoilt.error;
     EXPECT_TRUE(fixture->geometry(0, 0, {true, true}).ok()) << spoilt.error;
@@ -285,7 +285,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned, 0), spoilt.error);
-    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // such an animation is skipped
+    EXPECT_EQ(error_of(skinned), "") << spoilt.error;  // the reader skips such an animation
   }
 }
 
@@ -317,7 +317,8 @@ TEST(GltfSkin, channels_that_move_no_joint_or_point_elsewhere_are_passed_over) {
 const std::vector<std::uint8_t> kDracoJoints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0};
 const std::vector<float> kDracoWeights = {1, 0, 0, 0, 0.75F, 0.25F, 0, 0, 0.5F, 0.5F, 0, 0, 0.25F, 0.25F, 0, 0};
 
-// A quad whose positions, joints and weights are in a compressed mesh. Positions identify the vertices in any order.
+// A quad whose positions, joints and weights are in a Draco mesh. The encoder may reorder vertices, so the test
+// identifies them by their positions.
 struct Compressed {
   Skinned skinned;
 
@@ -344,7 +345,7 @@ struct Compressed {
   }
 };
 
-// Returns the sums of the weights of a vertex for joint 0 and for joint 1, from the data of the file and without code
+// Returns the weight of joint 0 and that of joint 1 for a vertex. Computes both from the data of the file, without code
 // of src/.
 std::pair<double, double> expected_shares(std::size_t vertex) {
   std::pair<double, double> of_joints;
@@ -367,7 +368,7 @@ TEST(GltfSkin, joints_and_weights_of_a_compressed_mesh_are_those_that_were_coded
     first.push_back(shares.value().size());
     const std::vector<float> positions = fixture->geometry(0, 0, {}).value().positions;
     for (std::size_t v = 0; v < 4; ++v) {
-      std::size_t coded = 0;  // index of the vertex at this position before compression
+      std::size_t coded = 0;  // index that the vertex at this position had before compression
       while (!std::equal(positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                          positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
                          test::kQuad.begin() + static_cast<std::ptrdiff_t>(3 * coded)))
@@ -416,7 +417,7 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
       << error_of(no_mesh);
 }
 
-// Sets of weights that share one accessor take few bytes of the file, but much memory.
+// If many sets of weights share an accessor, they take few bytes of the file but much memory.
 TEST(GltfSkin, many_sets_are_held_to_the_limit_of_expansion) {
   Skinned skinned;
   constexpr std::size_t kVertices = 4096, kSets = 120;

@@ -1,4 +1,4 @@
-// Tests cubic splines of weights, which are cut into straight pieces with a known error.
+// Tests cubic splines of weights. The reader divides a spline into straight pieces and returns a bound for the error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ GltfMotion cut(const Spline& spline, double tolerance) {
   return motion ? std::move(motion).value() : GltfMotion{};
 }
 
-// Returns the largest distance of a vertex from its true position, over a thousand times.
+// Returns the largest distance between a vertex and its true position, at a thousand times.
 double largest_distance(const Spline& spline, const Motion& motion) {
   double largest = 0;
   const double first = spline.times.front(), last = spline.times.back();
@@ -53,7 +53,7 @@ double largest_distance(const Spline& spline, const Motion& motion) {
   return largest;
 }
 
-// Returns the error of rounding positions to float at the keyframes.
+// Returns a bound for the error, as a distance, of rounding the positions of the keyframes to float32.
 double rounding(const Motion& motion) {
   double largest = 0;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
@@ -74,7 +74,7 @@ TEST(GltfSpline, that_overshoots_is_within_the_stated_error) {
     EXPECT_LE(result.curve_error, tolerance * diagonal() * 1.0001);
     const double distance = largest_distance(spline, result.motion);
     EXPECT_LE(distance, result.curve_error + rounding(result.motion));
-    // The bound is not too large: at least a tenth of it is reached.
+    // The bound must not be needlessly large: the true error reaches at least a tenth of it.
     if (tolerance > 1e-4) {
       EXPECT_GE(distance, result.curve_error / 10);
     }
@@ -119,7 +119,7 @@ TEST(GltfSpline, random_ones_are_within_the_stated_error) {
 }
 
 TEST(GltfSpline, straight_one_is_not_cut) {
-  // The tangents equal the slope of the chord, so the spline is a straight line.
+  // The tangents have the slope of the straight line between the keys, so the spline is that line.
   const Spline spline = {{0, 2, 3}, {0, 0, 0, 0, 0.5F, 0, /**/ 0.5F, 0, 1, 0, 0, 0, /**/ 0, 0, 1, 0, 0, 0}};
   const GltfMotion result = cut(spline, 1e-5);
   EXPECT_EQ(result.motion.segments.size(), 2U);

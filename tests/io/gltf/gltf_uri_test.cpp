@@ -1,4 +1,4 @@
-// Tests the places from which buffers of an untrusted model may be read.
+// Tests from which places the reader loads the buffers of an untrusted model.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::GltfBuilder, test::GltfFixture;
 
-// Makes a folder outside/asset/ for the asset, with links and a pipe, and a file outside/secret.bin that must not be
-// read.
+// Makes a folder outside/asset/ with the files of a model, links and a pipe, and a file outside/secret.bin, which must
+// not be read.
 class GltfUris : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -39,7 +39,8 @@ class GltfUris : public ::testing::Test {
     ASSERT_EQ(mkfifo((asset_ + "/pipe.bin").c_str(), 0600), 0);
   }
 
-  // Returns "" if the geometry could be read, or else the error. Reads in a child process, so that it never blocks.
+  // Reads the geometry of a model whose buffer has this URI. Returns "" or the error. Reads in a child process, so that
+  // the test ends even if reading blocks.
   [[nodiscard]] std::string read(const std::string& uri, bool allow_external) const {
     const test::ChildRun run = test::run_in_child(20, [&]() -> std::string {
       GltfOptions options;
@@ -198,12 +199,13 @@ TEST_F(GltfUris, names_that_a_person_would_call_the_same_are_found) {
   const auto write = [&](const std::string& name) {
     std::ofstream(asset_ + "/" + name, std::ios::binary) << builder_.buffer;
   };
-  // A percent sign does not always begin an escape. A URI may also have the characters of a name as they are.
+  // A percent sign begins an escape only before two hexadecimal digits. A URI may also contain the characters of a file
+  // name without escapes.
   write("example 10%.bin");
   EXPECT_EQ(read("example 10%.bin", false), "");
   write("fifty%20percent.bin");
   EXPECT_EQ(read("fifty%20percent.bin", false), "");
-  // A letter with an accent may be one character in the URI and two in the file name, or the reverse.
+  // A letter with an accent may be one Unicode character in the URI and two in the file name, or the reverse.
   write("cafe\u0301.bin");
   EXPECT_EQ(read("caf\u00E9.bin", false), "");
   EXPECT_EQ(read("caf%C3%A9.bin", false), "");

@@ -1,4 +1,4 @@
-// Tests meshes at the places to which the scene's nodes move them.
+// Tests meshes that the transformations of the scene's nodes move to other places.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 using test::GltfBuilder, test::GltfFixture;
 using Json = GltfBuilder::Json;
 
-// Makes a triangle in the plane z = 0, whose third vertex rises by 1 in its only target.
+// Makes a triangle in the plane z = 0 with one target, in which the third vertex rises by 1.
 GltfBuilder triangle() {
   GltfBuilder builder;
   const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0});
@@ -49,8 +49,8 @@ Vec3d first_normal_at_start(const Motion& motion, std::size_t face) {
 TEST(GltfWorld, scale_rotation_and_translation_of_a_node_and_its_parent_apply_in_that_order) {
   GltfBuilder builder = triangle();
   const double half = std::sqrt(0.5);
-  // The child node scales by 2 and moves by 3 along z; the parent turns by 90 degrees about z, then moves by
-  // 10 along x.
+  // The child node scales the mesh by 2 and moves it by 3 along z. The parent node turns it by 90 degrees about z and
+  // moves it by 10 along x.
   builder.add_node(0, {{"scale", {2, 2, 2}}, {"translation", {0, 0, 3}}});
   builder.json["nodes"].push_back({{"children", {0}}, {"rotation", {0, 0, half, half}}, {"translation", {10, 0, 0}}});
   const auto motion = world_motion(builder);
@@ -77,7 +77,8 @@ TEST(GltfWorld, mirrored_faces_keep_their_outward_side) {
   ASSERT_TRUE(result.ok()) << result.error().text();
   const Motion& motion = result.value().motion;
   ASSERT_EQ(motion.topology.face_count(), 3U);
-  // The normal is along +z in the first keyframe and after mirroring in x. After mirroring in z, it is along -z.
+  // The normal of the triangle points along +z. A node that mirrors the mesh in x keeps this direction, and a node that
+  // mirrors the mesh in z reverses it.
   EXPECT_GT(first_normal_at_start(motion, 0).z, 0);
   EXPECT_GT(first_normal_at_start(motion, 1).z, 0);
   EXPECT_LT(first_normal_at_start(motion, 2).z, 0);

@@ -1,5 +1,5 @@
 // Checks that an edited file omits bytes that have become unused, in every buffer, and that all other arrays keep their
-// numbers. The test reads accessors with its own code.
+// values. The test reads accessors with its own code.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct Parts {
   Json json;
   std::string bin;
 
-  // Returns the bytes of an accessor's elements, followed by its sparse arrays.
+  // Returns the bytes of the elements of an accessor, followed by the bytes of its sparse arrays.
   [[nodiscard]] std::string elements(std::size_t index) const {
     const Json& accessor = json.at("accessors").at(index);
     const std::string type = accessor.at("type");
@@ -62,7 +62,7 @@ struct Parts {
   }
 };
 
-// Adds a mesh without triangles, whose base normals are its positions.
+// Adds a mesh without indices. The accessor of its base positions is also that of its base normals.
 void add_mesh(GltfBuilder& builder, std::size_t base, const std::vector<Json>& targets) {
   Json primitive = GltfBuilder::primitive(base, std::nullopt, targets);
   primitive["attributes"]["NORMAL"] = base;
@@ -112,7 +112,7 @@ TEST(UnusedArrays, nothing_is_left_out_unless_it_is_asked_for) {
   EXPECT_EQ(Parts(bytes_or_error(edit)).bin.size(), 48U);
 }
 
-// Bytes are kept if another accessor shares them, or if an unknown extension might use them.
+// Bytes stay in the file if another accessor also uses them, or if an unknown extension might use them.
 TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   const auto sharing = [] {
     GltfBuilder builder;
@@ -150,8 +150,8 @@ TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   EXPECT_EQ(left_out(skin), 32U) << "of 48 bytes the first 16 are those of a skin";
 }
 
-// A bake packs the sparse arrays of all targets into one view, so arrays after an unused one must be found by their new
-// offsets.
+// A bake packs the sparse arrays of all targets into one buffer view. If an unused array is omitted, the arrays after
+// it have new offsets.
 TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_moved) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(kBase);
@@ -170,14 +170,14 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   add_mesh(builder, base, targets);
   const GltfFixture fixture(builder);
   const Parts before(builder.glb()), after(bytes_without_unused(fixture, {1}));
-  const std::size_t left_out = bytes_of(values).size();  // leaving out two indices would not save enough
+  const std::size_t left_out = bytes_of(values).size();  // the two indices stay, as omitting them saves too little
   EXPECT_EQ(after.bin.size(), before.bin.size() + 48 - left_out);
   for (const std::size_t array : {1U, 3U}) EXPECT_EQ(after.elements(array), before.elements(array));
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
 }
 
-// Makes a file with three buffers: one used only by the base, one used by the base and old deltas, and one used only by
-// old deltas.
+// Makes a file with three buffers. Only the base uses the first, the base and old deltas use the second, and only old
+// deltas use the third.
 GltfBuilder in_three_buffers(const std::vector<std::string>& uris) {
   GltfBuilder builder;
   const std::string one = bytes_of(kBase),
@@ -206,9 +206,9 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
   struct Case {
     const char* name;
     std::vector<std::string> uris;
-    std::size_t beside, moved;  // bytes left out if a .gltf is written beside its source, and elsewhere
+    std::size_t beside, moved;  // number of omitted bytes if the .gltf is written beside its source, and elsewhere
   };
-  // In the middle buffer, 48 bytes are unused. In the last buffer all bytes are unused, except for four bytes that its
+  // In the second buffer, 48 bytes are unused. In the third buffer, all bytes are unused except for four, which its
   // views need.
   for (const Case& of : {Case{"files.gltf", {"one.bin", "two.bin", "old.bin"}, 0, 92},
                          Case{"mixed.gltf", {"one.bin", as_data(two), "old.bin"}, 48, 92},
@@ -246,7 +246,7 @@ TEST(UnusedArrays, unused_arrays_are_left_out_of_files_and_data_uris_wherever_th
   EXPECT_EQ(test::read_whole(folder / "two.bin"), two) << "files beside a source stay as they are";
 }
 
-// Random documents have views of one array and of many, strided ones, sparse arrays, and arrays that share bytes.
+// Random documents have buffer views with one array or many, strided views, sparse arrays, and arrays that share bytes.
 TEST(UnusedArrays, all_other_arrays_keep_their_numbers) {
   constexpr unsigned kSeed = 20261123;
   SCOPED_TRACE("seed " + std::to_string(kSeed));
@@ -258,7 +258,7 @@ TEST(UnusedArrays, all_other_arrays_keep_their_numbers) {
     std::vector<std::size_t> views, arrays = {builder.add_positions(kBase)};
     for (std::size_t n = 2 + below(6); n > 0; --n) {
       std::string bytes(48 * (1 + below(3)) + 4 * below(3), '\0');
-      for (char& byte : bytes) byte = static_cast<char>(below(63));  // avoids NaN and huge numbers
+      for (char& byte : bytes) byte = static_cast<char>(below(63));  // bytes that cannot give NaN or huge numbers
       views.push_back(builder.add_view(bytes, below(4) == 0 ? 12 : 0));
       if (below(3) == 0) builder.buffer += std::string(below(9), '\x11');
     }

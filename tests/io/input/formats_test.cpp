@@ -1,4 +1,5 @@
-// Tests all readers of meshes in the table of formats. Fails if a reader has no fixtures here, or no fuzz target.
+// Tests all mesh readers in the table of formats. Fails if this file has no fixture for a reader, or if the reader has
+// no fuzz target.
 #include "io/input/formats.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,8 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // The fewest bytes of this file that are still valid: a file that is cut off before this size must be an error. 0 if
-  // the format cannot detect a cut.
+  // The smallest size in bytes of a file with this content that is still valid. A file that is cut off before this size
+  // must be an error. The size is 0 if the format cannot detect a cut.
   std::size_t declared_end = 0;
 };
 
@@ -45,7 +46,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
          0},
         {"faces first", "f 1 2 3 4\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 12.5", 0}}},
       {"ply",
-       {{"ascii", ascii, ascii.size() - 1},  // the last line end is optional
+       {{"ascii", ascii, ascii.size() - 1},  // the line feed at the end is optional
         whole("little endian", test::small_binary_ply(false)),
         whole("big endian", test::small_binary_ply(true)),
         whole("mixed, little endian", test::mixed_binary_ply(false)),
@@ -54,7 +55,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// The parameter is the name of the reader.
+// Tests one reader, whose name is the parameter.
 class Readers : public ::testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] static const Format& reader() {
@@ -67,7 +68,7 @@ class Readers : public ::testing::TestWithParam<std::string> {
     return found == fixture_table().end() ? none : found->second;
   }
 
-  // Reads arbitrary bytes, and checks the result. Returns whether the bytes are a mesh.
+  // Reads arbitrary bytes and checks the result. Returns true if the bytes are a mesh.
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const test::CpuClock clock;
@@ -121,7 +122,7 @@ TEST_P(Readers, truncated_file_is_an_error_or_a_mesh) {
   }
 }
 
-// Returns the {position, size} of each number in a text.
+// Returns the position and the size of each number in a text.
 std::vector<std::pair<std::size_t, std::size_t>> numbers_in(const std::string& text) {
   constexpr std::string_view kOfNumbers = "0123456789+-.eE";
   std::vector<std::pair<std::size_t, std::size_t>> numbers;

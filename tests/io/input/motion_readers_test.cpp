@@ -1,5 +1,5 @@
-// Tests all readers of motions and caches in the table of formats. Fails if a reader has no fixtures here, or no fuzz
-// target.
+// Tests all readers of motions and caches in the table of formats. Fails if this file has no fixture for a reader, or
+// if the reader has no fuzz target.
 #include "io/input/formats.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  bool is_self_contained = true;  // true if every file that was cut off is an error
+  bool is_self_contained = true;  // true if any cut of the file is an error
 };
 
 const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() {
@@ -52,7 +52,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// Checks that an error has all parts that every error must have.
+// Checks that an error has a code, a place and a message.
 void check_error(const Error& error) {
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_TRUE(error.place.starts_with("a.bin")) << error.text();
@@ -84,7 +84,7 @@ bool check(const Result<MayaCacheDescription>& result, std::size_t) {
   return true;
 }
 
-// Returns every reader as a function that tells whether it could read the bytes.
+// Returns all readers by name. Each is a function that tells whether the reader accepts the bytes.
 std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   std::map<std::string, std::function<bool(const std::string&)>> readers;
   for (const Format& format : formats()) {
@@ -102,7 +102,7 @@ std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   return readers;
 }
 
-// The parameter is the name of the reader.
+// Tests one reader, whose name is the parameter.
 class MotionReaders : public ::testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] static const std::vector<Fixture>& reader_fixtures() {
@@ -155,7 +155,7 @@ TEST_P(MotionReaders, boundary_numbers_in_every_field_are_errors_or_results) {
                                        0x7FFF,
                                        0x8000,
                                        0xFFFF,
-                                       0x7F800000,  // infinity as float32
+                                       0x7F800000,  // the bits of infinity as float32
                                        0x7FFFFFFF,
                                        0x80000000,
                                        0xFFFFFFFF,
@@ -163,7 +163,7 @@ TEST_P(MotionReaders, boundary_numbers_in_every_field_are_errors_or_results) {
                                        0x100000001,
                                        std::uint64_t{1} << 62,
                                        0x5555555555555556,
-                                       0x7FF0000000000000,  // infinity as float64
+                                       0x7FF0000000000000,  // the bits of infinity as float64
                                        0x7FFFFFFFFFFFFFFF,
                                        0x8000000000000000,
                                        0xFFFFFFFFFFFFFFFF};
@@ -198,7 +198,7 @@ TEST_P(MotionReaders, boundary_numbers_in_text_are_errors_or_results) {
                                       "6148914691236517206", "9223372036854775808", "18446744073709551615",
                                       "18446744073709551616", "-1", "-2147483648", "-9223372036854775808", "", "1.5"}) {
         SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + " := " + value);
-        // Only in a file of text may the new number have another length than the old one.
+        // In a text file, the new number may be longer or shorter than the old number; in a binary file, it may not.
         (void)read_anything(std::string(bytes).replace(at, end - at, value));
       }
     }

@@ -42,7 +42,7 @@ std::string npz_of(const std::string& positions, const std::string& faces) {
   return write_npz(members);
 }
 
-// A grid of points on a curved sheet, (side, side), and its triangles.
+// A curved sheet: a grid of side x side points, and its triangles.
 struct Sheet {
   std::vector<double> places;
   std::vector<std::uint32_t> corners;
@@ -91,7 +91,7 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(
       read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
       std::string::npos);
-  // Faces are not padded if they merely meet in vertex 3, or if they begin with another number.
+  // Faces are not padded if they have vertex 3 in common by chance, or if they begin with different numbers.
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{3, 0, 1, 2, 3, 2, 4, 0})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{0, 1, 2, 3, 3, 2, 1, 4})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 3}, std::vector<std::int32_t>{2, 0, 1, 2, 1, 4})), "");
@@ -139,7 +139,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
   std::cout << "seed " << kSeed << '\n';
   std::mt19937 random(kSeed);
   for (int round = 0; round < 60; ++round) {
-    // Coordinates are multiples of 1/1024, which ten decimals represent exactly, so sums are exact in double.
+    // Coordinates are multiples of 1/1024. Ten decimals represent them exactly, and their sums are exact in double.
     const auto number = [&](std::uint32_t most) { return static_cast<double>(random() % (most * 1024)) / 1024; };
     const std::vector<double> shift = {452312 + number(10000), 5411873 + number(10000), number(100)};
     const TemporaryFolder near, far;
@@ -170,7 +170,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
           for (std::size_t i = 0; i < motion.keyframes[k].positions.size(); ++i)
             ASSERT_EQ(double{motion.keyframes[k].positions[i]} + motion.origin[i % 3],
                       double{at_origin.keyframes[k].positions[i]} + shift[i % 3]);
-        // The writers add the origin again that the reader has subtracted.
+        // The reader has subtracted an origin from the positions. The writers must add the origin again.
         for (const std::string out : {"out.npz", "out_%d.obj", "out_%d.ply"}) {
           const TemporaryFolder written;
           ASSERT_TRUE(write_motion(motion, written / out, false).ok());
@@ -201,7 +201,7 @@ TEST(FarOrigin, what_float32_keeps_stays_as_it_is_and_what_it_has_lost_is_said) 
         {folder.write("a.npz", npz_of(positions, npy_of("<u4", {1, 3}, std::vector<std::uint32_t>{0, 1, 2})))}));
   };
   for (const std::string type : {"<f8", "<f4"}) {
-    Result<Input> near = read(512, type);  // the numbers have no more digits than float32 keeps
+    Result<Input> near = read(512, type);  // no more digits than float32 keeps
     ASSERT_TRUE(near.ok()) << error_of(near);
     EXPECT_TRUE(near.value().notes().empty());
     EXPECT_EQ(near.value().motion().value()->origin, (std::array<double, 3>{}));
@@ -222,7 +222,7 @@ TEST(FarOrigin, any_keyframe_tells_that_there_are_more_digits) {
   std::mt19937 random(kSeed);
   const std::vector<std::uint32_t> corners = {0, 1, 2};
   for (int round = 0; round < 20; ++round) {
-    // Exactly one keyframe has digits beyond float32.
+    // Only one keyframe has numbers with more digits than float32 keeps.
     const std::size_t frames = 2 + random() % 10, telling = random() % frames;
     const TemporaryFolder folder;
     std::vector<double> all;
@@ -275,8 +275,8 @@ TEST(Loops, come_back_to_the_first_keyframe) {
     ASSERT_EQ(motion.value().keyframes.size(), 5U);
     EXPECT_EQ(motion.value().keyframes[4].time, 2.0);
     EXPECT_EQ(motion.value().keyframes[4].positions, motion.value().keyframes[0].positions);
-    // On curves, the motion is smooth where a loop ends. The velocity there is the difference between the neighbours on
-    // both sides, keyframes 2 and 3, divided by the time between them.
+    // On a curved path, the motion is smooth where a loop closes. The velocity there is the difference between
+    // keyframes 2 and 3, the neighbours on both sides, divided by the time between them.
     options.from = 1;
     const Motion straight = test::read_motion(options).value();
     ASSERT_EQ(straight.keyframes.size(), 4U);

@@ -1,4 +1,4 @@
-// Reads files by other people. Needs the environment variable CHRONORMAL_DATA, which names their folder.
+// Reads files of other projects. Skipped unless the environment variable CHRONORMAL_DATA names their folder.
 #include <gtest/gtest.h>
 
 #include <cstdio>

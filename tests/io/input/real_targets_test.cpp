@@ -1,5 +1,5 @@
-// Reads the face of MPFB and its 102 targets by other people. Needs the environment variable CHRONORMAL_DATA, which
-// names their folder.
+// Reads the face of MPFB, an add-on for Blender, and its 102 targets. Skipped unless the environment variable
+// CHRONORMAL_DATA names the folder of these files.
 #include <gtest/gtest.h>
 #include <zlib.h>
 
@@ -34,7 +34,7 @@ std::vector<float> vertices_of_obj(const fs::path& path) {
   return positions;
 }
 
-// Adds the deltas of a gzipped target. Returns the number of its lines.
+// Adds the deltas of a target compressed by gzip to the positions. Returns the number of lines in the target.
 std::size_t add_target(const fs::path& path, std::vector<float>& positions) {
   const gzFile file = ::gzopen(path.c_str(), "rb");
   std::size_t lines = 0;

@@ -150,7 +150,7 @@ TEST(FindFrames, a_name_that_outputs_are_given_by_stands_for_its_numbered_files)
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "d\\\\\\e_%d.obj"}))), (Names{"d\\\\\\e_7.obj"}));
   (void)folder.write("fg_7.obj", "");
   EXPECT_EQ(error_of(find_frames(test::files(Names{folder / "\\f\\g_%d.obj"}))).code, ErrorCode::kFailed);
-  // A file with exactly this name has priority over the pattern.
+  // If a file has exactly this name, the name is not a pattern.
   (void)folder.write("a_%d.obj", "");
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a_%d.obj"}))), (Names{"a_%d.obj"}));
 }
@@ -205,7 +205,7 @@ TEST(ReadSequence, frames_become_keyframes_with_names_and_times) {
   EXPECT_EQ(motion.value().segments.size(), 2U);
   EXPECT_EQ(motion.value().keyframes[2].name, "w_10.obj");
   EXPECT_EQ(motion.value().keyframes[2].positions[2], 10.0F);
-  EXPECT_EQ(motion.value().keyframes[2].time, 2.25);  // files are missing: number 10 is 9 frames after number 1
+  EXPECT_EQ(motion.value().keyframes[2].time, 2.25);  // number 10 is 9 frames after number 1
   EXPECT_EQ(steps, (Names{"1/3", "2/3", "3/3"}));
   EXPECT_TRUE(validate(motion.value()).ok());
 }
@@ -217,7 +217,7 @@ TEST(ReadSequence, obj_and_ply_of_one_topology_make_a_motion) {
   EXPECT_TRUE(read({ply, text}).ok());
 }
 
-// Makes a triangle with velocities, at the height z = `height`.
+// Makes a PLY file of a triangle at z = `height`, with velocities.
 std::string moving_ply(int height, const std::string& names = "v") {
   std::string text = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
   for (const char* const axis : {"x", "y", "z"}) text += "property float " + names + axis + "\n";
@@ -297,7 +297,7 @@ TEST(ReadSequence, error_inside_a_file_has_the_frame_in_its_place) {
   EXPECT_TRUE(byte.place.starts_with("frame 1 (w_1.ply), byte ")) << byte.text();
   EXPECT_EQ(second("w_1.stl", "solid\n").place, "frame 1 (w_1.stl)");
 
-  // A file that the system cannot read is a failure of the system, not invalid input.
+  // If the system cannot read a file, the error is kFailed, not kInvalidInput.
   const std::string link = folder / "w_3.obj";
   std::filesystem::create_symlink("/proc/self/mem", link);
   EXPECT_EQ(error_of(read({good, link})).code, ErrorCode::kFailed);

@@ -1,4 +1,4 @@
-// Checks that inputs whose keyframes stay in files give the same results as inputs that are read into memory.
+// Checks that inputs whose keyframes stay in files give the same results as inputs in memory.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,14 +31,14 @@ using test::TemporaryFolder;
 
 constexpr std::uint32_t kSide = 8;
 
-// Makes a sheet with waves and a seam: two columns of vertices coincide, and separate in the last keyframe.
+// Makes a wavy sheet with a seam: two columns of vertices coincide until they separate in the last keyframe.
 Motion wave(std::size_t keyframes) {
   Motion motion;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
     for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
       const std::uint32_t v = y * kSide + x;
-      if (x == 3) continue;  // columns 2 and 3 coincide
+      if (x == 3) continue;  // columns 2 and 3 have the same x
       corners.insert(corners.end(), {v, v + 1, v + kSide, v + 1, v + kSide + 1, v + kSide});
     }
   }
@@ -58,7 +58,7 @@ Motion wave(std::size_t keyframes) {
   return motion;
 }
 
-// Writes the motion in every format that can be read keyframe by keyframe.
+// Writes the motion in every format that can be read one keyframe at a time. Returns the names of the files.
 std::vector<std::vector<std::string>> write_all(const TemporaryFolder& folder, const Motion& motion) {
   for (const char* const name : {"walk.npz", "walk.pc2", "walk.mdd", "walk_%02d.ply", "walk_%02d.obj"})
     EXPECT_TRUE(write_motion(motion, folder / name, false).ok()) << name;
@@ -100,8 +100,8 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   }
 }
 
-// If only a part of a sequence is read, it still moves on the curves of the whole sequence, so the pieces between two
-// keyframes are the same.
+// If only a part of a sequence is read, this part still follows the curves through all keyframes, so its pieces are the
+// same.
 TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(14))) {
@@ -200,7 +200,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
   EXPECT_EQ(inspection.normal_bytes, of_whole.normal_bytes);
   EXPECT_EQ(inspection.turn.value, of_whole.turn.value);
 
-  most_held = 0;  // a comparison processes several small segments at once
+  most_held = 0;  // starts anew, since a comparison holds several small segments at once
   for (const char* const name : {"n.npy", "n.npz", "n_%02d.ply"}) {
     {
       const SampleOptions options;
@@ -367,7 +367,7 @@ TEST(InputFrames, a_step_of_zero_leads_nowhere) {
   }
 }
 
-// A pattern matches names of links, even if they are broken.
+// A pattern also finds links whose target does not exist.
 TEST(InputIdentity, of_a_link_that_leads_nowhere_is_an_error_with_its_path) {
   const TemporaryFolder folder;
   write_all(folder, wave(2));

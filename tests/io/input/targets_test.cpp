@@ -19,7 +19,7 @@ namespace {
 using test::gzip, test::kLiftTarget, test::kSquare, test::kSquareObj, test::TemporaryFolder;
 using Names = std::vector<std::string>;
 
-// The square with its last vertex raised.
+// A square whose last vertex is raised.
 const std::string kRaisedObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 2\nf 1 2 3\nf 1 3 4\n";
 const std::vector<float> kLifted = {0, 0, 0, 0.75F, 0.125F, 0.1F, 1, 1, 0, 0, 1, 0.5F};
 
@@ -31,7 +31,7 @@ Error error_of(const Result<Motion>& result) {
   return result.error();
 }
 
-// Returns the names of the keyframes, or the error.
+// Returns the names of the keyframes, or a list with only the error.
 Names names_of(const Result<Motion>& motion) {
   if (!motion) return {motion.error().text()};
   Names names;
@@ -124,7 +124,8 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(alone.text(), base_ + ": there is no target, only the base itself; name the files of the targets");
-  // An OBJ base beside MakeHuman targets does not count as a second format in the folder.
+  // MakeHuman targets may be in the same folder as the base, which is an OBJ file: the base does not count as a second
+  // format.
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);
   folder_.write("mh/lift.target", kLiftTarget);

@@ -21,7 +21,7 @@ struct Change {
   bool append = false;
 };
 
-// Returns the text after several changes, each of which must succeed.
+// Applies several changes to a text and returns the result. Each change must succeed.
 std::string changed(const std::string& text, const std::vector<Change>& changes) {
   JsonText json(text);
   for (const auto& [pointer, value, append] : changes) {
@@ -90,7 +90,7 @@ TEST(JsonText, added_members_and_items_take_the_blanks_of_the_last_sibling) {
   EXPECT_EQ(append("[ ]", "", "3"), "[3 ]");
   EXPECT_EQ(changed("{ }", {{"/a", "1"}, {"/b", "2"}}), R"({"a":1,"b":2 })");
   EXPECT_EQ(changed("[]", {{"", "1", true}, {"", "2", true}}), "[1,2]");
-  // Long runs of blanks are not copied.
+  // An added element gets the same blanks before it as the others, unless there are very many.
   const std::string long_one = "[" + std::string(1000, ' ') + "1]";
   EXPECT_EQ(append(long_one, "", "3"), long_one.substr(0, 1002) + ",3]");
 }
@@ -144,7 +144,7 @@ TEST(JsonText, change_that_is_not_possible_is_refused_and_changes_nothing) {
   EXPECT_TRUE(json.pointers().empty());
 }
 
-// Makes a random JSON value with blanks, repeated or escaped names, and numbers of all kinds.
+// Makes a random JSON value. It may have blanks, repeated or escaped names, and numbers of all kinds.
 std::string random_value(std::mt19937& random, int depth) {
   const auto pick = [&](const std::vector<std::string>& from) { return from[random() % from.size()]; };
   const auto blanks = [&] { return pick({"", "", " ", "\n  ", "\r\n", "\t"}); };
@@ -237,7 +237,7 @@ TEST(ParseJson, numbers_beyond_double_are_infinite_and_all_others_what_they_are)
     ASSERT_TRUE(parsed.ok()) << number << ": " << parsed.error().text();
     EXPECT_EQ(parsed.value().get<double>(), std::strtod(number.c_str(), nullptr)) << number;
   }
-  // A malformed number is refused, not repaired.
+  // A malformed number must be refused and not repaired.
   for (const char* const number : {"1e400.5", "01e400", "-e400", "1.e400", ".1e400", "1e400-", "+1e400", "1e4001e400",
                                    "1e400x", "1e+-400", "[1e400"}) {
     const auto parsed = parse(number);

@@ -45,7 +45,7 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
   return target.error().text();
 }
 
-// Checks that reading these bytes breaks no invariant. Returns whether the bytes could be read.
+// Reads these bytes and checks that the result breaks no invariant. Returns true if the bytes are a valid target.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
   const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);
@@ -157,7 +157,7 @@ TEST(MakeHumanTarget, gzip_cut_off_anywhere_is_an_error_with_its_byte) {
     EXPECT_EQ(error_text(bytes.substr(0, size)),
               "a.target, byte " + std::to_string(size) + ": the gzip data are cut off; copy the file again");
   EXPECT_FALSE(check(bytes.substr(0, 1)));
-  // The file may also be cut inside the second member of the gzip file.
+  // A cut inside the second member of a gzip file must also be an error.
   for (std::size_t size = 1; size < bytes.size(); ++size)
     EXPECT_FALSE(check(gzip("# first\n") + bytes.substr(0, size)));
 }
@@ -174,8 +174,8 @@ TEST(MakeHumanTarget, damaged_gzip_is_an_error_with_a_byte_or_damaged_where_nobo
         EXPECT_TRUE(error_text(damaged).starts_with("a.target, byte ")) << error_text(damaged);
         continue;
       }
-      // A changed byte is harmless only in the date and the system of the header, or in the bits between the deflated
-      // data and the checksum.
+      // A changed byte goes unnoticed only in the date and the system of the gzip header, or in the unused bits between
+      // the compressed data and the checksum.
       expect_lift(damaged);
       EXPECT_TRUE(at < 10 || at == bytes.size() - 9);
       ++harmless;
@@ -200,7 +200,7 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
   expect_lift(padded(most_target_bytes(4) + 1));
   EXPECT_TRUE(error_text(padded(most_target_bytes(4) + 2)).find("unpacks to more than 66560 bytes") !=
               std::string::npos);
-  // Tests many empty members, and then members that are large only together.
+  // Tests a file with many empty gzip members, and then a file whose members are large only together.
   std::string members;
   for (int i = 0; i < 1000; ++i) members += gzip("");
   expect_lift(members + gzip(kLiftTarget));

@@ -1,5 +1,5 @@
-// Tests the fast reader of positions, for files with the same faces as an earlier file. It must give the same positions
-// as the full reader.
+// Tests the fast reader of positions, for files that have the same faces as an earlier file. The fast reader must
+// return the same positions as the full reader.
 #include "io/mesh/obj_faces.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(ObjFaces, of_the_same_text_leave_only_vertices_to_read) {
   const auto positions = positions_like(vertices(0) + kFaces, vertices(7) + kFaces);
   ASSERT_TRUE(positions);
   EXPECT_TRUE(test::same_bits(*positions, read_obj(vertices(7) + kFaces, "x").value().positions));
-  // Programs may change these lines from frame to frame, and line ends may differ.
+  // From file to file, programs may change comments, normals and line ends.
   const std::string other = "# another frame\r\n" + vertices(8) + "vn 0 0 1\n" + kFaces;
   ASSERT_TRUE(positions_like(vertices(0) + kFaces, other));
 }
@@ -48,13 +48,13 @@ TEST(ObjFaces, vertices_among_them_are_those_of_the_first_file) {
 TEST(ObjFaces, whatever_takes_more_than_a_look_is_left_to_the_reader) {
   const std::string first = vertices(0) + kFaces;
   for (const std::string& bytes : {
-           vertices(7) + "f 1 2 3\n" + kFaces,          // has one face more
-           vertices(7) + "v 0 0 0\n" + kFaces,          // has one vertex more
-           vertices(7) + "v 0 0 nan\n" + kFaces,        // NaN is not a number
+           vertices(7) + "f 1 2 3\n" + kFaces,          // one face more
+           vertices(7) + "v 0 0 0\n" + kFaces,          // one vertex more
+           vertices(7) + "v 0 0 nan\n" + kFaces,        // NaN
            vertices(7) + "v 0 0 0 1\n" + kFaces,        // a fourth number
-           vertices(7) + "o name \\\n" + kFaces,        // a line that is continued in the next
+           vertices(7) + "o name \\\n" + kFaces,        // a line that continues in the next
            "\xEF\xBB\xBF" + vertices(7) + kFaces,       // a byte order mark
-           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // the lines of vertices and faces are in other places
+           vertices(7) + "vt 0 0\nf 1 2 3\nf 3 2 4\n",  // vertices and faces in other places
            std::string("v 7 0 0\n") + kFaces,           // too few vertices
            kFaces,
            std::string(),

@@ -1,4 +1,4 @@
-// Tests OBJ files: the parts that are read, the conversion of numbers, and refused files.
+// Tests how OBJ files are read: the supported parts, the conversion of numbers, and refused files.
 #include "io/mesh/obj.h"
 
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ TEST(ReadObj, numbers_of_any_length_are_those_of_strtof) {
     std::string number = random() % 2 == 0 ? "-" : "";
     number += digits(random() % 12) + "." + digits(1 + random() % 12);
     if (random() % 3 == 0) number += (random() % 2 == 0 ? "e-" : "e") + std::to_string(random() % 20);
-    // Some numbers are exactly the middle between two floats, or slightly beside the middle.
+    // Every fifth number is exactly in the middle between two floats, or slightly above the middle.
     if (i % 5 == 0) {
       const auto odd = static_cast<double>((random() % (1U << 24U)) * 2 + 1);
       number = std::to_string(static_cast<long long>(odd)) + (i % 10 == 0 ? "" : ".00000000001");
@@ -158,7 +158,7 @@ TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
             "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
             "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1");
-  // Faces with fewer than three corners are skipped (see below), so a file with no other faces has none.
+  // The reader skips faces with fewer than three corners (see below), so this file has no faces.
   EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file has no faces (lines that begin with f)");
   EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
             "walk.obj, line 4: corner 1 of face 0 refers to vertex 5, but the file has 3 vertices");
@@ -235,7 +235,7 @@ TEST(ReadObj, positions_count_from_the_origin_before_they_are_rounded) {
   EXPECT_NEAR(far.value().positions[0], 0.123, 1e-7);
   EXPECT_NEAR(far.value().positions[7], 1.009, 1e-6);
   EXPECT_EQ(far.value().positions[2], 101.5F);
-  // Trailing digits that float32 keeps do not count as additional precision.
+  // A coordinate with trailing digits that float32 keeps does not have more digits than float32.
   EXPECT_FALSE(read_obj("v 1024.5 2048.25 4\nv 1024 2048 4\nv 1025 2049 4\nf 1 2 3\n", "a.obj", {1024, 2048, 4})
                    .value()
                    .has_more_digits);
@@ -274,12 +274,12 @@ TEST(ReadObjShading, bad_normals_are_errors_with_line_and_corner) {
   EXPECT_EQ(shading_error_of("vn 0 nan 1\n" + three), "walk.obj, line 1: y of normal 0: 'nan' is NaN or infinite");
   EXPECT_EQ(shading_error_of("vn 1 2 3\nvn 1 2\n"), "walk.obj, line 2: z of normal 1: a number is missing");
   EXPECT_EQ(shading_error_of(three + "f 1 2 4\n"), error_of(three + "f 1 2 4\n"));
-  // Invalid normals are reported only if normals are requested.
+  // The reader complains about invalid normals only if the caller asks for normals.
   EXPECT_EQ(error_of(three + "vn 0 nan\ns\nf 1//0 2//99 3//99999999999999999999\n"), "no error");
 }
 
-// A corner may refer to a normal that the file does not have. Other programs show such files, so positions and faces
-// are read, and this corner has no normal.
+// A corner may refer to a normal that is missing in the file. Since other programs show such files, the reader returns
+// positions and faces, and the corner has no normal.
 TEST(ReadObjShading, normals_that_are_not_there_and_nameless_groups_are_counted) {
   const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   const auto notes_of = [&](const std::string& rest) { return shading_of(three + rest).notes; };

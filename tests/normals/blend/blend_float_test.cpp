@@ -1,4 +1,4 @@
-// Tests blends in float32, which a caller can request.
+// Tests blends that compute in float32, which a caller can request.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace chronormal::blend_float_test {
 namespace {
 
-// Makes a sheet with some targets that move all of it, and some that move a few vertices.
+// Makes a sheet with `dense` targets that move all vertices and `sparse` targets that move a few vertices.
 BlendSet sheet(std::size_t dense, std::size_t sparse) {
   const Motion motion = fixtures::smooth_morph(20);
   BlendSet set;
@@ -44,7 +44,7 @@ NormalGroups groups_of(const BlendSet& set) {
   return NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()));
 }
 
-// Blends positions by a plain loop in float32.
+// Returns the blended positions, computed by a plain loop in float32.
 std::vector<float> blended(const BlendSet& set, const std::vector<double>& weights) {
   std::vector<float> positions = set.base;
   for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -116,7 +116,7 @@ TEST(BlendFloat, is_chosen_where_it_is_cheaper_than_terms) {
 }
 
 TEST(BlendFloat, has_no_effect_where_a_ring_is_too_long_for_lanes) {
-  // A fan of 80 triangles around vertex 0.
+  // A fan of 80 triangles around vertex 0, more than the float32 code accepts.
   constexpr std::uint32_t kTriangles = 80;
   BlendSet set;
   set.base = {0, 0, 1};

@@ -1,5 +1,6 @@
-// Compares normals at any weights with blended positions, in rationals or in long double. Uses the real files only if
-// the environment variable CHRONORMAL_DATA names their folder.
+// Compares normals at any weights with normals of blended positions, which are computed in rational numbers or in long
+// double. The tests of real files are skipped unless the environment variable CHRONORMAL_DATA names the folder of these
+// files.
 #include "chronormal/normals/blend_normals.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,7 @@ Evaluated evaluate(BlendNormals& normals, std::span<const double> weights, Threa
 }
 
 struct Errors {
-  double largest = 0;     // radians
+  double largest = 0;     // in radians
   std::size_t far = 0;    // elements with an error above 1e-6 rad
   std::size_t zeros = 0;  // normals that are (0, 0, 0)
 };
@@ -90,7 +91,8 @@ Errors errors_of(const Evaluated& done, const std::vector<reference::Vector>& ex
   return errors;
 }
 
-// Checks that errors are at most 1e-6 rad, except for the elements that the result counts as uncertain.
+// Checks that the error of each normal is at most 1e-6 radians, except for elements that the result counts as
+// uncertain.
 template <class Expected>
 void expect_exact(const Evaluated& done, const std::vector<Expected>& expected, const std::string& what) {
   const Errors errors = errors_of(done, expected);
@@ -165,7 +167,7 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// The weights place a vertex on the line through two others, or very close to it.
+// The weights move a vertex exactly onto the line through the other two vertices, or very close to this line.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -182,14 +184,15 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // The face is so close to the collapse at this weight that double cannot decide. The result must say so.
+    // At this weight, the face is so close to collapsing that double cannot decide its direction. The result must count
+    // it as zero or as uncertain.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
     EXPECT_EQ(evaluate(normals, std::vector{0.0, 0.7}).evaluation.zeros, 0U);
   }
 }
 
-// Far from the origin, the rounding of blended positions matters.
+// Far from the origin, rounding errors of the blended positions change the normals.
 TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -212,7 +215,7 @@ TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   EXPECT_GT(sure, 3U);
 }
 
-// All edges of a face contribute rounding errors, including edges after a short one.
+// All edges of a face contribute rounding errors, also the edges that follow a short edge.
 TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_is_counted) {
   BlendSet set;
   set.base = {0, 0, 0, 1, 0, 0, 3000, 1000, 500};
@@ -238,7 +241,7 @@ TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_
   EXPECT_GT(sure, 3U);
 }
 
-// In double, the square of such a short normal is subnormal or zero.
+// This normal is so short that in double its square is subnormal or zero.
 TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -253,11 +256,11 @@ TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   }
 }
 
-// Each of many targets rounds the position again, here always in the same direction. A vertex moves to 256, then on in
-// 250 steps of 1 + 127 eps, each of which loses 127 eps, and finally all the way back.
+// Every target rounds the position once more, in this test always in the same direction. A vertex moves to 256, then
+// takes 250 steps of 1 + 127 eps, each of which loses 127 eps, and finally moves all the way back.
 TEST(BlendNormals, rounding_of_every_target_counts) {
   constexpr double kEps = 0x1p-52;
-  constexpr float kSize = 4e-6F;  // the loss of 7e-12 turns such a triangle by 1.8e-6 rad
+  constexpr float kSize = 4e-6F;  // the loss of 7e-12 turns a triangle of this size by 1.8e-6 radians
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
   set.base = {0, 0, 0, kSize, 0, 0, 0, kSize, 0};
@@ -274,10 +277,10 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
   }
 }
 
-// A polygon winds around a triangle that is smaller than one ulp at the place to which it moves. There and back again,
-// it becomes a point. Its area is then only rounding error and its edges are zero, so only the square of the rounding
-// of positions accounts for the error. With many corners, this error outweighs the triangle beside it, which is the
-// only face with a direction.
+// A polygon winds around a triangle. When it moves far away, the triangle is smaller than one ulp, so after moving back
+// the polygon is a point. Its area is then only rounding error, and its edges are zero, so only the square of the
+// rounding error of positions bounds the error of the area. If the polygon has many corners, its error exceeds the area
+// of the adjacent triangle, the only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
   constexpr float kFar = 1.5F * 0x1p52F;  // an ulp of double is 1 at this distance
   for (const int turns : {0, 10}) {
@@ -291,7 +294,7 @@ TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
     BlendTarget away{"", {0, 1, 2, 3, 4, 5}, {}};
     for (int v = 0; v < 6; ++v) away.deltas.insert(away.deltas.end(), {kFar, kFar, 0});
     set.targets = {away, away};
-    for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // the path by terms does not use positions
+    for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // sums of terms do not use positions
       BlendNormals normals = BlendNormals::of_groups(set, test::vertices_of(set), {kUnlimited, path});
       const std::vector<float> expected = {0, 0, turns == 0 ? 1.0F : 0.0F};
       EXPECT_EQ(evaluate(normals, std::vector{1.0, -1.0}).of(0), expected) << name_of(path) << ", " << turns;
@@ -313,7 +316,7 @@ TEST(BlendNormals, faces_without_area_in_the_base_count_until_a_target_opens_the
   }
 }
 
-// When large terms nearly cancel, the remainder has the rounding error of the large terms.
+// If large terms nearly cancel, their sum still has the rounding errors of the large terms.
 TEST(BlendNormals, large_weights_that_nearly_cancel_are_seen) {
   BlendSet set = test::random_blend_set(11, {.targets = 1, .reach = 0.9});
   set.targets.push_back(set.targets[0]);
@@ -409,7 +412,8 @@ void expect_peak(const BlendSet& set, const NormalGroups& groups, std::size_t ma
   EXPECT_LE(normals.bytes(), cost.bytes);
 }
 
-// Makes a cone over a polygon with many corners. Each corner is a vertex of the polygon and of two triangles.
+// Makes a cone over a polygon with many corners. The polygon itself is a face, so each of its corners has three faces:
+// the polygon and two triangles.
 BlendSet cone_over(std::size_t corners) {
   BlendSet set;
   std::vector<std::uint32_t> offsets = {0}, of_faces;
@@ -597,7 +601,7 @@ TEST(BlendNormals, planes_have_the_bits_of_packed_results) {
   }
 }
 
-// The number of elements is not a multiple of a vector's size, and faces are triangles and polygons.
+// The number of elements is not a multiple of the number of lanes, and the faces are triangles and larger polygons.
 TEST(BlendNormals, every_instruction_set_gives_the_same_bits) {
   for (const std::size_t cells : {1U, 2U, 5U, 12U}) {
     const BlendSet set = test::random_blend_set(cells, {.cells = cells, .targets = 6, .reach = 0.7});

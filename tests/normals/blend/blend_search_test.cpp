@@ -1,5 +1,5 @@
-// Attacks BlendNormals: searches for sets and weights whose errors come as close as possible to the promised 1e-6 rad,
-// on every path, judged in rational numbers.
+// Searches for the worst cases of BlendNormals: sets and weights whose errors come as close as possible to the
+// guaranteed 1e-6 radians, on every path. Errors are computed in rational numbers.
 
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@
 namespace chronormal::blend_search_test {
 namespace {
 
-constexpr double kPromised = 1e-6;  // radians
+constexpr double kPromised = 1e-6;  // in radians, the guaranteed largest error
 
-// A candidate of the search: a face of 3 or 4 corners, or the faces around vertex 0, with three targets and their
+// A case that the search tries: a face with 3 or 4 corners, or the faces around vertex 0, with three targets and their
 // weights.
 struct Candidate {
   BlendSet set;
@@ -29,8 +29,9 @@ struct Candidate {
   bool is_ring = false;
 };
 
-// Returns the error of the face, or of vertex 0 of a ring, as a share of the promised error. Returns 0 if nothing is
-// promised or there is no normal, and on the path by terms also if the element is computed from positions.
+// Returns the error of the face, or of vertex 0 of a ring, divided by the guaranteed error. Returns 0 if nothing is
+// guaranteed or there is no normal. On the path that adds up terms, also returns 0 if the element is computed from
+// positions instead.
 double used_up(const Candidate& candidate, BlendPath path) {
   const BlendNormalsOptions options{std::numeric_limits<std::size_t>::max(), path};
   const Topology& topology = candidate.set.topology;
@@ -47,8 +48,8 @@ double used_up(const Candidate& candidate, BlendPath path) {
   return exact::is_zero(expected) ? 4 / kPromised : exact::angle(u[0], u[1], u[2], expected) / kPromised;
 }
 
-// Makes a face near a collapse: the first target puts the last corner almost onto the line through two others, and
-// sometimes all corners move far away and back.
+// Makes a face that nearly collapses: the first target moves the last corner almost onto the line through two others.
+// In some cases, all corners also move far away and back.
 Candidate near_a_collapse(fixtures::Random& random) {
   Candidate result;
   const auto corners = static_cast<std::uint32_t>(3 + random.below(2));
@@ -78,8 +79,8 @@ Candidate near_a_collapse(fixtures::Random& random) {
   return result;
 }
 
-// Makes 4 to 8 triangles around vertex 0 whose normals nearly cancel. The first target puts their outline almost onto a
-// line, so that the outline has no area, although the triangles do.
+// Makes 4 to 8 triangles around vertex 0 whose normals nearly cancel. The first target moves their outline almost onto
+// a line, so the outline has nearly no area, although the triangles have.
 Candidate ring_near_a_collapse(fixtures::Random& random) {
   Candidate result;
   result.is_ring = true;
@@ -134,7 +135,7 @@ Candidate changed(Candidate candidate, fixtures::Random& random) {
   return candidate;
 }
 
-// Returns the largest share of the promised error that hill climbing from several starts finds.
+// Returns the largest error, divided by the guaranteed error, that hill climbing from several starts finds.
 template <class Start>
 double worst_found(const Start& start_at, int starts, int steps, BlendPath path) {
   fixtures::Random random(79);
@@ -158,8 +159,8 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// Returns the share of the promised error that the search must reach, as a check of the search. Terms are stored in
-// float32. With positions, only the result is rounded to float32, by half an ulp.
+// Returns the share of the guaranteed error that the search must reach; otherwise it is too weak. Terms are stored in
+// float32, so the share is larger. On the path by positions, only the result is rounded to float32, by half an ulp.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

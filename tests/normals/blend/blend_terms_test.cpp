@@ -1,5 +1,5 @@
-// Compares the terms of blend shapes with exact arithmetic. The difference must be within the stated noise, for terms
-// in lists and for terms that are requested one by one.
+// Compares the terms of blend shapes with exact arithmetic. The difference must not exceed the noise that BlendTerms
+// states. Tests terms in stored lists and terms that are requested one by one.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,8 @@ BlendTerms terms_of(const BlendSet& set, const NormalGroups* groups) {
   return groups ? BlendTerms(set, *groups) : BlendTerms(set);
 }
 
-// Computes B(p, q) + B(q, p), or B(p, p), summed over elements, without rounding.
+// Returns B(p, q) + B(q, p), or only B(p, q) unless `both`, for each element, without rounding. B is the bilinear form
+// of the normal in the positions, summed over the faces of the element.
 std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* groups, const test::ExactPositions& p,
                                       const test::ExactPositions& q, bool both) {
   std::vector<exact::Vector> result;
@@ -42,7 +43,7 @@ std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* g
   return result;
 }
 
-// Checks a term. Elements that are not listed must be zero within twice the noise of the listed ones. Returns the
+// Checks a term. Elements without an entry in the term must be zero, within twice the noise of the entries. Returns the
 // number of correct elements.
 std::size_t expect_term(const BlendTerm& term, const std::vector<exact::Vector>& expected, const char* name) {
   EXPECT_TRUE(std::is_sorted(term.elements.begin(), term.elements.end())) << name;
@@ -107,7 +108,7 @@ RC_GTEST_PROP(BlendTerms, counts_say_beforehand_where_terms_are_not_zero, ()) {
       for (std::uint32_t e = 0; e < touched.size(); ++e)
         if (touched[e]) listed.push_back(e);
       RC_ASSERT(terms.elements(i) == listed);
-      // The expected counts are computed from all faces of all elements.
+      // Computes the expected counts from all faces of all elements.
       std::vector<BlendTerms::PairCount> expected;
       for (std::size_t j = 0; j < set.targets.size(); ++j) {
         std::uint32_t count = 0;
@@ -138,14 +139,14 @@ TEST(BlendTerms, targets_apart_have_no_terms_in_common_and_rigid_ones_no_square)
   BlendSet set;
   set.topology = fixtures::make_triangles(6, {0, 1, 2, 3, 4, 5});
   set.base = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1};
-  // The first target moves the first face as a whole; the second target moves a corner of the second face.
+  // The first target translates the first face, and the second target moves one corner of the second face.
   set.targets = {{"", {0, 1, 2}, {1, 2, 3, 1, 2, 3, 1, 2, 3}}, {"", {5}, {0, 0, 1}}, {"", {}, {}}};
   const BlendTerms terms(set);
   EXPECT_TRUE(terms.linear(0).elements.empty());
   EXPECT_TRUE(terms.pair(0, 0).elements.empty());
   EXPECT_EQ(terms.linear(1).elements, (std::vector<std::uint32_t>{1}));
   EXPECT_EQ(terms.linear(1).values, (std::vector<Vec3d>{{0, -1, 0}}));
-  EXPECT_TRUE(terms.pair(1, 1).elements.empty());  // a single moving corner gives no quadratic term
+  EXPECT_TRUE(terms.pair(1, 1).elements.empty());  // a single corner that moves gives no quadratic term
   EXPECT_TRUE(terms.pair(0, 1).elements.empty());
   EXPECT_FALSE(terms.overlap(0, 1));
   EXPECT_TRUE(terms.linear(2).elements.empty() && terms.faces(2).empty() && terms.elements(2).empty());
@@ -199,8 +200,8 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
 }
 
-// For small meshes, lists keep the contribution of every face. For meshes of more than 100,000 faces, terms that are
-// requested one by one compute the contributions again.
+// For small meshes, lists keep the contribution of every face. For meshes with more than 100,000 faces, each requested
+// term is computed anew.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

@@ -1,4 +1,4 @@
-// Compares exact curves with rational numbers, and tests cases with n(t) = 0.
+// Compares exact curves with rational numbers, and tests motions in which n(t) = 0 at some time.
 
 #include "normals/control/exact_curve.h"
 
@@ -56,7 +56,7 @@ TEST(ExactCurve, has_every_component_to_the_last_place) {
   }
 }
 
-// Tests the kernel, and the function for a single face.
+// Tests the kernel for many faces, and the function for a single face.
 TEST(FaceControlNormals, are_never_made_of_rounding) {
   fixtures::Random random(42);
   for (int i = 0; i < 40; ++i) {
@@ -85,7 +85,7 @@ TEST(FaceControlNormals, are_never_made_of_rounding) {
 }
 
 TEST(ExactCurve, tells_a_moment_from_the_one_before) {
-  // n(t) = (3 t - 1) z, and 1/3 is not a double, so the sign changes between two neighbouring doubles.
+  // n(t) = (3 t - 1) z. Since 1/3 is not a double, the sign changes between two neighbouring doubles.
   const fixtures::Point o{0, 0, 0};
   const Motion motion = test::soup_of({{{o, {1, 0, 0}, {0, -1, 0}}, {o, {1, 0, 0}, {0, 2, 0}}}});
   const ExactCurve curve = ExactCurve::of_polygon(motion.segment(0), motion.topology.face(0));
@@ -109,7 +109,7 @@ TEST(ExactCurve, has_the_limit_where_n_is_zero) {
       {{{o, x, y}, {o, x, o}}, 1, {0, 0, 1}, Direction::kLimit},                   // the face closes
       {{{o, x, y}, {o, minus_x, minus_y}}, 0.5, {0, 0, 1}, Direction::kLimit},     // the face passes through a point
       {{{o, o, o}, {o, x, y}}, 0, {0, 0, 1}, Direction::kLimit},                   // the face grows out of a point
-      {{{o, x, x}, {o, y, y}}, 0.25, {0, 0, 0}, Direction::kNone},                 // the face is a line all the time
+      {{{o, x, x}, {o, y, y}}, 0.25, {0, 0, 0}, Direction::kNone},                 // the face remains a line
   };
   for (const auto& [triangle, t, vector, direction] : cases) {
     const Motion motion = test::soup_of({triangle});
@@ -128,7 +128,7 @@ TEST(ExactCurve, adds_up_faces) {
     all.push_back(f);
     if (f % 3 == 0) sum = sum + ExactCurve::of_polygon(segment, motion.topology.face(f)).normal_at(0.25);
   }
-  // The normals of a closed surface sum to exactly zero.
+  // The normals of the faces of a closed surface add up to exactly zero.
   EXPECT_EQ(ExactCurve::of_faces(segment, all).unit_normal_at(0.3).direction, Direction::kNone);
   std::vector<std::uint32_t> some;
   for (std::uint32_t f = 0; f < all.size(); f += 3) some.push_back(f);

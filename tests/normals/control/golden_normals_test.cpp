@@ -1,5 +1,5 @@
-// Checks that a weighting and a grouping of ours reproduce normals stored by other tools. Needs the environment
-// variable CHRONORMAL_DATA, which names their folder.
+// Checks that one weighting and one grouping of chronormal reproduce the normals that other tools store. Skipped unless
+// the environment variable CHRONORMAL_DATA names the folder of their files.
 
 #include <gtest/gtest.h>
 
@@ -28,10 +28,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A mesh file with the parts that the product's reader ignores: the normal of each corner, and the smoothing group of
-// each face.
+// A mesh file, including what chronormal's reader of OBJ files leaves out here: the normal of each corner, and the
+// smoothing group of each face.
 struct Golden {
-  Motion motion;  // both of its keyframes are the mesh
+  Motion motion;  // a motion whose two keyframes are both the mesh
   std::vector<float> normal_of_corner;
   std::vector<std::uint32_t> group_of_face;
 };
@@ -78,7 +78,8 @@ VectorView<const float> stored(const Golden& golden) {
   return VectorView<const float>::packed(golden.normal_of_corner.data(), golden.normal_of_corner.size() / 3);
 }
 
-// Returns the largest angle in degrees between the normals of the elements and the normals stored at their corners.
+// Returns the largest angle, in degrees, between the normals of the elements and the normals that the file stores for
+// the same corners.
 double largest_difference(const Golden& golden, const NormalGroups& groups, Weighting weighting) {
   const auto normals = all_weighted_normals_at(golden.motion.segment(0), groups, weighting, 0);
   double worst = 0;
@@ -115,8 +116,8 @@ NormalGroups split_normals_of(const Golden& golden) {
   return NormalGroups::by_split_normals(golden.motion.topology, no_welding(golden), stored(golden)).value();
 }
 
-// Checks that the normals of a file follow the weighting of its tool within 0.01 degrees, for both ways of finding hard
-// edges. All other weightings must have larger errors. Otherwise this file could not tell the weightings apart.
+// Checks that the normals of a file follow the weighting of the tool that wrote it, within 0.01 degrees, for both ways
+// of finding hard edges. All other weightings must have larger errors; otherwise the file could not distinguish them.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

@@ -1,5 +1,5 @@
-// Tests the local time t that all functions for normals of a segment use. A t outside of [0, 1] is moved to the nearer
-// end, a t below 2^-200 becomes 0, and at NaN there is no normal.
+// Tests how all functions for normals of a segment treat the local time t. A t outside of [0, 1] is moved to the nearer
+// end, a t below 2^-200 becomes 0, and if t is NaN there is no normal.
 
 #include "normals/control/local_time.h"
 
@@ -40,11 +40,11 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys. All three are doubles, and the differences `before` and `after` are small integers times one
-// unit.
+// A time between two keys. All three times are doubles. The differences `before` and `after` are small integers, as
+// multiples of one unit.
 struct Times {
   double start, time, end;
-  double before, after;  // time - start and end - time, in the same unit and with few bits
+  double before, after;  // time - start and end - time, as multiples of the same unit
 };
 
 Times random_times(fixtures::Random& random) {
@@ -54,19 +54,19 @@ Times random_times(fixtures::Random& random) {
   };
   Times t{0, 0, 0, small(), small()};
   const std::uint64_t kind = random.below(4);
-  if (kind == 1) t.before *= power(0, 90);  // close to one of the keys
+  if (kind == 1) t.before *= power(0, 90);  // close to one of the two keys
   if (kind == 2) t.after *= power(0, 90);
   t.time = kind == 0 ? static_cast<double>(random.below(1U << 30)) - 1e8 : 0;
   t.start = t.time - t.before;
   t.end = t.time + t.after;
   const double unit =
-      kind == 3 ? std::ldexp(1.0, 1011) : power(-900, 900);  // the longest durations exceed the range of double
+      kind == 3 ? std::ldexp(1.0, 1011) : power(-900, 900);  // the duration may exceed the range of double
   for (double* one : {&t.start, &t.time, &t.end}) *one *= unit;
   return t;
 }
 
-// Makes a fan of triangles around vertex 0. The second edge of each triangle has a component that is zero exactly at
-// `times.time`. The other components are so tiny that a rounding error of t would dominate them.
+// Makes a fan of triangles around vertex 0. One component of the second edge of each triangle is zero exactly at
+// `times.time`. The other components are so small that a rounding error of t would outweigh them.
 Motion edge_on_at(const Times& times, fixtures::Random& random) {
   Motion motion;
   std::vector<std::uint32_t> corners;
@@ -94,7 +94,8 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
   return motion;
 }
 
-// Returns n of some faces at a time in rational numbers. If n is zero at this time, returns n shortly before.
+// Returns the sum of the normals of some faces at a time, in rational numbers. If the sum is zero at this time, returns
+// the sum shortly before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);
   const auto sum_at = [&](const exact::Rational& t) { return exact::sum_of_faces_at(segment, faces, t); };
@@ -200,7 +201,7 @@ TEST(LocalTime, that_is_a_double_keeps_its_bits) {
   EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
-// A function for normals: it writes the normals at t and returns the number of (0, 0, 0).
+// A function that computes normals. It writes the normals at t, and returns how many of them are (0, 0, 0).
 struct Door {
   std::string name;
   std::size_t size;

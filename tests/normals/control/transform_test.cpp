@@ -1,4 +1,4 @@
-// Compares normals of meshes that move as a whole with normals of the transformed mesh.
+// Compares the transformed normals of a mesh that moves as a whole with the normals of the transformed mesh.
 
 #include "chronormal/normals/control_normals.h"
 
@@ -57,7 +57,7 @@ TEST(Transform, normals_are_those_of_the_transformed_face_on_the_outer_side) {
     expect_near(matrix(before), matrix.mirrored ? -after : after);
     mirrored += matrix.mirrored ? 1U : 0U;
 
-    // A point above the face must be above the transformed face, too.
+    // A point on the front side of the face must be on the front side of the transformed face, too.
     const Vec3d above = a + before;
     EXPECT_GT(dot(matrix(before), transform(above) - transform(a)), 0);
   }
@@ -68,7 +68,7 @@ TEST(Transform, is_the_inverse_transpose_but_for_its_length) {
   Random random(2);
   for (int round = 0; round < 100; ++round) {
     const AffineTransform transform = any_transform(random);
-    reference::Matrix<3> rows{};  // the transpose: its rows are the columns
+    reference::Matrix<3> rows{};  // the transpose of the matrix, so its rows are the columns
     for (std::size_t i = 0; i < 3; ++i)
       rows[i] = {transform.columns[i].x, transform.columns[i].y, transform.columns[i].z};
     const auto inverse = reference::inverse(rows);
@@ -144,7 +144,7 @@ TEST(Transform, nodes_between_keyframes_turn_at_constant_speed_on_the_shorter_ar
 RC_GTEST_PROP(Transform, normals_under_a_moving_node_are_those_of_the_moved_mesh_at_every_t, ()) {
   Random random(*rc::gen::arbitrary<std::uint64_t>());
   NodeTransform from = any_node(random), to = any_node(random);
-  if (random.below(2) == 0) from.scale.x *= -1, to.scale.x *= -1;  // a mirrored node
+  if (random.below(2) == 0) from.scale.x *= -1, to.scale.x *= -1;  // a node that mirrors the mesh
   const double t = random.uniform(0, 1);
   const AffineTransform now = affine_transform(interpolated(from, to, t));
   const Vec3d a = vector(random), b = vector(random), c = vector(random);

@@ -1,4 +1,4 @@
-// Compares control normals (double) and their curves (float32) with exact rational arithmetic
+// Compares control normals, which are in double, and their curves, which are in float32, with exact rational arithmetic
 // (tests/support/exact_normal.h).
 
 #include <gtest/gtest.h>
@@ -24,15 +24,15 @@ namespace chronormal::accuracy_test {
 namespace {
 
 constexpr std::size_t kFaces = 300;
-constexpr double kPromised = 1e-6;  // radians, as promised in evaluate.h
+constexpr double kPromised = 1e-6;  // in radians, the guaranteed largest error (evaluate.h)
 
 struct Family {
   const char* name;
   Motion (*make)();
 };
 
-// Makes faces of degree 0, 1 and 2, a third each: faces at rest, faces with one moving corner, and faces whose corners
-// all move.
+// Makes faces whose n(t) has degree 0, 1 or 2, a third of each: faces at rest, faces with one moving corner, and faces
+// whose corners all move.
 Motion mixed_degrees() {
   Motion motion = fixtures::moderate_soup(kFaces, 41);
   const auto& from = motion.keyframes[0].positions;
@@ -86,7 +86,7 @@ std::vector<ControlNormals> control_normals(const Segment& segment) {
   return normals;
 }
 
-// Returns the time with the smallest |n(t)|, which is the hardest for float32.
+// Returns the time at which |n(t)| is smallest, where float32 has the largest errors.
 double hardest_time(const ControlNormals& normals) {
   double best = 0, smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= 256; ++i) {
@@ -108,7 +108,8 @@ double hardest_time(const ControlNormals& normals) {
   return (low + high) / 2;
 }
 
-// Returns times for one face: the ends, the hardest time and its neighbourhood, floats and doubles in between.
+// Returns times to test a face at: both ends, the time with the smallest |n(t)| and times near it, and random times as
+// float32 and double.
 std::vector<double> times(const ControlNormals& normals, fixtures::Random& random) {
   const double hard = hardest_time(normals);
   std::vector<double> result{0, 1, 0.5, 1.0 / 3, 0x1p-30, 1 - 0x1p-30, hard};
@@ -121,8 +122,9 @@ std::vector<double> times(const ControlNormals& normals, fixtures::Random& rando
   return result;
 }
 
-// The largest error of one element of `curves` at many times, compared with exact normals. If an element is flagged,
-// times at which n(t) is below 1e-6 of the largest control normal are left out.
+// The largest error of one element of `curves` over many times, in radians, compared with exact normals. If float32 is
+// not accurate enough for the element (it is flagged), times with |n(t)| below 1e-6 of the largest control normal are
+// skipped.
 struct Judgement {
   double largest = 0;
   double time = 0;
@@ -178,7 +180,7 @@ TEST(ExactAngle, tells_the_smallest_angles_apart) {
 }
 
 // Each component of a control normal is a sum of a few products of edges. Its error is a few roundings of the largest
-// product, and this product may be much larger than the component.
+// of these products, which may be much larger than the component itself.
 TEST(FaceControlNormals, are_within_a_few_roundings_of_exact_arithmetic) {
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
@@ -223,7 +225,7 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
     std::array<std::size_t, 2> count{}, judged{};
     std::size_t left_out = 0;
     for (std::size_t f = 0; f < normals.size(); ++f) {
-      // The face is prepared alone, so flagged_count() tells whether it is flagged.
+      // The curves have only this face, so flagged_count() tells whether the face is flagged.
       const NormalCurves curves{std::span(normals).subspan(f, 1)};
       ASSERT_LE(curves.flagged_count(), 1U);
       const std::size_t flagged = curves.flagged_count();
@@ -245,8 +247,8 @@ TEST(NormalCurvesAccuracy, are_within_a_millionth_of_a_radian_of_exact_arithmeti
   }
 }
 
-// All elements of a block in float32 have a common exponent, so this test checks that neighbours of another size do not
-// reduce the accuracy.
+// All float32 elements of a block have a common exponent. This test checks that elements of other sizes in the same
+// block do not reduce the accuracy.
 TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_degree) {
   fixtures::Random random(54);
   std::vector<ControlNormals> normals;
@@ -259,7 +261,7 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
     for (const Motion& motion : motions) {
       const Segment segment = motion.segment(0);
       const std::size_t repeat =
-          // Elements of one family follow each other in runs shorter and longer than 8.
+          // Elements of one family are together, in runs shorter or longer than 8 elements.
           random.below(12) < 8 ? std::size_t{1} : std::size_t{12};
       for (std::size_t i = f; i < std::min(f + repeat, kFaces); ++i) {
         normals.emplace_back();
@@ -273,7 +275,8 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
   const NormalCurves curves(normals);
   double largest = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
-    // An element that is flagged only among its neighbours is judged as if it were not flagged, which is stricter.
+    // If an element is flagged only because of its neighbours, the test judges it as if it were not flagged, which is
+    // stricter.
     const Judgement judgement =
         judge(curves, i, flagged_alone[i], normals[i], triangles[i], exact::control_normals(triangles[i]), random);
     EXPECT_LE(judgement.largest, kPromised) << "element " << i << ", t = " << judgement.time;
@@ -285,8 +288,8 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
 
 // ---- where n(t) = 0 ------------------------------------------------------------------------------------------------
 
-// Returns the exact limit for n(t) = 0: at t = 0 the first nonzero control normal, at t = 1 the last one, and in
-// between the direction just before t.
+// Returns the exact direction that is documented for n(t) = 0: at t = 0 the first control normal that is not zero, at t
+// = 1 the last one, and at other times the direction just before t.
 exact::Vector limit_before(const exact::ControlNormals& normals) {
   if (!exact::is_zero(normals.n1)) return normals.n1;
   return exact::is_zero(normals.m) ? normals.n0 : normals.m;
@@ -333,7 +336,7 @@ TEST(VanishingNormal, has_the_direction_from_before_where_the_two_sides_are_anti
   expect_direction(fixtures::inside_out_soup(200), 0.5, Direction::kDiscontinuous, limit_after);
 }
 
-// Evaluates all elements into both layouts, packed and planes.
+// Evaluates all elements in both layouts: (x, y, z) per element, and separate planes of x, y and z.
 TEST(NormalCurvesAccuracy, give_the_same_direction_in_any_layout) {
   const Motion motion = mixed_degrees();
   const auto normals = control_normals(motion.segment(0));

@@ -1,4 +1,4 @@
-// Tests compact curves: every element keeps CurveOptions::tolerance, and formats are used as documented.
+// Tests compact curves: every element must keep CurveOptions::tolerance, and the curves must use formats as documented.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ using test::largest_of;
 constexpr std::array<double, 13> kTolerances{1e-6, 2e-6, 1e-5, 6e-5, 1e-4, 1.7e-4, 2e-4,
                                              5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1};
 
-// If n(t) is below this share of its terms, its direction in double is not accurate enough for the tolerances here.
+// If |n(t)| is below this share of its terms, n(t) computed in double is not accurate enough for the tolerances of this
+// file.
 constexpr double kBelowDouble = 1e-9;
 
 std::vector<Vec3f> unit_normals(const NormalCurves& curves, double t) {
@@ -69,7 +70,8 @@ void describe(const ControlNormals& c, double t) {
   std::cout.precision(precision);
 }
 
-// Each element is prepared alone. Otherwise more demanding neighbours could give its block a more precise format.
+// Prepares each element alone. Otherwise, neighbours that need more accuracy could give its block a more precise
+// format.
 TEST(CompactCurves, keep_the_tolerance_of_every_element_alone) {
   for (const test::HardFamily& family : test::hard_families()) {
     SCOPED_TRACE(family.name);
@@ -111,11 +113,11 @@ TEST(CompactCurves, keep_the_tolerance_among_neighbours_of_any_size_kind_and_deg
   for (const std::uint64_t seed : {72u, 73u, 74u}) {
     fixtures::Random random(seed);
     std::vector<ControlNormals> normals;
-    // There are runs of one family, from one element to a few blocks, and some zero elements.
+    // Adds runs of elements of one family, with lengths from one element to a few blocks. Some elements are zero.
     while (normals.size() < 3000) {
       const auto& family = test::hard_families()[random.below(test::hard_families().size())];
       const double scale =
-          // The scale is 1, or anywhere from 1e-271 to 1e301.
+          // The scale is 1, or any power of two from 1e-271 to 1e301.
           random.below(4) == 0 ? std::ldexp(1, static_cast<int>(random.below(1900)) - 900) : 1;
       for (std::size_t left = random.below(3) == 0 ? random.below(90) : 1; left > 0; --left)
         normals.push_back(random.below(40) == 0 ? ControlNormals{} : test::scaled_by(scale, family.make(random)));
@@ -147,7 +149,7 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
       for (const double tolerance : {1e-6, 2e-4, 1e-3, 1e-2, 0.1}) {
         const NormalCurves curves(std::span(&c, 1), {tolerance});
         for (const double t : {0.0, 0.3, test::hardest_time(c), 1.0}) {
-          // Subnormal control normals have already lost digits.
+          // Subnormal control normals have lost digits already, so they are skipped.
           if (!has_direction(c, t) || largest_of(c) < 0x1p-960) continue;
           const Vec3f u = unit_normals(curves, t).front();
           ASSERT_LE(angle_to(u, c, t), tolerance) << family.name << " times 2^" << exponent << ", t = " << t;
@@ -158,8 +160,8 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
   }
 }
 
-// The normals of all vertices of a mesh of triangles at one t, summed face by face in long double, and the sums of the
-// lengths of the summands.
+// The normals of all vertices of a triangle mesh at one t, and the sums of the lengths of the normals that are added.
+// Both are summed face by face, in long double.
 struct VerticesAt {
   std::vector<std::array<long double, 3>> normals;
   std::vector<long double> lengths;
@@ -186,7 +188,7 @@ struct VerticesAt {
     }
   }
 
-  // Returns the angle in radians between the normal of v and a direction, or 0 if there is no normal.
+  // Returns the angle in radians between the normal of vertex v and a direction, or 0 if the vertex has no normal.
   [[nodiscard]] double angle_to(const Vec3f& u, std::size_t v) const {
     const auto& n = normals[v];
     const long double length = std::hypot(n[0], n[1], n[2]);
@@ -198,15 +200,15 @@ struct VerticesAt {
   }
 };
 
-// Vertices are summed in float32 if it is precise enough. The faces here become flatter and flatter, down to needles
-// and slivers. In one of two variants, the faces in the middle of the mesh are less flat than those at its ends, so
-// float32 is precise enough only for some of sixteen neighbours.
+// The library sums the normals of vertices in float32 if float32 is accurate enough. The faces here become flatter and
+// flatter, down to needles and slivers. In one of two variants, faces in the middle of the mesh are less flat than
+// faces at its ends, so float32 is accurate enough only for some of sixteen neighbours.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in) {
   for (int flat = 0; flat <= 24; flat += 2) {
     for (const bool along : {false, true}) {
       const Motion motion = test::with_positions(fixtures::smooth_morph(24), [&](const fixtures::Point& p) {
         const double share = std::pow(0.5, flat * (along ? std::fabs(p[0]) : 1));
-        // The mesh is slanted, so that products consist of large terms that cancel.
+        // The mesh is slanted, so its cross products are sums of large terms that cancel.
         return fixtures::Point{p[0] + 3, share * p[1] + p[0] - 5, share * p[2] - p[0]};
       });
       const Segment segment = motion.segment(0);
@@ -227,7 +229,8 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_whatever_they_are_added_up_in
   }
 }
 
-// Vertices that hardly move are stored as straight curves, which take fewer bytes, unless float32 shows that they bend.
+// Vertices that hardly move are stored as straight curves, which take fewer bytes, unless float32 proves that their
+// curves bend.
 TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   fixtures::Random random(20261126);
   std::cout << "  seed 20261126\n";
@@ -258,7 +261,7 @@ TEST(CompactCurves, keep_the_tolerance_of_vertices_that_hardly_move) {
   EXPECT_GT(bending, 5000U);
 }
 
-// A tolerance must be kept even if it is as wide as the largest turn of a shape.
+// Tests very large tolerances, up to infinity.
 TEST(CompactCurves, keep_tolerances_without_measure) {
   fixtures::Random random(76);
   for (const double tolerance : {0.2, 0.3, 0.5, 1.0, 1.5, 2.5, 100.0, std::numeric_limits<double>::infinity()}) {
@@ -289,8 +292,8 @@ TEST(CompactCurves, no_tolerance_at_all_is_the_exact_one) {
 
 // ---- the worst elements that a search finds ------------------------------------------------------------------------
 
-// Evaluates one element by the kernels alone, in a given kind of block. Precondition: its components are floats of
-// moderate size.
+// Evaluates one element in the given kind of block, by calling the kernels directly. The components of the control
+// normals must be floats of moderate size.
 Vec3f kept_as(BlockKind kind, const ControlNormals& c, double t) {
   ControlTile tile{};
   std::size_t plane = 0;
@@ -318,14 +321,15 @@ struct Format {
   double tolerance;
 };
 
-// Returns the error of the element as a share of the tolerance, or 0 if the curves do not store it in this format.
+// Returns the error of the element divided by the tolerance, or 0 if the curves do not store the element in this
+// format.
 double used_up(const Format& format, const Candidate& candidate) {
   const NormalCurves curves(std::span(&candidate.c, 1), {format.tolerance});
   if (curves.flagged_count() != 0 || curves.byte_counts().front().bytes != bytes_of(format.kind)) return 0;
   if (curves.degree_counts()[format.kind == BlockKind::kLinear16 || format.kind == BlockKind::kLinear32 ? 1 : 2] == 0)
     return 0;
   const Vec3f u = unit_normals(curves, candidate.t).front();
-  // Two kinds of blocks have 20 bytes per element. The candidate is skipped if the curves chose the other kind.
+  // Two kinds of blocks take 20 bytes per element. Returns 0 if the curves chose the other kind.
   if (bytes_of(format.kind) == 20 && !(u == kept_as(format.kind, candidate.c, candidate.t))) return 0;
   return angle_to(u, candidate.c, candidate.t) / format.tolerance;
 }
@@ -354,7 +358,7 @@ Candidate changed(Candidate candidate, bool linear, fixtures::Random& random) {
       Vec3d& v = *vectors[random.below(3)];
       double* const components[] = {&v.x, &v.y, &v.z};
       double& x = *components[random.below(3)];
-      // The component is rounded to float, so that only the format rounds it further.
+      // Rounds the component to float32, so that only the format rounds it further.
       x = static_cast<float>(x + step * random.uniform(-1, 1));
     }
   }
@@ -394,7 +398,7 @@ TEST(CompactCurves, keep_the_tolerance_in_the_worst_cases_that_a_search_finds) {
     }
     std::cout << "  " << format.name << " at " << format.tolerance << ": " << worst << " of the tolerance\n";
     EXPECT_LE(worst, 1);
-    EXPECT_GT(worst, 0.05);  // otherwise the search would be too weak
+    EXPECT_GT(worst, 0.05);  // shows that the search finds large errors
     if (!(worst <= 1)) describe(worst_candidate.c, worst_candidate.t);
   }
 }
@@ -438,7 +442,7 @@ TEST(CompactCurves, low_degrees_take_12_bytes) {
 }
 
 TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
-  // The lengths begin at 2^-20, which plain int16 would round to zero for n0.
+  // The length of n0 is about 2^-20, which an int16 without its own scale would round to zero.
   const ControlNormals sliver{{0x1p-20, 0, 0x1p-22}, {0x1p-11, 0x1p-13, 0x1p-12}, {1, 0.25, 0.5}};
   const NormalCurves curves(repeated(sliver, 100), {1e-3});
   EXPECT_EQ(share_in(20, curves), 1);
@@ -448,7 +452,7 @@ TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
 }
 
 TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
-  // Two blocks that need fewer bytes, between blocks of 20 bytes, are not worth their own run. Eight blocks are.
+  // Two blocks that need fewer bytes are not worth a separate run between blocks of 20 bytes, but eight blocks are.
   const auto among = [](const ControlNormals& other, std::size_t blocks) {
     auto normals = repeated(kQuadratic, 16 * 10);
     const auto middle = repeated(other, 16 * blocks), rest = repeated(kQuadratic, 16 * 10);
@@ -460,7 +464,7 @@ TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
     EXPECT_EQ(share_in(20, among(other, 2)), 1);
     EXPECT_LT(share_in(20, among(other, 8)), 0.8);
   }
-  // A short run that needs more bytes is never stored in fewer.
+  // Even a short run is never stored with fewer bytes than it needs.
   const ControlNormals hard{{1, 0, 0}, {0, 1e-3, 0}, {-1, 0, 0}};
   const NormalCurves curves = among(hard, 1);
   EXPECT_GT(share_in(36, curves) + static_cast<double>(curves.flagged_count()), 0);
@@ -505,10 +509,10 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
         ASSERT_LE(v, 32767) << t;
         sum += v;
       }
-      // A component of a control normal is at most 32767.
+      // The components of the control normals are at most 32767 here, so the sum fits into 32 bits.
       ASSERT_LE(sum * 32767, std::numeric_limits<std::int32_t>::max()) << t;
-      // Only the ratios of weights matter. Therefore weights are compared at the scale with the smallest error, at
-      // which one of the weights is exact.
+      // Only the ratios of the weights matter. The test therefore compares the weights at each scale at which one of
+      // them is exact, and takes the smallest error.
       double smallest = 2;
       for (std::size_t j = 0; j < exact.size(); ++j) {
         if (integers[j] == 0) continue;

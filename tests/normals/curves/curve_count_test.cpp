@@ -1,4 +1,4 @@
-// Compares the sizes of curves that are counted in advance with the sizes of curves that are made.
+// Compares the sizes of curves that are computed in advance with the sizes of curves that are actually made.
 
 #include "normals/curves/curve_count.h"
 
@@ -17,7 +17,7 @@
 namespace chronormal::curve_count_test {
 namespace {
 
-// Counts the faces of a segment in ranges of `together` faces, and compares the counts with NormalCurves and
+// Counts the faces of a segment in ranges of `together` faces. Compares the counts with those of NormalCurves and
 // face_control_normals().
 void expect_same(const Segment& segment, std::size_t together, const char* name) {
   const std::size_t faces = segment.topology->face_count();
@@ -55,7 +55,7 @@ TEST(CurveCount, has_the_bytes_and_flagged_elements_of_curves_that_are_made) {
 }
 
 TEST(CurveCount, fills_the_last_block_with_what_the_last_faces_take) {
-  // Some faces rest. The faces after them move.
+  // The first 900 faces rest, and the other faces move.
   Motion motion = fixtures::soup({.face_count = 1030, .seed = 11, .motion = 0.02});
   for (std::size_t i = 0; i < 9 * 900; ++i) motion.keyframes[1].positions[i] = motion.keyframes[0].positions[i];
   ASSERT_NE(motion.topology.face_count() % kTile, 0U);

@@ -1,4 +1,4 @@
-// Checks that curves prepared in slices equal curves prepared in one go, to the last bit.
+// Checks that curves that are prepared in slices have the same bits as curves that are prepared at once.
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Makes four motions: one with its faces in the order of the grid, one in random order with more than a megabyte of
-// positions, one with flagged elements, and one without elements.
+// Makes four motions. In the first, the faces are in the order of the grid. In the second, they are in random order,
+// with more than a megabyte of positions. The third has flagged elements, and the fourth has no elements.
 std::vector<Motion> motions() {
   const Motion smooth = fixtures::smooth_morph(160), large = fixtures::smooth_morph(220);
   return {smooth, test::with_faces_in_order(large, test::shuffled_order(large.topology.face_count(), 7)),
@@ -61,7 +61,7 @@ TEST(CurveSlices, slices_of_any_size_have_the_bits_of_one_go) {
         expect_same(of_faces.finish(), faces);
         expect_same(of_vertices.finish(), vertices);
       }
-      // finish() does all remaining work.
+      // finish() must do all work that advance() has left.
       CurveSlices begun(segment, &groups, options, nullptr);
       (void)begun.advance(0.3);
       expect_same(begun.finish(), vertices);
@@ -70,7 +70,7 @@ TEST(CurveSlices, slices_of_any_size_have_the_bits_of_one_go) {
 }
 
 TEST(CurveSlices, a_share_is_no_more_than_was_asked_for) {
-  const Motion motion = fixtures::smooth_morph(160);  // 100 chunks
+  const Motion motion = fixtures::smooth_morph(160);  // prepared in 100 chunks
   for (const auto& [share, calls] : {std::pair{0.25, 4}, std::pair{0.1, 10}, std::pair{0.34, 3}}) {
     CurveSlices slices(motion.segment(0), nullptr, {}, nullptr);
     int needed = 1;
@@ -100,7 +100,7 @@ TEST(CurveSlices, memory_of_curves_before_is_used_again) {
 }
 
 TEST(CurveSlices, many_threads_place_parts_as_one_does) {
-  const Motion motion = fixtures::smooth_morph(300);  // sixteen blocks of faces
+  const Motion motion = fixtures::smooth_morph(300);  // prepared in sixteen blocks of faces
   const CurveOptions options{kCompactTolerance};
   const CurveData expected = build_curves(motion.segment(0), options, Threads::kOne, nullptr);
   for (const std::size_t threads : {1U, 2U, 3U, 8U, 64U}) {

@@ -1,5 +1,5 @@
-// Tests unit normals in four bytes: the meaning of the bits, the errors, and that the kernels agree with the functions
-// for single normals.
+// Tests unit normals that are encoded in four bytes: the meaning of the bits, the errors, and that the kernels agree
+// with the functions for single normals.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -18,7 +18,7 @@
 namespace chronormal::encodings_test {
 namespace {
 
-constexpr double kOctahedral = 7e-5, kRgb10A2 = 1.7e-3;  // radians, as promised in encodings.h
+constexpr double kOctahedral = 7e-5, kRgb10A2 = 1.7e-3;  // in radians, the guaranteed largest errors (encodings.h)
 
 double angle(const Vec3f& a, const Vec3f& b) { return angle_between(to_double(a), to_double(b)); }
 
@@ -29,7 +29,7 @@ Vec3f random_unit(fixtures::Random& random) {
   }
 }
 
-// Returns directions on and beside the axes, the planes and the diagonals, where the folds of the octahedron are.
+// Returns directions on and near the axes, the coordinate planes and the diagonals, where the octahedron has its folds.
 std::vector<Vec3f> special_directions() {
   std::vector<Vec3f> all;
   for (const double x : {-1.0, -0.0, 0.0, 1.0}) {
@@ -56,7 +56,7 @@ TEST(Octahedral, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_octahedral({0, 1, 0}).bits, 0x7FFF0000u);
   EXPECT_EQ(encode_octahedral({0, -1, 0}).bits, 0x80010000u);
   EXPECT_EQ(encode_octahedral({0, 0, -1}).bits, 0x7FFF7FFFu);
-  EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // 0.6 / 1.4
+  EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // (0.6 / 1.4) * 32767
   // On the lower half of the octahedron, x = -(1 - 0) and y = 1 - 0.6 / 1.4.
   EXPECT_EQ(encode_octahedral({-0.6f, 0, -0.8f}).bits, (32767u - 14043u) << 16 | 0x8001u);
   EXPECT_EQ(encode_octahedral({}).bits, 0u);
@@ -73,7 +73,7 @@ TEST(Rgb10A2, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_rgb10a2({0.6f, -0.8f, 0}).bits, 307u | (1024u - 409) << 10);
   EXPECT_EQ(encode_rgb10a2({}).bits, 0u);
   EXPECT_EQ(decode(Rgb10A2{0}), Vec3f{});
-  EXPECT_EQ(decode(Rgb10A2{512}), (Vec3f{-1, 0, 0}));  // the most negative integer has the same value as the next one
+  EXPECT_EQ(decode(Rgb10A2{512}), (Vec3f{-1, 0, 0}));  // -512 means the same as -511
 }
 
 template <class Encode>
@@ -109,7 +109,7 @@ TEST(Rgb10A2, has_no_bits_in_alpha) {
   for (int i = 0; i < 10000; ++i) EXPECT_EQ(encode_rgb10a2(random_unit(random)).bits >> 30, 0u);
 }
 
-// Compares with the nearest integers, computed in long double.
+// Compares encoded normals with the nearest integers to the exact values, which are computed in long double.
 TEST(Octahedral, is_the_nearest_point_of_the_grid) {
   fixtures::Random random(83);
   for (int i = 0; i < 100000; ++i) {
@@ -122,7 +122,7 @@ TEST(Octahedral, is_the_nearest_point_of_the_grid) {
       x = folded;
     }
     const std::uint32_t bits = encode_octahedral(v).bits;
-    // The error is half an integer, plus the earlier rounding to float32.
+    // The error is at most half an integer, plus the error of an earlier rounding to float32.
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits & 0xFFFF) - x * 32767), 0.51L) << i;
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits >> 16) - y * 32767), 0.51L) << i;
   }
@@ -164,7 +164,7 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// The kernels compute the integers in another way than the functions, so the results may differ by 1.
+// The kernels compute the integers differently from the functions for single normals, so the integers may differ by 1.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;
@@ -190,7 +190,7 @@ TEST(EncodedResults, are_those_of_the_functions) {
       const auto low = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits & 0xFFFF); };
       const auto high = [](std::uint32_t bits) { return static_cast<std::int16_t>(bits >> 16); };
       const bool close = std::abs(low(a) - low(b)) <= 1 && std::abs(high(a) - high(b)) <= 1;
-      // At a fold of the octahedron, two codes that are far apart may stand for nearly the same direction.
+      // At a fold of the octahedron, two different codes may stand for nearly the same direction.
       ASSERT_TRUE(close || angle(decode(octahedral[i]), view[i]) <= kOctahedral) << i;
     }
   }

@@ -1,5 +1,5 @@
-// Tests elements that float32 cannot represent. Mixes them with other elements in every pattern, and compares the
-// results with the same elements prepared alone.
+// Tests flagged elements, for which float32 is not accurate enough. Mixes them with other elements in every pattern,
+// and compares the results with those of the same elements prepared alone.
 
 #include "normals/curves/flagged_elements.h"
 
@@ -27,7 +27,7 @@ namespace {
 enum class Kind { kSmooth, kInsideOut, kInsideOutNeedle };
 using Pattern = std::function<Kind(std::size_t face, fixtures::Random& random)>;
 
-// Makes faces without common vertices. Some turn inside out while the others hardly move.
+// Makes faces that share no vertices. Depending on the pattern, a face turns inside out or hardly moves.
 Motion patterned(std::size_t faces, const Pattern& kind_of) {
   Motion motion = fixtures::soup({.face_count = faces, .seed = 5, .motion = 0.02});
   fixtures::Random random(20261126);
@@ -36,7 +36,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
   for (std::size_t f = 0; f < faces; ++f) {
     const Kind kind = kind_of(f, random);
     if (kind == Kind::kSmooth) continue;
-    // This corner is on the line between the two others, except for rounding. The normal is then hardly more than
+    // Puts one corner on the line through the two others, except for rounding, so the normal is hardly more than
     // rounding error.
     for (std::size_t i = 9 * f; kind == Kind::kInsideOutNeedle && i < 9 * f + 3; ++i)
       from[i + 6] = 0.7F * from[i] + 0.3F * from[i + 3];
@@ -47,10 +47,11 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
 
 struct Elements {
   std::size_t count = 0;
-  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // computed alone, and in a tile
+  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // computes element i alone, or as a part of a tile
 };
 
-// Returns control normals as computed in double, or exact ones if the result in double is hardly more than noise.
+// Returns control normals that were computed in double, or the exact ones if the former are hardly more than rounding
+// error.
 BoundedNormals settled(const BoundedNormals& rounded, const std::function<ExactCurve()>& exact) {
   return rounded.largest_share() <= kLargestShare ? rounded : BoundedNormals{exact().rounded(), {}};
 }
@@ -95,7 +96,7 @@ bool is_like(const FlaggedElements& flagged, std::size_t index, const BoundedNor
   return flagged.scaled_normals(index) == expected.normals && flagged.exponents[index] == expected.exponent;
 }
 
-// Describes the fault of the flagged elements of curves, or returns "".
+// Checks the flagged elements of curves. Describes the first fault, or returns "".
 std::string fault_of(const CurveData& curves, const Elements& elements, double tolerance) {
   const PrecisionLimits limits = PrecisionLimits::for_tolerance(tolerance);
   std::size_t next = 0;
@@ -134,7 +135,7 @@ TEST(FlaggedElements, are_what_each_is_alone_in_every_pattern) {
     for (const std::size_t faces : {16U, 37U, 1003U, 4000U}) {
       const Motion motion = patterned(faces, pattern);
       const Segment segment = motion.segment(0);
-      // Every vertex has one face, and is listed beside the other vertices of its face.
+      // Every vertex has only one face, and is next to the other vertices of that face.
       const NormalGroups groups =
           NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
       for (const double tolerance : {kExactTolerance, kCompactTolerance}) {

@@ -1,5 +1,5 @@
-// Compares a hash of all results with a constant. The hash must be the same for every instruction set, number of
-// threads and compiler.
+// Compares a hash of all results with a constant. The hash must be the same for every instruction set, every number of
+// threads and every compiler.
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@
 namespace chronormal::golden_bits_test {
 namespace {
 
-// The hash FNV-1a over 32-bit words, so that the byte order does not matter.
+// The hash FNV-1a of 32-bit words, so the order of bytes in memory does not matter.
 class Hash {
  public:
   void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }
@@ -73,7 +73,7 @@ void add_curves(Hash& hash, const NormalCurves& curves, Results& results) {
     curves.normals(0.34375, packed);
     for (const float v : results.xyz) hash.add(v);
   }
-  // Evaluates three times at once.
+  // Evaluates three times t in one call.
   results.three.resize(9 * n);
   const double times[] = {0.125, 0.5, 0.9375};
   VectorView<float> three[3];
@@ -96,7 +96,7 @@ void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
 constexpr std::uint64_t kGolden = 0x3b625b5cb14a70ca;
 
 TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {
-  // 67,712 faces are prepared in fifteen parts, and 34,225 vertices are evaluated in three pieces.
+  // The 67,712 faces are prepared in fifteen parts, and the 34,225 vertices are evaluated in three pieces.
   const Motion motion = test::integer_grid(184);
   const Segment segment = motion.segment(0);
   const NormalGroups groups =

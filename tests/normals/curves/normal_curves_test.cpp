@@ -1,5 +1,5 @@
-// Tests the parts that accuracy_test.cpp and theorems_test.cpp leave open: runs by degree, layouts, degenerate
-// elements, and extreme values.
+// Tests what accuracy_test.cpp and theorems_test.cpp do not: runs of elements of equal degree, layouts of memory,
+// degenerate elements, and extreme values.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -59,7 +59,8 @@ TEST(NormalCurves, counts_degrees_as_they_are) {
 }
 
 TEST(NormalCurves, every_mixture_of_degrees_gives_what_each_element_gives_alone) {
-  // There are short and long runs, at the ends and inside. Some of the runs are therefore raised to a higher degree.
+  // The runs are short or long, and at the ends or in the middle. Some short runs are therefore stored with a higher
+  // degree.
   const auto mixed = repeated({{kStill, 2},
                                {kQuadratic, 9},
                                {kLinear, 1},
@@ -132,14 +133,14 @@ TEST(UnitNormal, end_without_area_takes_the_limit_from_before) {
 }
 
 TEST(UnitNormal, a_double_zero_inside_keeps_its_direction) {
-  const ControlNormals touching{{0, 0, 1}, {0, 0, -1}, {0, 0, 1}};  // (1 - 2t)^2
+  const ControlNormals touching{{0, 0, 1}, {0, 0, -1}, {0, 0, 1}};  // the length of n(t) is (1 - 2t)^2
   const UnitNormal u = unit_normal_at(touching, 0.5);
   EXPECT_EQ(u.direction, Direction::kLimit);
   EXPECT_EQ(u.vector, (Vec3d{0, 0, 1}));
 }
 
 TEST(UnitNormal, a_simple_zero_inside_gives_the_side_before_and_says_so) {
-  const ControlNormals crossing{{0, 0, 1}, {0, 0, 0}, {0, 0, -1}};  // 1 - 2t
+  const ControlNormals crossing{{0, 0, 1}, {0, 0, 0}, {0, 0, -1}};  // the length of n(t) is |1 - 2t|
   const UnitNormal u = unit_normal_at(crossing, 0.5);
   EXPECT_EQ(u.direction, Direction::kDiscontinuous);
   EXPECT_EQ(u.vector, (Vec3d{0, 0, 1}));
@@ -153,7 +154,7 @@ TEST(UnitNormal, nothing_at_all_is_none) {
 }
 
 TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
-  // Products of these coordinates are not exact in double; the rounding error must not become a direction.
+  // The products of these coordinates are not exact in double. Their rounding errors must not become a direction.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   std::vector<float> p(9);
   int tested = 0;
@@ -161,7 +162,7 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
     const float x = 0.1f * static_cast<float>(i), y = 1e-7f * static_cast<float>(i * i),
                 z = 3e5f / static_cast<float>(i);
     p = {0, 1e10f, 0, x, 1e10f + y, z, 2 * x, 1e10f + 2 * y, 2 * z};
-    // Skips points that are not collinear after rounding to float32; these differences are exact.
+    // Skips points that are not collinear after rounding to float32. The differences here are computed exactly.
     if (p[3] - p[0] != p[6] - p[3] || p[4] - p[1] != p[7] - p[4] || p[5] - p[2] != p[8] - p[5]) continue;
     ++tested;
     const auto view = VectorView<const float>::packed(p.data(), 3);
@@ -174,8 +175,8 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
 }
 
 TEST(ControlNormalsOfFaces, corners_that_are_not_quite_collinear_give_what_there_is) {
-  // c = 2 b, and a is very close to the origin: b x c is zero, and n = a x (b - c) = b x a is far below the rounding
-  // errors of its products.
+  // c = 2 b, so b x c is zero. Since a is very close to the origin, n = a x (b - c) = b x a is far below the rounding
+  // errors of the products that n is a sum of.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   const float p[] = {1e-20f, 0, 0, 0.3f, 0.7f, 0.1f, 2 * 0.3f, 2 * 0.7f, 2 * 0.1f};
   const auto view = VectorView<const float>::packed(p, 3);

@@ -1,4 +1,5 @@
-// Checks that curves give the same bits in every output format, for many t at once, and on any number of threads.
+// Checks that curves give the same bits in every output format, for one t or many at once, and on any number of
+// threads.
 
 #include <gtest/gtest.h>
 
@@ -28,7 +29,8 @@ namespace {
 
 constexpr std::array<double, 4> kTolerances{1e-6, 1e-3, 5e-3, 2e-2};
 
-// Makes elements of all kinds and degrees, including flagged and zero elements, in runs that sometimes exceed a block.
+// Makes elements of all kinds and degrees, including flagged elements and zeros. Some runs of similar elements are
+// longer than a block.
 std::vector<ControlNormals> mixed_elements(std::size_t count, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<ControlNormals> normals;
@@ -43,7 +45,7 @@ std::vector<ControlNormals> mixed_elements(std::size_t count, std::uint64_t seed
   return normals;
 }
 
-// Memory for results between guard words, which begins at any distance from an aligned address.
+// Memory for results, between words that must not change. The memory begins at any distance from an aligned address.
 template <class T>
 class Guarded {
  public:
@@ -54,7 +56,8 @@ class Guarded {
   }
   [[nodiscard]] T* data() { return words_.data() + begin_; }
   [[nodiscard]] std::span<T> span() { return {data(), count_}; }
-  // Tells whether only results have changed, and among the results only those that `may_be_written` allows.
+  // Tells whether no words around the results have changed, and among the results only words that `may_be_written`
+  // allows.
   [[nodiscard]] bool is_intact(const std::function<bool(std::size_t)>& may_be_written = nullptr) const {
     for (std::size_t i = 0; i < words_.size(); ++i) {
       const bool inside = i >= begin_ && i < begin_ + count_ && (!may_be_written || may_be_written(i - begin_));
@@ -73,7 +76,7 @@ class Guarded {
 
 bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
-// The results, one element after the other in (n, 3), at an aligned address.
+// The expected results: three floats per element, at an aligned address.
 struct Reference {
   std::vector<Vec3f> normals;
   std::size_t without_direction = 0;
@@ -115,13 +118,13 @@ void expect_all_forms_agree(const NormalCurves& curves, double t) {
     EXPECT_TRUE(four.is_intact([](std::size_t i) { return i % 4 != 3; }));
   }
   {
-    Guarded<float> seven(7 * n, 0);  // z, a gap, y, a gap, x, two gaps
+    Guarded<float> seven(7 * n, 0);  // seven words per element: z, a gap, y, a gap, x, two gaps
     const VectorView<float> view{seven.data() + 4, seven.data() + 2, seven.data(), n, 7};
     expect_same(view, curves.unit_normals(t, view), "stride 7, backwards");
     EXPECT_TRUE(seven.is_intact([](std::size_t i) { return i % 7 == 0 || i % 7 == 2 || i % 7 == 4; }));
   }
   {
-    Guarded<float> three(3 * n, 0);  // (n, 3) with z first
+    Guarded<float> three(3 * n, 0);  // three words per element, with z first
     const VectorView<float> view{three.data() + 2, three.data() + 1, three.data(), n, 3};
     expect_same(view, curves.unit_normals(t, view), "stride 3, backwards");
     EXPECT_TRUE(three.is_intact());
@@ -154,7 +157,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
       for (const double tolerance : kTolerances)
         expect_all_forms_agree(NormalCurves(some, {tolerance}), size % 3 == 0 ? 0 : 0.37);
     }
-    // There are more elements than the stack holds at a time.
+    // Tests more elements than the stack holds at a time.
     for (const double tolerance : kTolerances) expect_all_forms_agree(NormalCurves(elements, {tolerance}), 0.71);
   }
 }
@@ -261,8 +264,8 @@ TEST(ThreadsOfCurves, give_the_bits_of_one) {
   }
 }
 
-// The results that a test compares. The lengths of collapsing elements are more precise in curves from positions than
-// in curves from control normals, and may differ in the last bit.
+// Selects the results that a test compares. The lengths of normals of collapsing elements are more precise in curves
+// from positions than in curves from control normals, so these lengths may differ in the last bit.
 enum class Say { kEverything, kNoLengths };
 
 std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say::kEverything) {
@@ -288,7 +291,7 @@ std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say:
 }
 
 TEST(ThreadsOfCurves, prepare_the_same_curves) {
-  const Motion motion = test::integer_grid(260);  // 135,200 faces are sixteen parts
+  const Motion motion = test::integer_grid(260);  // 135,200 faces, prepared in sixteen parts
   const Segment segment = motion.segment(0);
   std::vector<ControlNormals> normals(motion.topology.face_count());
   face_control_normals(segment, {0, normals.size()}, normals);
@@ -298,7 +301,8 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
     const CurveOptions options{tolerance};
     const auto faces = everything(NormalCurves::of_faces(segment, options));
     const auto vertices = everything(NormalCurves::of_groups(segment, groups, options));
-    // Compact curves are prepared in float32 if its precision is enough, while control normals are in double.
+    // Compact curves are prepared in float32 if float32 is accurate enough, while control normals are always computed
+    // in double.
     if (tolerance <= kExactTolerance) {
       EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
                 everything(NormalCurves(normals, options), Say::kNoLengths))
@@ -312,8 +316,8 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
   }
 }
 
-// If the neighbours of vertices are scattered in memory, the positions of a vertex at both ends are first copied side
-// by side.
+// If the neighbours of a vertex are far apart in memory, the library first copies their positions at both ends of the
+// segment into one place.
 TEST(ScatteredMesh, has_the_curves_of_its_control_normals) {
   const Motion motion = test::shuffled_grid(220);
   const Segment segment = motion.segment(0);
@@ -371,7 +375,7 @@ TEST(ReusedCurves, take_scratch_of_any_size_from_the_ones_before) {
 
 // ---- results that go past the caches -------------------------------------------------------------------------------
 
-// Repeats a grid until there are `faces` faces.
+// Makes a topology with `faces` faces, by repeating the faces of a grid.
 Topology repeated_grid(const Topology& grid, std::size_t faces) {
   const auto corners = grid.corners();
   std::vector<std::uint32_t> repeated;
@@ -383,8 +387,8 @@ Topology repeated_grid(const Topology& grid, std::size_t faces) {
   return fixtures::make_triangles(grid.vertex_count(), std::move(repeated));
 }
 
-// Evaluates to aligned memory, with one thread and with all threads, where streaming stores may write. Compares the
-// results with memory that begins one word later, to which streaming stores never write.
+// Evaluates into aligned memory, where the library may use streaming stores, with one thread and with all threads.
+// Compares the results with those in memory that begins one word later, where the library never uses streaming stores.
 template <class T, class Evaluate>
 void expect_streamed_as_stored(std::size_t words, const Evaluate& evaluate) {
   Guarded<T> streamed(words, 0), stored(words, 1);
@@ -420,7 +424,7 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
       for (std::size_t k = 0; k < 3; ++k) std::fill(x + k * plane + faces, x + (k + 1) * plane, 0.0F);
       return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane, faces), threads);
     });
-    // The plane of z begins one word early, so not all planes are aligned.
+    // The third plane, z, begins one word early, so it is not aligned.
     expect_streamed_as_stored<float>(3 * plane, [&](float* x, Threads threads) {
       std::fill(x + faces, x + plane, 0.0F);
       std::fill(x + plane + faces, x + 2 * plane - 1, 0.0F);
@@ -428,7 +432,7 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
       return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane - 1, faces), threads);
     });
     const VectorView<float> wide{nullptr, nullptr, nullptr, faces, 4};
-    // Every fourth word must not be written.
+    // The fourth word of each element must not be written.
     expect_streamed_as_stored<float>(4 * faces, [&](float* x, Threads threads) {
       for (std::size_t i = 0; i < faces; ++i) x[4 * i + 3] = 0;
       VectorView<float> view = wide;
@@ -456,7 +460,7 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
     SCOPED_TRACE(target_name(target));
     for (const double tolerance : {1e-6, 5e-3}) {
       const NormalCurves curves(elements, {tolerance});
-      // All times write to the same memory, so the result for the last t remains.
+      // The results for all times go to the same memory, so the result for the last t remains.
       Guarded<float> packed(3 * elements.size(), 0), planes(3 * plane, 0);
       Guarded<Octahedral> words(elements.size(), 0);
       const auto times = [](std::size_t count) {

@@ -1,5 +1,6 @@
-// Tests whole meshes from arrays: which vertices share a normal, the outputs of each vertex that shows it, ranges and
-// threads, and refused input. The expected normals are sums of cross products in double, or of integers.
+// Tests MeshNormals, which makes the normals of a mesh from arrays: which vertices share a normal, the vertices that
+// show each normal, ranges and threads, and refused input. The expected normals are sums of cross products in double or
+// in integers.
 #include "chronormal/normals/mesh_normals.h"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,8 @@ namespace {
 
 using fixtures::Random;
 
-// Two triangles share an edge: in one mesh by the same vertices (0 1 2 and 2 1 3), in the other with a seam, where the
-// vertices 4 and 5 are at the places of 1 and 2.
+// Two triangles share an edge. In one mesh, they use the same vertices (0 1 2 and 2 1 3). In the other mesh, the edge
+// is a seam: vertices 4 and 5 are at the positions of vertices 1 and 2.
 const std::vector<std::uint32_t> kCorners = {0, 1, 2, 5, 4, 3};
 const std::vector<float> kFrom = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0.5F, 1, 0, 0, 0, 1, 0};
 const std::vector<float> kTo = {0, 0, 1, 1, 0.5F, 0, 0, 1, 1, 2, 1, -1, 1, 0.5F, 0, 0, 1, 1};
@@ -89,7 +90,7 @@ TEST(MeshNormals, vertices_across_a_seam_share_a_normal_unless_they_are_separate
 }
 
 TEST(MeshNormals, a_motion_says_in_all_its_keyframes_which_vertices_are_one) {
-  // In a third keyframe the seam opens, so it counts as a seam in the first segment, too.
+  // The seam opens in a third keyframe, so it is also a seam in the first segment.
   Motion motion;
   motion.topology = pair_of_triangles();
   std::vector<float> open = kTo;
@@ -158,13 +159,13 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
 }
 
-// The first segment, in which vertices 4 and 5 coincide with 1 and 2, decides which vertices share a normal. In other
+// The first segment decides which vertices share a normal: there, vertices 4 and 5 coincide with 1 and 2. In other
 // segments, these vertices may be apart.
 TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
   std::vector<float> apart = kTo;
   apart[3 * 4] += 0.25F;
   for (const ElementKind kind : {ElementKind::kFaces, ElementKind::kVertices, ElementKind::kCorners}) {
-    const std::vector<std::uint32_t> groups = {1, 2};  // smoothing groups that make the edge hard
+    const std::vector<std::uint32_t> groups = {1, 2};  // different smoothing groups make the edge hard
     MeshNormalsOptions options{.elements = {kind}};
     if (kind == ElementKind::kCorners) options.elements.group_of_face = groups;
     MeshNormals first = MeshNormals::make(pair_of_triangles(), options).value();
@@ -183,7 +184,7 @@ TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_
     ASSERT_TRUE(anew.set_segment(view(kFrom), view(kTo)).ok());
     ASSERT_TRUE(anew.set_segment(view(apart), view(kFrom)).ok());
     EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
-    first = MeshNormals::make(pair_of_triangles()).value();  // the mesh lives as long as any object refers to it
+    first = MeshNormals::make(pair_of_triangles()).value();  // the mesh lives as long as an object refers to it
     EXPECT_EQ(normals_at(late, 0.75), normals_at(anew, 0.75));
   }
 }
@@ -219,19 +220,19 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
 
 // ---- ranges, threads, forms ----------------------------------------------------------------------------------------
 
-// Makes a mesh with seams and in random order, in which some faces are thin or collapse.
+// Makes a mesh with seams, whose vertices and faces are in random order. Some faces are thin, and some collapse.
 Motion hard_mesh(Random& random, std::uint32_t cells) {
   Motion motion = fixtures::smooth_morph(cells);
   auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
-  for (std::uint32_t i = 0; i < cells; ++i) {  // some faces collapse at the end
+  for (std::uint32_t i = 0; i < cells; ++i) {  // some faces collapse at t = 1
     const std::size_t a = random.below(from.size() / 3), b = random.below(from.size() / 3);
     std::copy_n(to.begin() + static_cast<std::ptrdiff_t>(3 * a), 3, to.begin() + static_cast<std::ptrdiff_t>(3 * b));
   }
   return test::with_faces_in_order(motion, test::shuffled_order(motion.topology.face_count(), random.below(1000)));
 }
 
-// Gives every corner its own vertex, as in a file with seams everywhere.
+// Gives every corner its own vertex, as in a file with a seam at every edge.
 Motion torn(const Motion& motion) {
   Motion result;
   std::vector<std::uint32_t> corners(motion.topology.corner_count());
@@ -260,7 +261,7 @@ BlendSet shapes_of(const Motion& motion, Random& random) {
   return set;
 }
 
-// Cuts the range from 0 to `size` at random places, and calls body(range) for each part.
+// Divides the range from 0 to `size` into parts of random sizes, and calls body(range) for each part.
 template <class Body>
 void for_pieces(std::size_t size, Random& random, const Body& body) {
   for (std::size_t first = 0; first < size;) {
@@ -291,14 +292,14 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         std::vector<float> all(3 * n), pieces(3 * n), blended(3 * n), blended_pieces(3 * n);
         std::vector<Octahedral> octahedral(n), octahedral_pieces(n);
         std::vector<Rgb10A2> rgb(n), rgb_pieces(n);
-        std::vector<float> records(7 * n);  // each record has 28 bytes, of which three floats are the normal
+        std::vector<float> records(7 * n);  // records of 28 bytes, in which three floats are the normal
         const auto strided = VectorView<float>::strided(records.data(), n, 28);
         const std::size_t zeros = normals.unit_normals(t, VectorView<float>::packed(all));
         const std::size_t blended_zeros = normals.unit_normals(VectorView<float>::packed(blended));
         EXPECT_EQ(normals.unit_normals(t, std::span(octahedral)), zeros);
         EXPECT_EQ(normals.unit_normals(t, std::span(rgb)), zeros);
 
-        // Eight threads take turns with the ranges.
+        // Eight threads compute the ranges, each taking the next range that is left.
         std::vector<IndexRange> ranges;
         for_pieces(n, random, [&](IndexRange range) { ranges.push_back(range); });
         std::atomic<std::size_t> zeros_of_pieces = 0, blended_of_pieces = 0;
@@ -326,7 +327,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         for (std::size_t i = 0; i < n; ++i) counted += view(all)[i] == Vec3f{} ? 1U : 0U;
         EXPECT_EQ(counted, zeros);
 
-        // The first call computes two times at once, and the second uses the thread pool.
+        // One call computes two times at once, and another call uses the thread pool.
         std::vector<float> two(3 * n), other(3 * n);
         const double times[] = {0.5, t};
         const VectorView<float> views[] = {VectorView<float>::packed(other), VectorView<float>::packed(two)};
@@ -406,7 +407,7 @@ std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
   return static_cast<std::int32_t>(word << (32 - first - count)) >> (32 - count);
 }
 
-// Decodes a record like a shader.
+// Decodes a record as a shader does.
 ControlNormals decoded(ControlFormat format, const std::byte* record) {
   std::array<double, 9> v{};
   if (format == ControlFormat::kFloat32) {

@@ -1,4 +1,4 @@
-// Tests theorems about the normals of vertices and corners, and degenerate normals.
+// Tests properties of the normals of vertices and corners that theory proves, and degenerate normals.
 
 #include "chronormal/normals/normal_groups.h"
 
@@ -47,8 +47,8 @@ ControlNormals difference(const ControlNormals& a, const ControlNormals& b) {
   return {a.n0 - b.n0, a.m - b.m, a.n1 - b.n1};
 }
 
-// Compares every element of the motion with the oracle at several times, and returns the largest angle in radians.
-// Leaves out elements whose terms cancel by a factor of more than 1e6.
+// Compares every element with the oracle at several times. Returns the largest angle in radians. Skips elements whose
+// terms cancel by a factor of more than 1e6.
 double largest_error(const Motion& motion, const NormalGroups& groups, const std::string& weighting = "area") {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const auto corners = test::reference_corners(mesh, groups);
@@ -129,12 +129,12 @@ RC_GTEST_PROP(GroupNormals, any_scale_gives_its_square, ()) {
   }));
   for (std::size_t e = 0; e < before.size(); ++e) {
     const ControlNormals expected{s * s * before[e].n0, s * s * before[e].m, s * s * before[e].n1};
-    RC_ASSERT(largest(difference(after[e], expected)) <= s * s * 1e-4);  // positions are rounded to float once more
+    RC_ASSERT(largest(difference(after[e], expected)) <= s * s * 1e-4);  // scaled positions are rounded to float32
   }
 }
 
 RC_GTEST_PROP(GroupNormals, a_rotation_by_quarter_turns_rotates_them_bit_for_bit, ()) {
-  // The cyclic exchange x -> y -> z -> x and a half turn about x are rotations that cause no rounding.
+  // The cyclic permutation x -> y -> z -> x and a half turn about x are rotations that cause no rounding errors.
   const Motion motion = any_mesh(1, *rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<bool>());
   const auto turned = [](const Vec3d& v) { return Vec3d{v.z, -v.x, -v.y}; };
   const auto before = vertex_controls(motion);
@@ -160,7 +160,7 @@ RC_GTEST_PROP(GroupNormals, time_reversal_swaps_the_ends_bit_for_bit, ()) {
 RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   Motion motion = any_mesh(1, seed, *rc::gen::arbitrary<bool>());
-  // The mesh occurs twice, so there are duplicates, half of them with rotated corners.
+  // Every face occurs twice in the mesh. In half of the copies, the corners begin elsewhere.
   auto order = test::shuffled_order(motion.topology.face_count(), seed);
   const std::size_t face_count = order.size();
   for (std::size_t i = 0; i < face_count; ++i) order.push_back(i);
@@ -178,7 +178,7 @@ RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const Motion shuffled = test::with_faces_in_order(motion, shuffle);
   RC_ASSERT(vertex_controls(shuffled) == vertex_controls(motion));
 
-  // The corners of face i of the shuffled mesh are the corners of face shuffle[i].
+  // Face i of the shuffled mesh is face shuffle[i] of the original mesh.
   const Points points = separate_points(motion.topology.vertex_count());
   const double degrees = *rc::gen::inRange(0, 90);
   const auto a = NormalGroups::by_crease_angle(motion, points, degrees).value();
@@ -256,8 +256,8 @@ TEST(GroupNormals, duplicate_faces_count_as_often_as_they_are_there_and_opposite
   const auto one = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2}), points));
   const auto two = vertex_controls(test::still(fixtures::make_triangles(3, {0, 1, 2, 0, 1, 2}), points));
   EXPECT_EQ(two[1].n0, 2.0 * one[1].n0);
-  // The two faces are the two sides of a sheet, and begin with different corners. Their sum must be exactly zero, not a
-  // rounding error that has a direction.
+  // The two faces are the two sides of a sheet, but begin with different corners. Their normals must add up to exactly
+  // zero, and not to a rounding error that has a direction.
   for (const std::vector<std::uint32_t>& other : {std::vector<std::uint32_t>{0, 2, 1}, {2, 1, 0}, {1, 0, 2}}) {
     std::vector<std::uint32_t> corners = {0, 1, 2};
     corners.insert(corners.end(), other.begin(), other.end());
@@ -280,7 +280,8 @@ TEST(GroupNormals, a_vertex_of_two_fans_is_the_sum_of_both_and_its_corners_are_n
 }
 
 TEST(GroupNormals, a_polygon_with_two_corners_at_a_point_counts_with_both) {
-  // A square has a slit to its middle: vertex 4 occurs once in the polygon, vertex 0 twice.
+  // A square has a slit from a corner to its middle. In the polygon, vertex 4 in the middle occurs once, and vertex 0
+  // at the corner twice.
   const Motion slit = test::still(fixtures::make_polygons(5, {0, 6}, {0, 1, 2, 3, 0, 4}),
                                   {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0}});
   const auto controls = vertex_controls(slit);

@@ -1,4 +1,4 @@
-// Tests which corners share a normal, on fixtures made by hand and on random meshes against an oracle.
+// Tests which corners share a normal, on small meshes made by hand, and on random meshes in comparison with an oracle.
 
 #include "chronormal/normals/normal_groups.h"
 
@@ -35,9 +35,9 @@ NormalGroups creased(const Motion& motion, double degrees) {
   return NormalGroups::by_crease_angle(motion, no_welding(motion), degrees).value();
 }
 
-// Makes triangles around the z axis from the hinge (0 0 0)-(0 0 1), at the given angles in degrees. Vertices 0 and 1
-// are the hinge, and corner 3 f + 2 of face f is its tip. Neighbours have opposite winding along the hinge, as on a
-// surface.
+// Makes triangles around the z axis, like the pages of a book, at the given angles in degrees. All of them share the
+// edge from (0, 0, 0) to (0, 0, 1), whose vertices are 0 and 1. Corner 3 f + 2 of face f is its third point.
+// Neighbouring faces pass the common edge in opposite directions, as on a surface.
 Motion pages(const std::vector<double>& angles) {
   std::vector<Point> points = {{0, 0, 0}, {0, 0, 1}};
   std::vector<std::uint32_t> corners;
@@ -124,8 +124,8 @@ TEST(CreaseAngle, is_measured_in_keyframe_0_alone) {
 }
 
 TEST(CreaseAngle, smoothness_spreads_from_edge_to_edge) {
-  // A cone has 12 faces; neighbours are 24 degrees apart and opposite faces 100 degrees, so the tip is smooth all
-  // around.
+  // A cone with 12 faces. The normals of neighbours differ by 24 degrees, and those of opposite faces by 100 degrees.
+  // All faces at the tip share a normal.
   std::vector<Point> points = {{0, 0, 1}};
   std::vector<std::uint32_t> corners;
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -145,7 +145,7 @@ TEST(CreaseAngle, fans_that_touch_in_a_point_stay_apart) {
 }
 
 TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close) {
-  // Faces 0 and 1 continue each other, and face 2 stands on their edge.
+  // Faces 0 and 1 lie in one plane, and face 2 is perpendicular on their common edge.
   const Motion motion = pages({0, 180, 90});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[4]);
@@ -153,7 +153,7 @@ TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close)
 }
 
 TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbours_in_the_file) {
-  // The standing face is now between the two others in the file.
+  // In the file, the perpendicular face is now between the two others.
   const Motion motion = test::with_faces_in_order(pages({0, 180, 90}), {0, 2, 1});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[7]);
@@ -173,7 +173,7 @@ TEST(CreaseAngle, neighbours_wound_in_opposite_ways_have_a_hard_edge) {
 
 TEST(CreaseAngle, a_face_without_area_shares_with_none_below_180_degrees) {
   const Motion motion = test::still(make_triangles(5, {0, 1, 2, 2, 1, 3, 3, 1, 4}),
-                                    // The points 1 2 3 are on a line.
+                                    // Points 1, 2 and 3 are on a line, so one face has no normal.
                                     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 2, 0}, {2, 2, 0}});
   EXPECT_EQ(creased(motion, 179).size(), 9u);
   EXPECT_EQ(creased(motion, 180).size(), 5u);
@@ -201,8 +201,8 @@ TEST(CreaseAngle, outside_0_to_180_degrees_is_an_error) {
   }
 }
 
-// Tells whether corners share normals exactly as a flood fill over all pairs of corners says, on a mesh with random
-// displacements from `seed`.
+// Makes a mesh with random displacements from `seed`. Tells whether corners share normals exactly as a flood fill says
+// that compares all pairs of corners.
 bool equals_a_flood(std::uint64_t seed, bool of_polygons, bool tear, double degrees) {
   Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(0), 0.8, seed);
   std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // puts the irregular keyframe first
@@ -223,10 +223,10 @@ RC_GTEST_PROP(CreaseAngle, equals_a_flood_over_all_pairs_of_corners, ()) {
 }
 
 TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
-  // Two faces of this mesh meet at an angle that exceeds 65.3217 degrees by less than 1e-6 rad, which is within the
-  // tolerance.
+  // Two faces of this mesh meet at an angle that exceeds 65.3217 degrees by less than 1e-6 radians, which the tolerance
+  // for rounding allows.
   for (const bool tear : {false, true}) EXPECT_TRUE(equals_a_flood(154186546385, false, tear, 65.3217));
-  // In a mesh made by hand, an angle may exceed the limit by 1e-7 rad, but not by 1e-5 rad.
+  // In a mesh made by hand, an angle may exceed the limit by 1e-7 radians, but not by 1e-5 radians.
   constexpr double kDegreesPerRadian = 57.29577951308232;
   const Motion motion = pages({0, 150});  // its faces are at 30 degrees
   EXPECT_EQ(creased(motion, 30 - 1e-7 * kDegreesPerRadian).size(), creased(motion, 31).size());
@@ -271,7 +271,8 @@ Result<NormalGroups> split(const Topology& topology, const std::vector<float>& n
 
 TEST(SplitNormals, corners_with_one_stored_normal_share_it) {
   const Topology topology = make_triangles(4, {0, 1, 2, 2, 1, 3});
-  // Vertex 1 (corners 1 and 4) has one normal direction in two lengths; vertex 2 (corners 2 and 3) has two directions.
+  // The normals at vertex 1 (corners 1 and 4) have one direction but two lengths. The normals at vertex 2 (corners 2
+  // and 3) have two directions.
   const auto groups = split(topology, {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 2, 0, 0, 1});
   EXPECT_EQ(elements(groups.value()), (Elements{0, 1, 2, 3, 1, 4}));
 }

@@ -1,5 +1,5 @@
-// Checks that the path around an element has the area of its faces, for closed and open rings, rings in pieces, and
-// polygons.
+// Checks that the path around an element encloses the vector area of the faces of the element. Tests closed paths, open
+// paths, paths in several pieces, and polygons.
 #include "normals/groups/rings.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace chronormal::rings_test {
 namespace {
 
-// Returns points with integer coordinates, so that every sum is exact.
+// Returns a point with integer coordinates, so every sum of products is exact.
 Vec3d point(std::size_t v) {
   const auto of = [v](std::size_t factor, std::size_t modulus) { return static_cast<double>(v * factor % modulus); };
   return {of(7, 19), of(11, 23), of(5, 17)};
@@ -87,7 +87,7 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // A distant square makes this a mesh of polygons, with otherwise the same faces.
+  // A square far away makes this a mesh of polygons, which otherwise has the same faces.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;

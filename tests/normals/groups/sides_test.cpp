@@ -1,4 +1,4 @@
-// Checks that two sheets back to back are recognised as two sides, each with its own normals.
+// Checks that the library recognises two sheets back to back as two sides, each with its own normals.
 #include "normals/groups/sides.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ using test::ShadedMesh;
 
 constexpr unsigned kSeed = 51;
 
-// A sheet of hills, whose triangles are given by the numbers of points.
+// A sheet with hills. The triangles are indices of points.
 struct Sheet {
   std::size_t side = 5;
   std::vector<Point> points;
@@ -45,7 +45,7 @@ struct Sheet {
   }
 };
 
-// Adds up the cross products of the faces at a vertex.
+// Returns the sum of the cross products of all faces at a vertex.
 std::array<double, 3> sum_at(const std::vector<Point>& points, const std::vector<std::uint32_t>& corners,
                              std::uint32_t vertex) {
   std::array<double, 3> sum{};
@@ -66,7 +66,7 @@ TEST(Sides, sheets_with_vertices_of_their_own_share_none_and_seams_still_do) {
   for (int draw = 0; draw < 30; ++draw) {
     const Sheet sheet(random);
     const std::size_t triangles = sheet.corners.size() / 3;
-    // Every corner of a triangle may get a copy of its point, separately on each side; faces are shuffled.
+    // Some corners get a copy of their point, separately on each side. The faces are in random order.
     std::vector<Point> places;
     std::vector<int> side_of;
     std::vector<std::uint32_t> point_of, corners;
@@ -139,19 +139,19 @@ TEST(Sides, polygons_lie_back_to_back_where_one_has_the_points_of_the_other_in_r
 
 TEST(Sides, faces_go_together_along_edges_that_one_leaves_by_and_the_other_comes_by) {
   // Faces 0 and 1 pass their common edge to vertex 5 in the same direction, so their windings are opposite. Faces 1 and
-  // 2 pass the edge to vertex 6 in opposite directions, so they continue each other.
+  // 2 pass the edge to vertex 6 in opposite directions, so they belong to the same side.
   const std::vector<std::pair<std::uint32_t, std::uint32_t>> apart = {{0, 2}};
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, true}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 1, 1}));
   EXPECT_EQ(split_sides(3, {{0, 5, true}, {1, 5, false}, {1, 6, true}, {2, 6, false}}, apart),
             (std::vector<std::uint32_t>{0, 0, 1}));
-  // A face that shares no edge joins the first side in which no face must be apart from it.
+  // A face without a common edge joins the first side that has no face from which it must be separate.
   EXPECT_EQ(split_sides(4, {}, std::vector<std::pair<std::uint32_t, std::uint32_t>>{{0, 1}, {0, 2}}),
             (std::vector<std::uint32_t>{0, 1, 1, 0}));
 }
 
 TEST(Sides, walls_of_two_boxes_that_touch_stay_one_surface_around_their_rim) {
-  // Two cubes have a common wall. Each cube has twelve triangles, each with its own copy of every corner.
+  // Two cubes touch along a wall. Each cube has twelve triangles, and each triangle has its own copies of its corners.
   std::vector<Point> places;
   std::vector<std::uint32_t> corners;
   for (const float x : {0.0F, 1.0F}) {
@@ -170,8 +170,8 @@ TEST(Sides, walls_of_two_boxes_that_touch_stay_one_surface_around_their_rim) {
   EXPECT_EQ(weld_coincident(motion).count, 12U);
 }
 
-// Makes both sides with the same vertices. If is_cut_otherwise, pairs of triangles form quads, and the back cuts them
-// along the other diagonal.
+// Makes a sheet whose two sides use the same vertices. If is_cut_otherwise, pairs of triangles form quads, and the back
+// divides each quad along its other diagonal.
 ShadedMesh two_sided(const Sheet& sheet, bool is_cut_otherwise, bool looks_back) {
   ShadedMesh mesh;
   std::vector<std::uint32_t> back;
@@ -236,7 +236,7 @@ TEST(Sides, corners_of_both_sides_that_store_one_normal_are_elements_of_their_ow
   const auto element = groups.value().element_of_corner();
   for (std::size_t c = 0; c < sheet.corners.size(); ++c)
     for (std::size_t d = sheet.corners.size(); d < mesh.corners.size(); ++d) EXPECT_NE(element[c], element[d]);
-  // If one face has no back, its three points have only one side.
+  // If the back of one face is missing, the three points of this face have only one side.
   mesh.corners.resize(mesh.corners.size() - 3);
   EXPECT_EQ(groups_of(mesh.corners).value().size(), 2 * sheet.points.size() - 3);
 }

@@ -1,4 +1,4 @@
-// Tests which vertices are welded to one point.
+// Tests which vertices count as one point (welding).
 
 #include "normals/groups/weld.h"
 
@@ -49,7 +49,7 @@ TEST(Weld, minus_zero_is_zero_and_the_next_float_is_not) {
 TEST(Weld, no_vertices_are_no_points) { EXPECT_EQ(weld_coincident(Motion{}).count, 0u); }
 
 RC_GTEST_PROP(Weld, equals_a_comparison_of_all_pairs, ()) {
-  // There are few different places, so many vertices coincide in one keyframe and some in both.
+  // There are few different positions, so many vertices coincide in one keyframe, and some in both.
   const auto count = *rc::gen::inRange<std::size_t>(3, 40);
   const auto place = rc::gen::container<Point>(rc::gen::map(rc::gen::inRange(0, 2), [](int k) { return double(k); }));
   const auto from = *rc::gen::container<std::vector<Point>>(count, place);
@@ -65,7 +65,7 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   fixtures::Random random(20261125);
   std::vector<Point> from(kCount), to(kCount);
   for (std::size_t v = 0; v < kCount; ++v) {
-    // A third of the vertices share a few thousand places, and some of these vertices separate.
+    // A third of the vertices are at a few thousand positions, and some of these separate in the second keyframe.
     const auto wide = v % 3 == 0 ? std::size_t{15} : std::size_t{1000};
     for (double& c : from[v]) c = static_cast<double>(random.below(wide));
     to[v] = from[v];
@@ -88,7 +88,7 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   EXPECT_LT(always.size(), kCount);
 }
 
-// Places are first sorted by a 32-bit key. There are so many places here that some have the same key.
+// The library first sorts positions by a 32-bit key. Here, there are so many positions that some have the same key.
 TEST(Weld, places_that_only_look_alike_stay_apart) {
   constexpr std::size_t kCount = 500000;
   Motion motion;

@@ -1,5 +1,4 @@
-// Compares FloatRecompute with arithmetic in double, and compares all calls that must give the same result with each
-// other.
+// Compares FloatRecompute with arithmetic in double, and with each other all calls that must give the same result.
 
 #include "chronormal/normals/recompute.h"
 
@@ -44,9 +43,9 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// A sum of normals in double, by the shoelace formula about a point of the face, and the error in radians that float32
-// may cause. Each position is rounded a few times in proportion to its size, and the error of the direction is this
-// rounding divided by the edges around the face.
+// A sum of face normals in double, computed by the shoelace formula about a point of the face, and the error in radians
+// that float32 may cause. Each position is rounded a few times, in proportion to its size. The error of the direction
+// is this rounding error divided by the length of the edges around the face.
 struct Expected {
   Vec3d n;
   double error = 0;
@@ -73,7 +72,7 @@ void expect_close(const Normals& normals, const std::vector<Expected>& expected,
   std::size_t compared = 0;
   for (std::size_t i = 0; i < normals.size(); ++i) {
     const double limit = expected[i].error / length(expected[i].n);
-    if (!(limit < 0.1)) continue;  // float32 guarantees nothing here
+    if (!(limit < 0.1)) continue;  // float32 is not accurate enough to guarantee anything
     ++compared;
     const Vec3d u = to_double(normals[i]);
     EXPECT_NEAR(length(u), 1, 4e-7) << what << ", " << i;
@@ -103,7 +102,7 @@ void check_groups(const Motion& motion, const NormalGroups& groups, const std::s
   }
 }
 
-// Makes a mesh of polygons with 3, 4 and 5 corners.
+// Makes a mesh of polygons with 3, 4 or 5 corners.
 Motion polygons() {
   Motion mixed = fixtures::smooth_morph(7);
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -116,7 +115,7 @@ Motion polygons() {
   return mixed;
 }
 
-// Makes a fan of triangles around vertex 0, with faces in random order; an open fan lacks one triangle.
+// Makes a fan of triangles around vertex 0, with the faces in random order. If is_open, one triangle is missing.
 Motion fan(std::size_t faces, bool is_open) {
   std::vector<fixtures::Point> from = {{0, 0, 0.3}}, to = {{0, 0, -0.1}};
   std::vector<std::uint32_t> corners;
@@ -133,7 +132,7 @@ Motion fan(std::size_t faces, bool is_open) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Makes random faces over few vertices, so that paths do not close or can continue in several ways.
+// Makes random faces with few vertices. The paths around a vertex may then be open, or continue in several ways.
 Motion tangle(std::size_t vertex_count, std::size_t face_count) {
   fixtures::Random random(3);
   std::vector<fixtures::Point> from, to;
@@ -182,7 +181,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
   ASSERT_EQ(welded.size(), smooth.topology.vertex_count());
   check_groups(torn, welded, "seams");
 
-  // Each of these points consists of vertices at different positions.
+  // Each point consists of three vertices that are at different positions.
   const Motion tangled = tangle(60, 200);
   Points points{std::vector<std::uint32_t>(60), 20};
   for (std::uint32_t v = 0; v < 60; ++v) points.point_of_vertex[v] = v / 3;
@@ -192,7 +191,8 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
 TEST(FloatRecompute, a_closed_ring_of_six_has_seven_points_and_a_centre) {
   const Motion motion = fan(6, false);
   const FloatRecompute recompute(motion.topology, vertices_of(motion));
-  // There is one slice of 7 elements with 7 positions. Without joining paths there would be 12 points.
+  // One slice holds 7 elements with 7 positions. If the paths of neighbours were not joined, the slice would hold 12
+  // positions.
   EXPECT_EQ(recompute.bytes(), 16 * (1 + 7) * sizeof(std::uint32_t) + 2 * sizeof(std::size_t) + 7 * 16);
 }
 
@@ -212,7 +212,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
   EXPECT_EQ(zeros, 1U);
   EXPECT_EQ(of_vertices[64], Vec3f{});
 
-  // Infinities affect only the faces of their vertex.
+  // An infinite coordinate must affect only the faces of its vertex.
   motion.keyframes[0].positions[3 * 30] = std::numeric_limits<float>::infinity();
   const Normals beside = evaluate(faces, motion.segment(0), 0.5, Threads::kOne, &zeros);
   EXPECT_GT(zeros, 2U);
@@ -221,7 +221,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
     const bool is_touched = std::find(face.begin(), face.end(), 30U) != face.end();
     EXPECT_EQ(beside[f], is_touched ? Vec3f{} : of_faces[f]) << f;
   }
-  // The squares of these lengths exceed the range of float32.
+  // The edges are so short or so long that the squares of their lengths leave the range of float32.
   for (const float size : {1e-13F, 1e11F}) {
     Motion scaled = fixtures::smooth_morph(3);
     for (auto& keyframe : scaled.keyframes) {
@@ -264,7 +264,7 @@ TEST(FloatRecompute, every_layout_and_number_of_elements_has_the_same_bits_and_n
   for (std::size_t count = 1; count <= 40; ++count) {
     Motion motion = fixtures::smooth_morph(8);
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
-    // The arrays end with the last used vertex.
+    // The arrays of positions end with the last vertex that is used, so that reading beyond it is detected.
     const std::size_t vertices = 1 + *std::max_element(corners.begin(), corners.end());
     motion.topology = fixtures::make_triangles(vertices, {corners.begin(), corners.end()});
     std::array<std::unique_ptr<float[]>, 2> positions;
@@ -334,7 +334,7 @@ TEST(FloatRecompute, every_instruction_set_and_number_of_threads_has_the_same_bi
 }
 
 TEST(FloatRecompute, results_past_the_caches_have_the_same_bits) {
-  // Only large results are written with streaming stores (kStreamFrom), so the test calls the kernel directly.
+  // The library uses streaming stores only for large results (kStreamFrom), so the test calls the kernel directly.
   const Motion motion = fixtures::smooth_morph(10);
   const Segment segment = motion.segment(0);
   const std::size_t n = motion.topology.face_count();

@@ -1,5 +1,5 @@
-// Compares normals that are recomputed at every t with exact rational arithmetic, and compares all calls that must give
-// the same result with each other.
+// Compares normals that are recomputed from positions at every t with exact rational arithmetic, and compares with each
+// other all calls that must give the same result.
 
 #include "chronormal/normals/recompute.h"
 
@@ -31,7 +31,7 @@
 namespace chronormal::recompute_test {
 namespace {
 
-constexpr double kPromised = 1e-6;  // radians
+constexpr double kPromised = 1e-6;  // in radians, the guaranteed largest error
 
 using Normals = std::vector<Vec3f>;
 
@@ -71,7 +71,7 @@ exact::Vector exact_point(const Segment& segment, std::uint32_t vertex, double t
   return result;
 }
 
-// Computes the normal by the shoelace formula about the origin.
+// Returns the exact normal at t, by the shoelace formula about the origin.
 exact::Vector exact_normal(const Segment& segment, std::size_t f, double t) {
   const auto face = segment.topology->face(f);
   exact::Vector sum;
@@ -92,7 +92,8 @@ struct Family {
 
 constexpr std::size_t kFaces = 203;
 
-// Makes faces with two nearly equal sides that are so long that the product of their squares exceeds float32.
+// Makes faces with two nearly equal sides. These sides are so long that the product of their squares exceeds the range
+// of float32.
 Motion soup_with_far_first_corners() {
   Motion motion = fixtures::large_soup(kFaces);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -144,7 +145,7 @@ TEST(Recompute, faces_are_within_the_promise_of_exact_arithmetic) {
 }
 
 TEST(Recompute, hard_motions_are_within_the_promise_of_whole_numbers) {
-  constexpr std::size_t kFewest = 4000;  // number of faces of each family
+  constexpr std::size_t kFewest = 4000;  // smallest number of faces of each family
   for (const test::HardMotions& family : test::hard_motions()) {
     fixtures::Random random(8200);
     double worst = 0;
@@ -166,7 +167,8 @@ TEST(Recompute, hard_motions_are_within_the_promise_of_whole_numbers) {
   }
 }
 
-// Returns the largest error of elements, against sums of exact normals.
+// Returns the largest error of the normals of elements, in radians. The expected normals are sums of the exact normals
+// of faces.
 double worst_of_groups(const Segment& segment, const NormalGroups& groups, double t) {
   const Normals normals = of_groups(segment, groups, t);
   double worst = 0;
@@ -181,7 +183,7 @@ double worst_of_groups(const Segment& segment, const NormalGroups& groups, doubl
   return worst;
 }
 
-// Makes random faces over few vertices, whose normals cancel more or less.
+// Makes random faces with few vertices, so the normals of the faces at a vertex partly cancel.
 Motion tangle(std::size_t vertex_count, std::size_t face_count, double offset, std::uint64_t seed) {
   fixtures::Random random(seed);
   std::vector<fixtures::Point> from, to;
@@ -221,7 +223,7 @@ TEST(Recompute, corners_across_creases_and_polygons_are_within_the_promise) {
   EXPECT_GT(creased.size(), smooth.topology.vertex_count());
   EXPECT_LE(worst_of_groups(smooth.segment(0), creased, 0.6), kPromised);
 
-  Motion mixed = smooth;  // polygons of 3, 4 and 5 corners
+  Motion mixed = smooth;  // polygons with 3, 4 and 5 corners
   std::vector<std::uint32_t> offsets = {0}, corners;
   for (std::uint32_t v = 0; v + 16 < 64; v += 2) {
     for (std::uint32_t c = 0; c < 3 + v / 2 % 3; ++c)
@@ -236,7 +238,7 @@ TEST(Recompute, corners_across_creases_and_polygons_are_within_the_promise) {
     EXPECT_LE(angle(normals[f], exact_normal(segment, f, 0.6)), kPromised);
 }
 
-// The first faces of a motion, with arrays that end with their last vertex.
+// The first `count` faces of a motion. The arrays of positions end with the last vertex of these faces.
 struct Part {
   Part(const Motion& motion, std::size_t count) {
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
@@ -305,7 +307,7 @@ TEST(Recompute, every_layout_of_the_result_has_the_same_bits_and_nothing_else_is
 }
 
 TEST(Recompute, results_past_the_caches_have_the_same_bits) {
-  // Only large results are written with streaming stores (kStreamFrom), so the test calls the kernel directly.
+  // The library uses streaming stores only for large results (kStreamFrom), so the test calls the kernel directly.
   const Motion motion = fixtures::soup({.face_count = 203, .seed = 47, .size = 1e-20});
   const Segment segment = motion.segment(0);
   const MovingTriangles triangles{.corners = motion.topology.corners().data(),
@@ -358,7 +360,8 @@ MovingTriangles triangles_of(const Motion& motion) {
 }
 
 TEST(Recompute, thin_triangles_are_left_to_nobody) {
-  // The heights are 0.05 to 1e-6 of the sides, for which edges in float32 are not precise enough.
+  // The heights of these triangles are 0.05 to 1e-6 of their sides. Edges in float32 are not accurate enough for such
+  // triangles.
   for (const double needle : {0.05, 1e-3, 1e-6}) {
     const Motion motion = fixtures::soup({.face_count = 203, .seed = 43, .needle = needle});
     std::vector<float> result(3 * 203);
@@ -398,7 +401,7 @@ std::vector<std::size_t> as_it_is(std::size_t count) {
 }
 
 TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
-  const Motion motion = fixtures::smooth_morph(120);  // the faces of a window, which are kept together, are 1,024
+  const Motion motion = fixtures::smooth_morph(120);  // larger than the window of 1,024 faces whose normals are kept
   const std::size_t count = motion.topology.face_count();
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);
   const auto expect_same = [&](const std::vector<std::size_t>& order) {
@@ -407,19 +410,19 @@ TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
   };
   for (const std::size_t swaps : {1U, 7U, 40U, 1000U}) {
     SCOPED_TRACE(swaps);
-    std::vector<std::size_t> order = as_it_is(count);  // single faces are swapped over long distances
+    std::vector<std::size_t> order = as_it_is(count);  // swaps single faces over long distances
     for (std::size_t i = 0; i < swaps; ++i) std::swap(order[3 * i], order[count - 1 - 5 * i]);
     expect_same(order);
   }
   for (const std::size_t distance : {300U, 700U, 1000U, 1500U, 2500U}) {
     SCOPED_TRACE(distance);
-    std::vector<std::size_t> order = as_it_is(count);  // faces just inside the window, and just outside
+    std::vector<std::size_t> order = as_it_is(count);  // swaps faces just inside and just outside the window
     for (std::size_t i = 0; i + distance < count; i += 5000) std::swap(order[i], order[i + distance]);
     expect_same(order);
   }
   for (const std::size_t block : {600U, 2000U, 5000U}) {
     SCOPED_TRACE(block);
-    std::vector<std::size_t> order;  // the order jumps to and fro
+    std::vector<std::size_t> order;  // an order that jumps back and forth
     for (std::size_t end = count; end > 0; end -= std::min(block, end)) {
       for (std::size_t i = end - std::min(block, end); i < end; ++i) order.push_back(i);
     }
@@ -440,7 +443,7 @@ TEST(Recompute, threads_do_not_share_windows) {
 TEST(Recompute, a_vertex_with_faces_everywhere_does_not_slow_or_change_the_others) {
   Motion motion = fixtures::smooth_morph(100);
   std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
-  // A vertex with thousands of faces, inside and outside of the window.
+  // Vertex 5 gets thousands of faces, inside and outside of the window.
   for (std::size_t i = 0; i < corners.size(); i += 30) corners[i] = 5;
   motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);
@@ -502,8 +505,8 @@ TEST(Recompute, needles_and_collapses_have_the_same_bits_on_every_instruction_se
 }
 
 TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counted) {
-  // The first face collapses to a line at 1/2, the second grows from a point, the third stays a point, and the fourth
-  // is ordinary.
+  // The first face collapses to a line at t = 1/2, the second grows out of a point, the third remains a point, and the
+  // fourth is ordinary.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 2, 2}, {2, 2, 2}, {2, 2, 2},
                                              {3, 3, 3}, {3, 3, 3}, {3, 3, 3}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {2, 2, 2}, {3, 2, 2}, {2, 3, 2},
@@ -521,8 +524,8 @@ TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counte
 }
 
 TEST(Recompute, a_line_for_ever_is_no_direction_made_of_rounding) {
-  // c is on the line through a and b at both ends, and therefore at every t; computed in double at 0.3, it is slightly
-  // beside the line.
+  // Corner c is on the line through a and b at both ends, and therefore at every t. At t = 0.3, rounding in double puts
+  // it slightly beside the line.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 2, 3}, {3, 6, 9}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {5, 7, 11}, {15, 21, 33}};
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);

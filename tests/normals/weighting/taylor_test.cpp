@@ -1,4 +1,4 @@
-// Tests intervals and Taylor coefficients that are intervals. Both must contain the true values.
+// Tests intervals, and Taylor coefficients that are intervals. Both must contain the true values.
 
 #include "normals/weighting/taylor.h"
 
@@ -57,7 +57,7 @@ TEST(Interval, what_is_not_defined_everywhere_is_the_whole_line) {
   EXPECT_FALSE((Interval::whole() - Interval::whole()).finite());
 }
 
-// p(t) = 1 + a t + b t^2, with coefficients so small that p stays positive over [-1, 1].
+// p(t) = 1 + a t + b t^2. The coefficients are so small that p is positive over [-1, 1].
 struct Quadratic {
   double a, b;
 
@@ -87,7 +87,8 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
       value = value + at_centre[0];
       const Real truth = std::pow(p(Real(centre) + Real(s)), Real(exponent));
       RC_ASSERT(Real(value.low) <= truth + 1e-18L && truth <= Real(value.high) + 1e-18L);
-      // The coefficients about any other point of the piece must overlap the coefficients that hold about all points.
+      // The coefficients about any other point of the piece must overlap with the coefficients `around`, which hold
+      // about all of its points.
       const Series<3> there = p.about(centre + s);
       const Interval root = exponent == -1 ? there[0] : square_root(there[0]);
       const Series<6> other = power<6>(there, exponent, exponent == 0.5 ? root : reciprocal(root));
@@ -99,7 +100,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // The enclosure must be narrow here. If it were wider, the test would not notice a missing remainder.
+  // In this case the enclosure must be narrow, since the test could not notice a missing remainder in a wide one.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));
@@ -111,7 +112,7 @@ RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
 
 // ---- bounds over a piece -------------------------------------------------------------------------------------------
 
-// The Taylor coefficients of 1 / sqrt(p) about c, and about all points of [c - half, c + half].
+// The Taylor coefficients of 1 / sqrt(p): about c, and about all points of [c - half, c + half] at once.
 struct PieceOfRoot {
   Series<6> here, around;
 
@@ -125,8 +126,8 @@ struct PieceOfRoot {
   }
 };
 
-// The pieces are so long that the polynomial alone has errors of several percent: the bounds hold only because of the
-// remainder.
+// The pieces are so long that the Taylor polynomial alone has errors of several percent, so the bounds hold only
+// because they include the remainder.
 TEST(SeriesBounds, hold_at_all_times_of_a_piece_and_would_not_without_the_remainder) {
   fixtures::Random random(83);
   std::size_t above_polynomial = 0, longer_than_polynomial = 0;

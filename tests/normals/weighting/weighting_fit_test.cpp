@@ -1,5 +1,5 @@
-// Tests the quadratics that replace weighted normals. Their bounds must never be below the error, and must not be far
-// above it.
+// Tests the quadratic curves that approximate weighted normals. The bound of the error must never be below the error,
+// and must not be far above it.
 
 #include "chronormal/normals/weighting.h"
 
@@ -26,8 +26,8 @@ namespace {
 using fixtures::Point;
 using reference::Real;
 
-// Makes a closed fan of `count` triangles around vertex 0, which moves by up to `distance`, so that normals span any
-// angle.
+// Makes a closed fan of `count` triangles around vertex 0. Vertex 0 moves by up to `distance`, so normals at different
+// times may have any angle between them.
 Motion fan(std::size_t count, double distance, fixtures::Random& random) {
   std::vector<Point> from = {random.in_cube(0.3)}, to;
   std::vector<std::uint32_t> corners;
@@ -50,7 +50,7 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Returns the largest angle between the fit and the definition over equidistant samples.
+// Returns the largest angle, in radians, between the fit and the definition of the weighting, at equidistant times.
 double sampled_error(const reference::Mesh& mesh, const std::vector<reference::Corner>& corners,
                      const std::string& weighting, const ControlNormals& fit, std::size_t samples) {
   double worst = 0;
@@ -71,7 +71,7 @@ struct Summary {
   double largest_ratio = 0;
 };
 
-// Compares the bounds of all elements of a motion with samples.
+// Compares the bounds of all elements of a motion with errors at equidistant times.
 Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samples, std::size_t elements = 1) {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const NormalGroups groups = vertices_of(motion);
@@ -81,7 +81,8 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   for (std::size_t e = 0; e < std::min(elements, groups.size()); ++e) {
     const double error =
         sampled_error(mesh, corners[e], std::string(weighting_name(weighting)), fit.normals[e], samples);
-    // A single triangle gets its exact direction and the bound 0. This bound does not cover rounding in the last bits.
+    // For a single triangle, the direction is exact and the bound is 0, which does not include rounding of the last
+    // bits.
     const double rounding = fit.bounds[e] == 0 ? 1e-12 : 0;
     EXPECT_LE(error, fit.bounds[e] + rounding) << weighting_name(weighting) << ", element " << e;
     EXPECT_LE(fit.bounds[e], std::numbers::pi);
@@ -129,7 +130,7 @@ RC_GTEST_PROP(WeightingFit, the_bound_is_never_below_the_error_of_polygons, ()) 
 }
 
 TEST(WeightingFit, the_bound_is_never_below_the_error_where_faces_nearly_collapse) {
-  // Two triangles share an edge, and the first of them nearly collapses.
+  // Two triangles share an edge. The first of the two nearly collapses.
   fixtures::Random random(77);
   for (const double gap : {1e-1, 1e-3, 1e-6}) {
     const Motion lone = fixtures::collapsing_soup(gap, 40, 5);
@@ -177,7 +178,8 @@ TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in
         EXPECT_LT(angle_between(normal_at(fit.normals[e], t), truth[e]), 1e-12);
     }
   }
-  // A vertex with a single face has the normal of this face by every weighting, with the length that area weights give.
+  // By every weighting, a vertex with a single face has the normal of this face. Its length is the same as with area
+  // weights.
   const Motion lone = fixtures::moderate_soup(50);
   const auto exact = all_group_control_normals(lone.segment(0), vertices_of(lone));
   for (const Weighting weighting : kFitted) {
@@ -246,7 +248,7 @@ TEST(WeightingFit, shuffled_faces_give_the_same_bits) {
 // ---- elements without a bound --------------------------------------------------------------------------------------
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_turns_inside_out) {
-  // The first of the two faces of vertex 0 turns over and has no area in between.
+  // Vertex 0 has two faces. The first face turns over, and has no area at some time.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(5, {0, 1, 2, 0, 3, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 1}, {0, -1, 1}},
                                               {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}, {-1, 0, 1}, {0, -1, 1}});
@@ -269,7 +271,7 @@ TEST(WeightingFit, a_single_triangle_has_its_own_direction_by_every_weighting) {
 }
 
 TEST(WeightingFit, the_bound_is_pi_where_a_face_begins_without_area) {
-  // Vertex 0 has a second face, which begins as a line.
+  // Vertex 0 has two faces. The second face has no area at t = 0.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(5, {0, 1, 2, 0, 3, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 2, 1}});
@@ -281,7 +283,7 @@ TEST(WeightingFit, the_bound_is_pi_where_a_face_begins_without_area) {
 }
 
 TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
-  // Vertex 1 stays on an edge of the quad; a second face makes its normal depend on the weighting.
+  // Vertex 1 remains on an edge of the quad. A second face at vertex 1 makes its normal depend on the weighting.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(5, {0, 4, 7}, {0, 1, 2, 3, 1, 0, 4}),
                                               {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0}, {0.5, -1, 0.1}},
                                               {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1, 1, 0.3}, {0.5, -1, 0.2}});
@@ -293,7 +295,8 @@ TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
 }
 
 TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
-  // In random quads, the vertices on the edges are displaced, either by as much as rounding to float32 or by more.
+  // In random quads, one vertex is near the line through its neighbours. It is displaced from the line either by as
+  // much as rounding to float32 does, or by more.
   fixtures::Random random(31);
   for (const double off : {1e-7, 1e-3}) {
     for (int round = 0; round < 50; ++round) {
@@ -314,7 +317,7 @@ TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
 }
 
 TEST(WeightingFit, by_area_and_angle_a_face_may_lose_its_area_on_the_way) {
-  // Face 0 shrinks to a line at the end; face 1 does not.
+  // Face 0 shrinks to a line at t = 1, while face 1 keeps its area.
   const Motion motion = fixtures::make_motion(fixtures::make_triangles(4, {0, 1, 2, 2, 1, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}},
                                               {{0.5, 0.5, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}});

@@ -1,4 +1,5 @@
-// Tests weighted normals at one time: each weighting against its definition, and the contributions of degenerate faces.
+// Tests weighted normals at one time: compares each weighting with its definition, and tests the contributions of
+// degenerate faces.
 
 #include "chronormal/normals/weighting.h"
 
@@ -62,11 +63,11 @@ TEST(Weighting, names_lead_there_and_back) {
 // ---- definitions ---------------------------------------------------------------------------------------------------
 
 TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
-  // Quads of 2 x 1, 1 x 3 and 3 x 2 meet in a corner at the origin: the edges along x, y and z have the lengths 2, 1
-  // and 3, and normals point outwards.
+  // Quads of 2 x 1, 1 x 3 and 3 x 2 meet at the origin. Their edges along x, y and z have the lengths 2, 1 and 3, and
+  // their normals point outwards.
   const Motion corner = test::still(fixtures::make_polygons(7, {0, 4, 8, 12}, {0, 2, 4, 1, 0, 3, 5, 2, 0, 1, 6, 3}),
                                     {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}, {2, 1, 0}, {0, 1, 3}, {2, 0, 3}});
-  const double xy = 2, yz = 3, zx = 6;  // areas; the face perpendicular to z has the area xy
+  const double xy = 2, yz = 3, zx = 6;  // areas of the quads; xy is the area of the quad perpendicular to z
   expect_near(weighted(corner, Weighting::kArea)[0], {-2 * yz, -2 * zx, -2 * xy});
   expect_near(weighted(corner, Weighting::kUniform)[0], {-1, -1, -1});
   expect_near(weighted(corner, Weighting::kAngle)[0], {-kQuarter, -kQuarter, -kQuarter});
@@ -77,7 +78,7 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
-  // Max's theorem holds for every fan of triangles around a point on a sphere, also an irregular one.
+  // Nelson Max's theorem holds for every fan of triangles around a point on a sphere, even an irregular fan.
   fixtures::Random random(5);
   for (int round = 0; round < 100; ++round) {
     std::vector<Point> points = {{0, 0, 1}};
@@ -130,8 +131,8 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
-// The check whether double is precise enough does not depend on units, so a face is treated in the same way at any
-// size.
+// The criterion for whether double is accurate enough does not depend on units, so a face of any size is treated in the
+// same way.
 TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   constexpr std::uint64_t kSeed = 20261126;
   fixtures::Random random(kSeed);
@@ -139,7 +140,7 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   for (int i = 0; i < 1000; ++i) {
     Motion motion{Topology::triangles(3, {0, 1, 2}).value(), std::vector<Motion::Keyframe>(2), {}};
     for (std::size_t k = 0; k < 2; ++k) {
-      // Except for the last digits of the third corner, the three corners are on a line.
+      // The three corners are on a line, except for the last digits of the third corner.
       std::array<float, 3> a{}, b{};
       for (auto* const point : {&a, &b})
         for (float& x : *point) x = static_cast<float>(random.uniform(-1, 1));
@@ -163,14 +164,14 @@ TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   }
 }
 
-// Returns the angle between two vectors of any length.
+// Returns the angle, in radians, between two vectors of any length.
 double angle_to(const Vec3d& u, const std::array<double, 3>& n) {
   const Vec3d v{n[0], n[1], n[2]};
   const Vec3d a = (1 / max_abs(u)) * u, b = (1 / max_abs(v)) * v;
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// Integers give a direction to faces whose normals are only rounding error in double.
+// The normals of these faces are only rounding error in double, so the library computes their directions in integers.
 TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   constexpr std::uint64_t kSeed = 49100;
   constexpr double kMost = 0x1p-29;
@@ -199,7 +200,8 @@ TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   }
 }
 
-// The computation in integers takes twenty times as long as in double, and is used only for faces that need it.
+// In integers, the computation takes twenty times as long as in double, so the library must use integers only for faces
+// that need them.
 TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
   constexpr std::size_t kFaces = 20000;
   const Motion ordinary = fixtures::moderate_soup(kFaces),
@@ -214,7 +216,8 @@ TEST(Weighting, ordinary_faces_cost_a_fifth_of_what_faces_on_lines_cost) {
 }
 
 TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
-  // At the corners of a cube of quads all weightings are symmetric; with triangles they are not.
+  // At a corner of a cube made of quads, every weighting gives a symmetric normal. If the quads were cut into
+  // triangles, the normal would not be symmetric.
   const fixtures::ClosedMesh cube = fixtures::box_grid(1);
   const Motion motion = test::still(cube.topology, cube.points);
   for (const WeightingInfo& info : kAllWeightings) {
@@ -231,7 +234,8 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
 TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};
   const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
-  // The additional faces are on a line, repeat a vertex, are a point, or are nearly on a line at these coordinates.
+  // The additional faces add nothing: their corners are on a line or nearly on a line, or they repeat a vertex once or
+  // twice.
   const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
   for (const WeightingInfo& info : kAllWeightings) {
     const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
@@ -241,7 +245,7 @@ TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
-  // A quad has two vertices at the same place.
+  // The quad has two vertices at the same position.
   const Motion motion =
       test::still(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}), {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   for (const Weighting weighting : {Weighting::kAngle, Weighting::kAreaAngle, Weighting::kMax, Weighting::kInverseEdges,
@@ -253,8 +257,8 @@ TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_takes_nothing_from_the_faces_around_it) {
-  // The edge of the quad from 1 to 2 has length zero; it is the second edge of corner 1, and the first of
-  // corner 2.
+  // The edge of the quad from vertex 1 to vertex 2 has length zero. It is one of the two edges at corner 1, and one of
+  // the two edges at corner 2.
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 3, 2}};
   const Motion alone = test::still(fixtures::make_triangles(5, {1, 4, 3, 2, 4, 0}), points);
   const Motion both = test::still(fixtures::make_polygons(5, {0, 3, 6, 10}, {1, 4, 3, 2, 4, 0, 0, 1, 2, 3}), points);
@@ -292,7 +296,7 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   }
 }
 
-// Eq. 19 of docs/theory.md is about two triangles with a common edge, one of which rests.
+// Eq. 19 of docs/theory.md is about two triangles that share an edge, one of which rests.
 TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
   Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};

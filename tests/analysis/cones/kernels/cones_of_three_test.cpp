@@ -1,5 +1,5 @@
-// Tests the kernel of cones on vectors that are known exactly. Each cone may then exceed the smallest one only by the
-// rounding of its own computation, which integers check.
+// Tests the kernel that computes cones, on vectors that are known exactly. A cone may exceed the smallest cone only by
+// the rounding errors of the computation. The test checks this in integers.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(ConesOfThree, flags_what_has_no_direction) {
   std::array<std::uint16_t, 1> flags{};
   cones_of_three(normals.data(), normals.size(), kNormalShare, cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b110011110);
-  // The control normals of a part are zero only where n(t) is: {x, -x, x} has a zero at t = 1/2. Numbers far below
+  // The control normals of a part are zero only where n(t) is zero: {x, -x, x} has a zero at t = 1/2. Lengths far below
   // 2^-1000 never count as certain.
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0, 0.25), cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b10011100);

@@ -1,5 +1,5 @@
-// Compares the tiles of faces with the public function for single faces, which uses no lanes, and with sums of products
-// in long double.
+// Compares the control normals that the kernel computes in tiles of 16 faces with the public function for single faces,
+// which does not use SIMD lanes, and with sums of products in long double.
 
 #include "normals/control/kernels/face_tiles.h"
 
@@ -28,8 +28,8 @@ namespace {
 
 using fixtures::Point;
 
-// Computes a single face. The function uses the kernel only for four faces or more, so this result is made without
-// lanes.
+// Returns the control normals of a single face. For fewer than four faces, the function does not use the kernel, and so
+// no lanes.
 ControlNormals one_face(const Segment& segment, std::size_t f) {
   ControlNormals normals;
   face_control_normals(segment, {f, 1}, {&normals, 1});
@@ -45,7 +45,8 @@ bool same_bits(T a, T b) {
   return std::memcmp(&a, &b, sizeof(T)) == 0;
 }
 
-// Returns the largest sum of absolute products over all components of the four cross products of a triangle.
+// Returns the largest sum of absolute products in any component of the four cross products of a triangle, as a measure
+// of rounding errors.
 long double largest_products(const Segment& segment, std::size_t f) {
   const auto face = segment.topology->face(f);
   const auto edge = [&](const VectorView<const float>& points, std::size_t corner) {
@@ -66,7 +67,8 @@ long double largest_products(const Segment& segment, std::size_t f) {
   return largest;
 }
 
-// Compares the tiles of a range with its faces computed one by one. Describes the first difference, or returns "".
+// Compares the tiles of a range of faces with the same faces computed one by one. Returns a description of the first
+// difference, or "".
 std::string difference(const Segment& segment, IndexRange faces) {
   std::vector<ControlTile> tiles((faces.count + kTile - 1) / kTile);
   face_control_tiles(segment, faces, tiles);
@@ -104,7 +106,7 @@ std::string difference_on_all_targets(const Segment& segment) {
   return difference_on_all_targets(segment, {0, segment.topology->face_count()});
 }
 
-// Positions with a custom layout, in memory that ends with the last coordinate.
+// Positions in a chosen layout, in memory that ends exactly after the last coordinate.
 class Laid {
  public:
   enum class Layout { kPacked, kPlanes, kStrideFour, kStrideSeven };
@@ -135,7 +137,7 @@ class Laid {
 constexpr Laid::Layout kLayouts[] = {Laid::Layout::kPacked, Laid::Layout::kPlanes, Laid::Layout::kStrideFour,
                                      Laid::Layout::kStrideSeven};
 
-// Makes motions of every degree over the same faces.
+// Makes motions of the same faces, such that n(t) has every degree.
 std::vector<Motion> motions_of_every_degree() {
   const Motion start = fixtures::smooth_morph(5);
   const auto moved = [&start](auto change) {
@@ -147,11 +149,11 @@ std::vector<Motion> motions_of_every_degree() {
   };
   std::vector<Motion> motions = {start};
   motions.push_back(moved([](float v, std::size_t) { return v; }));
-  // The degree is not exactly one, because of rounding.
+  // Because of rounding, the degree of these motions is not exact.
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
-  motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // a stretch
-  motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // one vertex
-  // The last motion has changes near the tolerance within which a degree counts as equal.
+  motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // stretches x
+  motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // moves one vertex
+  // In the last motion, positions change by about the tolerance within which a degree counts as equal.
   motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));
   return motions;
 }
@@ -166,7 +168,7 @@ TEST(FaceTiles, have_the_bits_of_single_faces_for_every_count_and_offset) {
 }
 
 TEST(FaceTiles, read_any_layout_of_positions_and_no_byte_beyond_the_last) {
-  const Motion motion = fixtures::moderate_soup(37);  // the last corner is the last vertex
+  const Motion motion = fixtures::moderate_soup(37);  // the last corner refers to the last vertex
   const Segment packed = motion.segment(0);
   for (const auto from : kLayouts) {
     for (const auto to : kLayouts) {
@@ -199,7 +201,7 @@ TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
     for (const auto end : kShapes)
       ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
   }
-  // The planes contain axes and diagonals, where products are zero or cancel, in every orientation.
+  // The faces are in planes along axes and diagonals, where products are zero or cancel. All orientations occur.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
       const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {
@@ -219,7 +221,7 @@ TEST(FaceTiles, overflow_to_infinity_and_underflow_to_zero_as_rounding_does) {
     });
     ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "") << scale;
   }
-  // One edge exceeds the range of float, and the other is zero or tiny.
+  // One edge exceeds the range of float32, and the other is zero or tiny.
   const float huge = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
   Motion motion = fixtures::moderate_soup(16);
   for (auto& keyframe : motion.keyframes) {
@@ -288,7 +290,7 @@ TEST(FaceTiles, take_polygons) {
 }
 
 TEST(FaceTiles, agree_where_neighbours_are_far_apart_in_memory) {
-  // The vertices are in random order, so that the kernel prefetches positions.
+  // The vertices are in random order in memory, so the kernel prefetches positions.
   fixtures::Random random(9);
   Motion motion = fixtures::moderate_soup(30000);
   std::vector<std::uint32_t> corners(3000);
@@ -319,8 +321,8 @@ TEST(FaceControlNormals, have_the_bits_of_single_faces_on_every_target) {
 
 // ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Compares the tiles of all triangles in float32 with the control normals of single faces. The tiles must have the same
-// bits on all instruction sets.
+// Compares the float32 tiles of all triangles with the control normals of single faces, and adds the differences to
+// `seen`. All instruction sets must give the same bits.
 void look_at(test::FloatTileFaults& seen, const Motion& motion) {
   const Segment segment = motion.segment(0);
   const std::size_t count = segment.topology->face_count();

@@ -1,5 +1,6 @@
-// Compares the certificates that lanes compute for sixteen elements with the certificates of single elements. The
-// elements are close to being flagged.
+// Compares the certificates that the kernel computes for sixteen elements at once with the certificates of single
+// elements. A certificate tells whether float32 or double is accurate enough. The test elements are close to these
+// limits.
 
 #include "normals/curves/kernels/certify.h"
 
@@ -30,16 +31,16 @@ Vec3d vector(fixtures::Random& random) {
 
 double decade(fixtures::Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// Draws a curve. Most curves come as close to zero as the limits of the tests; some are ordinary, or so hard that no
-// lane should decide.
+// Draws the control normals of a curve. Most curves come about as close to zero as the limits allow. Some are ordinary,
+// and some are so hard that the kernel should decide nothing.
 BoundedNormals element(fixtures::Random& random) {
   const Vec3d n0 = vector(random);
   BoundedNormals result;
   ControlNormals& c = result.normals;
   c = {n0, vector(random), vector(random)};
   if (random.below(4) != 0) {
-    // The curve is (s - k t)^2 n0 plus a small curve, which is in a plane for half of the candidates. If k + 1 is a
-    // power of two, bisection hits the zero, so proofs must continue down to the smallest distance.
+    // The curve is (s - k t)^2 n0 plus a small curve, which is in a plane in half of the cases. If k + 1 is a power of
+    // two, bisection hits the zero exactly, so the proof must continue down to the smallest interval.
     const double halves[] = {1, 3, 7, 1.0 / 3};
     const double k = random.below(2) == 0 ? halves[random.below(4)] : decade(random, -3, 3);
     const double little = decade(random, -17, 0);
@@ -94,8 +95,8 @@ Decided decided(const BoundedNormals& c, const PrecisionLimits& limits) {
   return result;
 }
 
-// Describes the fault of the certificates of one element, or returns "". `alone` is true if only this element was
-// requested.
+// Compares the certificates of one element with the expected ones. Describes the first fault, or returns "". `alone` is
+// true if certificates were requested only for this element.
 std::string fault(const TileCertificates& found, std::size_t lane, const Decided& expected, bool alone) {
   const auto has = [lane](std::uint32_t bits) { return (bits >> lane & 1) != 0; };
   if (has(found.known) != expected.known) return expected.known ? "not known" : "known";
@@ -152,7 +153,7 @@ TEST(CertifyTile, decides_as_for_one_element_on_every_target) {
       }
     }
   }
-  // Every possible answer must occur often.
+  // Makes sure that every possible answer has occurred often.
   EXPECT_GT(flagged, 3000U);
   EXPECT_GT(needing_exact, 1000U);
   EXPECT_GT(flagged - needing_exact, 1000U);

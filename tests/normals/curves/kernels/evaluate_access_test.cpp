@@ -1,5 +1,5 @@
-// Checks that every kind of memory access, on every instruction set and kind of block, writes the same bits as plain
-// stores, and no other memory.
+// Checks every kind of memory access, on every instruction set and for every kind of block: each must write the same
+// bits as plain stores, and must not change other memory.
 
 #include <gtest/gtest.h>
 
@@ -19,8 +19,8 @@
 namespace chronormal::evaluate_access_test {
 namespace {
 
-constexpr std::size_t kMost = 208;  // largest number of elements, which fill whole blocks
-constexpr std::size_t kGuard = 64;  // words around the results that must not change; the number keeps arrays aligned
+constexpr std::size_t kMost = 208;  // the largest number of elements, a multiple of all block sizes
+constexpr std::size_t kGuard = 64;  // guard words on both sides of the results; the number keeps arrays aligned
 constexpr std::uint32_t kMark = 0xDEADBEEF;
 constexpr std::array kKinds = {BlockKind::kUnit,        BlockKind::kUnitLength,  BlockKind::kLinear16,
                                BlockKind::kQuadratic11, BlockKind::kQuadratic16, BlockKind::kScaled16,
@@ -31,8 +31,8 @@ bool is_float(BlockKind kind) {
          kind == BlockKind::kQuadratic32;
 }
 
-// Makes blocks from random bits, which are directions in most kinds of blocks. In blocks of floats, the floats are from
-// 1 to 2.
+// Makes blocks of random bits, which in most kinds of blocks are valid directions. In blocks of floats, the floats are
+// between 1 and 2.
 AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random) {
   AlignedArray<std::uint32_t> words(kMost * bytes_of(kind) / 4);
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -42,7 +42,7 @@ AlignedArray<std::uint32_t> some_blocks(BlockKind kind, fixtures::Random& random
   return words;
 }
 
-// An output format: how it is evaluated into words, and the words that it may write.
+// An output format: a function that evaluates a block into words, and a function that tells which words it may write.
 struct Form {
   const char* name;
   std::function<void(const BlockSpan&, const CurveWeights&, float* words, MemoryAccess)> evaluate;

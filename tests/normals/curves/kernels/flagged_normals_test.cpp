@@ -1,4 +1,5 @@
-// Compares flagged elements, evaluated sixteen at a time, with eq. 5 in long double, for all magnitudes.
+// Compares flagged elements, which the kernel evaluates sixteen at a time, with eq. 5 of docs/theory.md in long double,
+// for numbers of all magnitudes.
 
 #include "normals/curves/kernels/flagged_normals.h"
 
@@ -25,13 +26,14 @@ LongVector combination(const ControlNormals& c, double t) {
           w0 * c.n0.z + w1 * c.m.z + w2 * c.n1.z};
 }
 
-// Returns |u x v| / |v|, which is the sine of the angle, since u is a unit vector.
+// Returns |u x v| / |v|. Since u is a unit vector, this is the sine of the angle between u and v.
 long double off(const LongVector& u, const LongVector& v) {
   const LongVector x{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
   return std::hypot(x[0], x[1], x[2]) / std::hypot(v[0], v[1], v[2]);
 }
 
-// n(t) is checked only if its largest component exceeds this share of the sum of w_k max_abs(c_k) over its terms.
+// Checks n(t) only if its largest component exceeds this share of the sum of w_k max_abs(c_k), where w_k are the
+// weights of the control normals c_k.
 constexpr double kCertain = 0x1p-26;
 
 ControlNormals element(fixtures::Random& random, int exponent) {
@@ -40,7 +42,7 @@ ControlNormals element(fixtures::Random& random, int exponent) {
     return Vec3d{std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)};
   };
   ControlNormals result{vector(), vector(), vector()};
-  // The curve passes close to zero at t = 1/2.
+  // The curve passes close to zero at t = 1/2 in half of the cases.
   if (random.below(2) == 0) result = {result.n0, -1.0 * result.n0, result.n0};
   result.m.x += std::ldexp(random.uniform(-1e-9, 1e-3), exponent);
   return result;
@@ -54,7 +56,7 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
       fixtures::Random random(20261125);
       std::vector<FlaggedTile> tiles(6);
       std::vector<ControlNormals> elements;
-      for (std::size_t i = 0; i < 90; ++i) {  // six lanes of the last sixteen are unused
+      for (std::size_t i = 0; i < 90; ++i) {  // six lanes of the last tile are unused
         elements.push_back(element(random, exponent));
         const FlaggedNormals scaled = FlaggedNormals::scaled(elements.back(), kCertain);
         const double back = std::ldexp(1.0, scaled.exponent);
@@ -80,7 +82,7 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
               << exponent << " " << i << " at " << t;
           if (is_uncertain) continue;
           const LongVector found{units[lane].x, units[lane].y, units[lane].z};
-          // If terms cancel, n(t) in double has an error already. The error is largest for subnormal numbers.
+          // If terms cancel, n(t) has an error even in double. This error is largest for subnormal numbers.
           const long double in_double = (exponent < -1000 ? 0x1p-36L : 0x1p-52L) * size / max_abs(n);
           ASSERT_LE(off(found, expected), 1.3e-7L + 10 * in_double) << exponent << " " << i << " at " << t;
           ASSERT_NEAR(static_cast<double>(std::hypot(found[0], found[1], found[2])), 1, 4e-7);

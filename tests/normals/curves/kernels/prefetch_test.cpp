@@ -1,5 +1,5 @@
-// Checks that evaluations prefetch curves at the distance with the fastest median, and that the number of trials is
-// limited.
+// Checks that evaluations prefetch curves at the distance whose trials had the shortest median time, and that the
+// number of trials is limited.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -23,12 +23,12 @@ namespace {
 TEST(PrefetchRule, the_fastest_distance_in_the_median_decides) {
   for (std::size_t fastest = 0; fastest < PrefetchRule::kDistances.size(); ++fastest) {
     PrefetchRule rule;
-    EXPECT_EQ(rule.best(), PrefetchRule::kDistances[0]);  // before any trial
+    EXPECT_EQ(rule.best(), PrefetchRule::kDistances[0]);  // the result before any trial
     std::array<std::size_t, PrefetchRule::kDistances.size()> trials{};
     while (const std::optional<std::size_t> trial = rule.next()) {
       const std::size_t turn = trials[*trial]++;
-      // The system interrupts two trials of the fastest distance, and one trial of each other distance is faster than
-      // all others.
+      // Simulates interruptions by the system: two trials of the fastest distance are slow. One trial of each other
+      // distance is faster than all trials of the fastest distance.
       const bool is_odd = turn == 3 || (*trial == fastest && turn == 7);
       rule.take(*trial, *trial == fastest ? (is_odd ? 500.0f : 0.1f) : (is_odd ? 0.09f : 0.13f));
     }
@@ -50,7 +50,7 @@ TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   EXPECT_EQ(try_all(3), kAll);
   for (const std::size_t fastest : {1U, 4U}) {
-    // The call that ended the trials was not a trial itself.
+    // The call that ended the trials does not count as one of the calls between.
     for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
     EXPECT_EQ(try_all(fastest), kAll);
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
@@ -83,7 +83,7 @@ TEST(PrefetchRule, a_rule_of_few_distances_tries_no_others) {
   EXPECT_EQ(rule.next(), std::nullopt);
 }
 
-// Threads compete for the last trial only in few of many rounds. Therefore all threads start together when few trials
+// Threads compete for the last trial only in few of many rounds, so all threads start at the same time when few trials
 // are left.
 TEST(PrefetchRule, threads_share_trials) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
@@ -121,7 +121,7 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  // All trials are done, unless tests that ran earlier in this process have begun a repetition.
+  // All trials are done now, unless tests that ran earlier in the same process have begun new trials.
   std::size_t left = 0;
   while (left <= PrefetchRule::kTrials * PrefetchRule::kDistances.size() &&
          prefetch_of_curves(WorkingSet::kSharedCache).next())

@@ -1,4 +1,5 @@
-// Compares the tiles of vertices and corners with sums of single faces in the order that NormalGroups keeps.
+// Compares the control normals that the kernel computes in tiles of 16 vertices or corners with sums over single faces,
+// in the order of NormalGroups.
 
 #include "normals/groups/kernels/group_tiles.h"
 
@@ -34,15 +35,15 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// The expected content of the tiles: sums of faces that the public function computes one by one, and therefore without
-// lanes. For each element there is also the largest component of the sums of absolute products along the path around
-// it.
+// The expected control normals: sums of faces that the public function computes one by one, and therefore without
+// lanes. `magnitudes` measures rounding errors: for each element, the largest component of the sums of absolute
+// products along the path around the element.
 struct Expected {
   std::vector<ControlNormals> normals;
   std::vector<double> magnitudes;
 };
 
-// Returns the larger of the absolute values at both ends, component by component.
+// Returns an edge with the absolute value of each component at the end of the segment where it is larger.
 Vec3d larger_of_ends(const Segment& segment, std::uint32_t a, std::uint32_t b) {
   const Vec3d from = to_double(segment.from[a]) - to_double(segment.from[b]);
   const Vec3d to = to_double(segment.to[a]) - to_double(segment.to[b]);
@@ -75,8 +76,8 @@ Expected expected_of(const Segment& segment, const NormalGroups& groups) {
   return expected;
 }
 
-// Tells whether a component agrees, up to rounding, with a sum in another order. A zero must be a zero with the same
-// sign.
+// Tells whether a component equals a sum that was computed in another order, except for rounding. If the component is
+// zero, the sum must be a zero with the same sign.
 bool is_right(float value, double expected, float magnitude) {
   const auto rounded = static_cast<float>(expected);
   if (std::memcmp(&value, &rounded, sizeof(float)) == 0) return true;
@@ -105,8 +106,8 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// Compares all elements, in ranges of `step` elements from element `first` on, with one object. Both numbers are
-// multiples of 16.
+// Compares all elements on all instruction sets, with one object for all ranges of `step` elements from element `first`
+// on. `first` and `step` are multiples of 16.
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -130,7 +131,8 @@ std::string difference_on_all_targets(const Motion& motion, std::size_t first = 
   return difference_on_all_targets(motion.segment(0), vertices_of(motion), first, step);
 }
 
-// Makes a grid of columns x rows cells with twice as many triangles, row by row, in which every vertex moves.
+// Makes a grid of columns x rows cells, each of two triangles. The cells are in the order of rows, and every vertex
+// moves.
 Motion grid(std::size_t columns, std::size_t rows) {
   fixtures::Random random(11);
   std::vector<Point> from, to;
@@ -155,7 +157,7 @@ Motion grid(std::size_t columns, std::size_t rows) {
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-// Returns the same mesh with its faces in another order. With vertices_too, its vertices are in another order as well.
+// Returns the same mesh with its faces in random order. If vertices_too, the vertices are in random order as well.
 Motion in_another_order(const Motion& motion, bool vertices_too) {
   const std::size_t vertex_count = motion.topology.vertex_count();
   std::vector<std::size_t> place(vertex_count);
@@ -179,7 +181,8 @@ TEST(GroupTiles, have_the_public_sums_for_every_count_and_offset) {
   const NormalGroups groups = vertices_of(motion);
   for (std::size_t step = kTile; step <= 10 * kTile; step += kTile)
     ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups, 3 * kTile, step), "");
-  // The paths are open and closed, of odd and even length, at every position in a slice and at its end.
+  // The paths around the vertices are open or closed, and of even or odd length. They are at every position in a slice
+  // and at its end.
   for (std::size_t columns = 1; columns < 12; ++columns)
     ASSERT_EQ(difference_on_all_targets(grid(columns, 7)), "") << columns;
 }
@@ -230,7 +233,7 @@ TEST(GroupTiles, take_corners_at_creases_and_polygons) {
 }
 
 TEST(GroupTiles, are_zero_where_no_face_is) {
-  // Only vertices 20 to 22 and 60 to 62 of 100 have faces.
+  // Only 6 of 100 vertices have faces: vertices 20 to 22 and 60 to 62.
   std::vector<Point> from, to;
   fixtures::Random random(13);
   for (std::size_t v = 0; v < 100; ++v) {
@@ -268,7 +271,7 @@ TEST(GroupTiles, take_a_vertex_of_many_faces) {
 }
 
 TEST(GroupTiles, have_no_noise_where_faces_cancel) {
-  // Every face occurs twice, in both orientations, in random order; then some faces occur once more.
+  // Every face occurs twice, in both orientations and in random order. In the second case, some faces occur once more.
   for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
     Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
     std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
@@ -279,8 +282,8 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
     ASSERT_EQ(difference_on_all_targets(motion), "");
   }
-  // Six faces surround a vertex. Other vertices at the same places have the same faces in the opposite orientation. The
-  // path around them begins elsewhere, so the sum has other products.
+  // Six faces surround a vertex. Other vertices at the same positions have the same faces with the opposite
+  // orientation. The path around the second vertex begins at another face, so its sum has other products.
   fixtures::Random random(14);
   std::vector<Point> from = {random.in_cube(1)}, to = {random.in_cube(1)};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -296,7 +299,7 @@ TEST(GroupTiles, have_no_noise_where_faces_cancel) {
     corners.insert(corners.end(), {0, 7 + i, 7 + (i + 1) % 6});
   }
   ASSERT_EQ(difference_on_all_targets(fixtures::make_motion(fixtures::make_triangles(13, corners), from, to)), "");
-  // One sheet is flat, the other is perpendicular to an axis.
+  // Each mesh lies in a plane, which is perpendicular to an axis if the slope is 0, and slanted otherwise.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, 1.0 / 3}) {
       const Motion flat = test::with_positions(grid(20, 20), [k, slope](const Point& p) {
@@ -322,8 +325,8 @@ TEST(GroupTiles, agree_at_any_scale_and_distance_from_the_origin) {
 
 // ---- tiles in float32 ----------------------------------------------------------------------------------------------
 
-// Compares the tiles of all elements in float32 with sums in double. The tiles must have the same bits on all
-// instruction sets.
+// Compares the float32 tiles of all elements with sums in double, and adds the differences to `seen`. All instruction
+// sets must give the same bits.
 void look_at(test::FloatTileFaults& seen, const Segment& segment, const NormalGroups& groups) {
   std::vector<ControlTile> first;
   for (const auto target : supported_targets()) {
@@ -356,7 +359,7 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say) {
   test::FloatTileFaults seen;
   for (std::size_t columns = 1; columns < 12; ++columns) look_at(seen, grid(columns, 7));
   look_at(seen, grid(60, 60));
-  EXPECT_EQ(seen.bending, seen.elements);  // all vertices of these meshes move, so float32 shows that the curves bend
+  EXPECT_EQ(seen.bending, seen.elements);  // all vertices move, so float32 proves that all curves bend
   EXPECT_LT(seen.largest_bound, 1e-5);
   for (const bool of_polygons : {false, true}) {
     const Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(5) : fixtures::icosphere(3), 0.1, 6);
@@ -367,7 +370,7 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say) {
   look_at(seen, in_another_order(grid(70, 70), true));
   EXPECT_EQ(seen.fault, "");
   std::cout << "  largest error: " << seen.largest_share << " of its bound\n";
-  EXPECT_GT(seen.largest_share, 0.02);  // otherwise the bounds would be too wide to be useful
+  EXPECT_GT(seen.largest_share, 0.02);  // shows that the bounds are not uselessly wide
 }
 
 TEST(FloatGroupTiles, say_so_of_needles_and_slivers_and_far_from_the_origin) {
@@ -396,7 +399,7 @@ TEST(FloatGroupTiles, leave_a_vertex_of_many_faces_to_double) {
   test::FloatTileFaults seen;
   look_at(seen, fixtures::make_motion(fixtures::make_triangles(kCount + 1, corners), from, to));
   EXPECT_EQ(seen.fault, "");
-  EXPECT_EQ(seen.elements, kCount);  // all elements except vertex 0, which has many faces
+  EXPECT_EQ(seen.elements, kCount);  // all elements but vertex 0, which has too many faces
 }
 
 TEST(FloatGroupTiles, never_take_a_line_for_a_curve) {
@@ -414,7 +417,7 @@ TEST(FloatGroupTiles, are_off_by_no_more_than_they_say_where_a_line_stands_for_a
 }
 
 // Compares elements in double, and the bounds of their errors, with sums of integers of any size. Describes the first
-// fault or returns "". `counted` becomes the number of elements for which the bounds are useful.
+// fault, or returns "". Sets `counted` to the number of elements for which the bounds are useful.
 std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, std::size_t& counted) {
   std::vector<BoundedTile> first;
   for (const auto target : supported_targets()) {
@@ -423,7 +426,7 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      tile.left_out = 0xFFFF;  // a mask that an earlier tile left, and that must be overwritten
+      tile.left_out = 0xFFFF;  // a value from an earlier tile, which must be overwritten
       ControlTile rounded;
       writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
       const std::uint32_t unknown = tile.left_out;
