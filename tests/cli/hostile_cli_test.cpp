@@ -300,8 +300,7 @@ TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name)
   }
   // A bake may replace its own input: a new file with the complete content replaces the old file.
   EXPECT_EQ(run("bake moving.glb -o ./moving.glb --force -q").exit_code, 0);
-  // the extension is not that of an archive
-  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);
+  EXPECT_EQ(run("audit a.obj b.obj --errors /dev/null -o /dev/null").exit_code, 2);  // no extension of an archive
   EXPECT_EQ(run("audit a.obj b.obj --errors sub/new.npz -o new.npz").exit_code, 0);
 }
 

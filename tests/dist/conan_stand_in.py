@@ -1,8 +1,10 @@
 """Runs a recipe of Conan 2 with replacements for the classes of Conan that the recipes in packaging/conan/ use.
-conan_stand_in.py RECIPE ARCHIVE VERSION FOLDER OPTION=VALUE...  Debian's libraries replace Conan's packages. FOLDER
-has the sources and the build that tests/dist/vcpkg.cmake leaves, so files are not compiled twice. The script writes
-the package to FOLDER/package. It then builds the test_package of the recipe, as package_info() describes, and runs
-it.
+
+    conan_stand_in.py RECIPE ARCHIVE VERSION FOLDER OPTION=VALUE...
+
+Debian's libraries replace Conan's packages. FOLDER has the sources and the build that tests/dist/vcpkg.cmake leaves, so
+files are not compiled twice. The script writes the package to FOLDER/package. It then builds the test_package of the
+recipe, as package_info() describes, and runs it.
 """
 
 import importlib.util

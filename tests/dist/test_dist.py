@@ -1,5 +1,7 @@
-"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.  The variable
-CHRONORMAL_DIST names the folder of the results. Each skipped test prints its reason. A missing file is an error.
+"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.
+
+The variable CHRONORMAL_DIST names the folder of the results. Each skipped test prints its reason. A missing file is an
+error.
 """
 
 import hashlib
@@ -228,8 +230,8 @@ class Others(Unpacked):
         self.check_inside(unpacked / "chronormal.exe", "mingw-w64")
 
     def check_inside(self, program, library):
-        """Checks that the program has the page of reports inside, since the archive has no file of it. `library` is
-        the library for C."""
+        """Checks that the program has the page of reports inside, since the archive has no file of it. `library` is the
+        library for C."""
         page = (ROOT / "build/share/chronormal/report.html").read_bytes()
         self.assertTrue(page in program.read_bytes(), f"{program.name} has no page for reports")
         licences = {path.name for path in (program.parent / "THIRD_PARTY").iterdir()}

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Compares the program for another system, which an emulator runs, with the program of this machine: files, texts and
-exit codes must be equal. ./test --full machines runs the script for each system.  CHRONORMAL_PROGRAM: the program of
-this machine. CHRONORMAL_OTHER: the words that start the other program, such as "wine build/windows/chronormal.exe".
-CHRONORMAL_BITS: the words that start the tests of equal bits (cmake/bits.cmake). CHRONORMAL_SYSTEM: "windows" or
-"arm64".
+exit codes must be equal. ./test --full machines runs this script for each system.
+
+    CHRONORMAL_PROGRAM  the program of this machine
+    CHRONORMAL_OTHER    the words that start the other program: "wine build/windows/chronormal.exe"
+    CHRONORMAL_BITS     the words that start the tests of equal bits (cmake/bits.cmake)
+    CHRONORMAL_SYSTEM   "windows" or "arm64"
 """
 import os
 import pathlib

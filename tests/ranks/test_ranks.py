@@ -1,6 +1,6 @@
 """Tests the program under mpirun: with any number of ranks, the output has the same bytes as with one process. If a
-rank fails or dies, the run ends, the message names the rank, and no files are left behind. CHRONORMAL_PROGRAM names
-the program, which must be built with MPI."""
+rank fails or dies, the run ends, the message names the rank, and no files are left behind. CHRONORMAL_PROGRAM names the
+program, which must be built with MPI."""
 
 import array
 import math
@@ -44,7 +44,7 @@ def write_cache(path, side, poses):
 
 
 def is_rank(process, rank):
-    """Tell whether a process is the given rank of a run."""
+    """Tells whether a process is the given rank of a run."""
     try:
         with open(f"/proc/{process}/environ", "rb") as file:
             return f"OMPI_COMM_WORLD_RANK={rank}".encode() in file.read().split(b"\0")
@@ -199,7 +199,7 @@ class RanksTest(unittest.TestCase):
         self.assertEqual(run.stderr.count("short.pc2"), 1, run.stderr)
 
     def begin_long_run(self, cache):
-        """Start a run on three ranks that writes two gigabytes, and return as soon as all ranks are writing."""
+        """Starts a run on three ranks that writes two gigabytes. Returns as soon as all ranks are writing."""
         arguments = f"sample large.obj {cache} --times 0:0.033:149 -q -o long.npy"
         run = subprocess.Popen(MPIRUN + ["3", PROGRAM] + arguments.split(), stderr=subprocess.PIPE, stdout=subprocess.PIPE,
                                text=True)

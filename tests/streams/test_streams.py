@@ -1,5 +1,5 @@
-"""Tests the memory of commands that read a sequence one keyframe at a time. The memory must not grow with the number
-of keyframes."""
+"""Tests the memory of commands that read a sequence one keyframe at a time. The memory must not grow with the number of
+keyframes."""
 
 import os
 import struct

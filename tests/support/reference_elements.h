@@ -144,7 +144,7 @@ struct MovingElement {
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);
-  const Real crease = degrees * kPi / 180 + 1e-6L;  // with the documented tolerance for rounding of positions
+  const Real crease = degrees * kPi / 180 + 1e-6L;  // includes the documented tolerance for rounding of positions
   const auto neighbours = [&](const Corner& c) {
     return std::pair{point[vertex_of(mesh, c, 1)], point[vertex_of(mesh, c, mesh.faces[c.face].size() - 1)]};
   };

@@ -1,5 +1,5 @@
-/// A skin for a morphing mesh, as JSON and bytes of a glTF file, and as an oracle of its effect, in long double. The
-/// loops share no code with src/; only the builder of files is used.
+/// A skin for a morphing mesh. It can be written as JSON and bytes of a glTF file. Its oracle computes its effect in
+/// long double, by loops that share no code with src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 
@@ -14,7 +14,7 @@
 
 namespace chronormal::test {
 
-/// A matrix of three rows of four numbers, which maps (x, y, z, 1) to a position.
+/// A matrix with three rows of four numbers, which maps the vector (x, y, z, 1) to a position.
 struct Rows {
   std::array<std::array<Real, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -34,7 +34,7 @@ struct Rows {
   }
 };
 
-/// Returns the product of two matrices, which applies b first and then a.
+/// Returns the product of two matrices. It applies matrix b first, and then matrix a.
 [[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
   Rows result;
   for (std::size_t r = 0; r < 3; ++r) {
@@ -46,13 +46,15 @@ struct Rows {
   return result;
 }
 
-/// A transform by translation, rotation (a quaternion x, y, z, w, not necessarily of length 1) and scale.
+/// A transform of a glTF node: translation, rotation and scale. The rotation is a quaternion x, y, z, w, whose length
+/// need not be 1.
 struct Trs {
   std::array<Real, 3> translation = {0, 0, 0};
   std::array<Real, 4> rotation = {0, 0, 0, 1};
   std::array<Real, 3> scale = {1, 1, 1};
 
-  /// Returns the matrix. Axes are rotated by v + 2 w (u x v) + 2 u x (u x v), where u = (x, y, z).
+  /// Returns the transform as a matrix. Rotates the axes by v + 2 w (u x v) + 2 u x (u x v), where u = (x, y, z) is a
+  /// part of the quaternion.
   [[nodiscard]] Rows rows() const {
     Real length = 0;
     for (const Real c : rotation) length += c * c;
@@ -79,13 +81,13 @@ struct Trs {
   }
 };
 
-/// A skin: the joints and weights of each vertex, four in each set, and inverse bind matrices.
+/// A skin: the joints and weights of each vertex, in sets of four, and the inverse bind matrices.
 struct Skin {
   std::vector<std::array<float, 16>> inverse_binds;  ///< column by column; empty if the file has none
   std::vector<std::vector<std::uint8_t>> joints;     ///< for each set, four joints for each vertex
   std::vector<std::vector<float>> weights;           ///< with the same layout as `joints`
 
-  /// Adds the skin with these nodes as joints to the file, and gives it to node 0 and to the first primitive of mesh 0.
+  /// Adds the skin to a file, with these nodes as joints. Node 0 and the first primitive of mesh 0 get the skin.
   void add_to(GltfBuilder& builder, const std::vector<std::size_t>& nodes) const {
     GltfBuilder::Json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
     for (std::size_t n = 0; n < joints.size(); ++n) {
@@ -102,7 +104,7 @@ struct Skin {
     builder.json["nodes"][0]["skin"] = builder.add("skins", skin);
   }
 
-  /// Returns the matrix by which a joint moves a vertex.
+  /// Returns the matrix by which a joint moves vertices: its world matrix times its inverse bind matrix.
   [[nodiscard]] Rows of_joint(std::size_t joint, const std::vector<Rows>& world) const {
     Rows bind;
     for (std::size_t k = 0; k < 12 && !inverse_binds.empty(); ++k)
@@ -110,7 +112,7 @@ struct Skin {
     return after(world[joint], bind);
   }
 
-  /// Returns the blended matrix of a vertex for joints with these world matrices.
+  /// Returns the weighted sum of the joint matrices of a vertex, for joints with these world matrices.
   [[nodiscard]] Rows blended(std::size_t vertex, const std::vector<Rows>& world) const {
     Real sum = 0;
     for (const auto& of_set : weights)
@@ -130,8 +132,8 @@ struct Skin {
   }
 };
 
-/// The ways in which viewers transform a normal: by the blended matrix, by its inverse transpose, or by the cofactors
-/// of each joint.
+/// The ways in which viewers transform the normal of a skinned vertex: by the blended matrix, by the inverse transpose
+/// of the blended matrix, or by the cofactors of the matrix of each joint.
 enum class Carry { kBlended, kInverseTranspose, kByJoint };
 
 [[nodiscard]] inline Vector by_cofactors(const Rows& matrix, const Vector& n) {
@@ -152,9 +154,9 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
   return sum;
 }
 
-/// The errors on the screen. `shown` is the angle between the rendered and the true normal of a vertex, both
-/// transformed by the same rule. `skinning` is the angle between the normal of the surface before skinning, transformed
-/// by the blended matrix, and the normal of the skinned surface.
+/// The errors on the screen, as angles. `shown` is the angle between the rendered and the true normal of a vertex after
+/// both were transformed in the same way. `skinning` is the angle between two normals: that of the surface before
+/// skinning, transformed by the blended matrix, and that of the skinned surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;
 };

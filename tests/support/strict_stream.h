@@ -1,4 +1,5 @@
-/// A stream that keeps only the keyframes in use, to measure how many keyframes its user needs.
+/// A stream that keeps in memory only the keyframes in use. Tests measure with it how many keyframes the user of the
+/// stream needs.
 #ifndef CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 #define CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 
@@ -12,8 +13,8 @@
 
 namespace chronormal::test {
 
-/// Returns a stream of the keyframes of `source`. Sets most_held to the largest number of keyframes in memory,
-/// including one that is being read. Both arguments must outlive the stream.
+/// Returns a stream of the keyframes of `source`. Sets most_held to the largest number of keyframes that were in memory
+/// at once, including one that is being read. Both arguments must live longer than the stream.
 inline MotionStream strict(MotionStream& source, std::size_t& most_held) {
   Motion outline = source.motion();
   for (auto& keyframe : outline.keyframes) keyframe.positions = {};

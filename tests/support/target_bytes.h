@@ -1,4 +1,4 @@
-/// Makes a base mesh and its targets byte by byte.
+/// Makes a base mesh and MakeHuman targets byte by byte, without chronormal's writers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_TARGET_BYTES_H_
 #define CHRONORMAL_TESTS_SUPPORT_TARGET_BYTES_H_
 
@@ -13,14 +13,14 @@
 
 namespace chronormal::test {
 
-/// A square of two triangles: positions (4, 3), and the text of an OBJ file.
+/// A square of two triangles, as positions (4, 3) and as the text of an OBJ file.
 inline const std::vector<float> kSquare = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
 inline const std::string kSquareObj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 
-/// A target that lifts the vertices 1 and 3 of the square.
+/// A MakeHuman target that moves the vertices 1 and 3 of the square.
 inline const std::string kLiftTarget = "# made for a test\n\n3 0 0 .5\n1 -.25 +0.125 1e-1 # a corner\n";
 
-/// Makes one gzip member: header, deflated text, checksum and length.
+/// Makes one gzip member: the header, the deflated text, the checksum and the length.
 [[nodiscard]] inline std::string gzip(const std::string& text) {
   const auto sum = static_cast<std::uint32_t>(
       ::crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size())));

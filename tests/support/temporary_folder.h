@@ -1,4 +1,4 @@
-/// A temporary folder for a test, which is removed with all its contents.
+/// A temporary folder for a test. The destructor deletes the folder with all its contents.
 #ifndef CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 #define CHRONORMAL_TESTS_SUPPORT_TEMPORARY_FOLDER_H_
 
@@ -30,7 +30,7 @@ class TemporaryFolder {
   [[nodiscard]] std::string path() const { return path_.string(); }
   [[nodiscard]] std::string operator/(std::string_view name) const { return (path_ / name).string(); }
 
-  /// Writes a file and returns its path.
+  /// Writes a file into the folder, and returns its path.
   std::string write(std::string_view name, std::string_view bytes) const {  // NOLINT(modernize-use-nodiscard)
     std::ofstream(path_ / name, std::ios::binary) << bytes;
     return *this / name;

@@ -1,5 +1,5 @@
-/// Computes the normals that viewers render, by plain loops over the formulas in the sources of the viewers, in double
-/// and in integers, without the library. Each viewer has its own code under its name.
+/// Computes the normals that viewers render, in double and in integers, without the library. Plain loops evaluate the
+/// formulas in the sources of the viewers. Each viewer has its own code, under its name.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
 
@@ -26,7 +26,8 @@ using Triple = std::array<double, 3>;
   return size > 0 ? Triple{v[0] / size, v[1] / size, v[2] / size} : Triple{};
 }
 
-/// Rounds a value to a 16-bit float: keeps ten binary digits, and rounds up if the first dropped digit is 1.
+/// Rounds a value to a 16-bit float: keeps ten binary digits after the first, and rounds up if the first dropped digit
+/// is 1.
 [[nodiscard]] inline double as_half(double value) {
   const auto narrow = static_cast<float>(value);
   std::uint32_t bits = 0;
@@ -45,14 +46,15 @@ using Triple = std::array<double, 3>;
   return std::copysign((1 + kept) * std::pow(2.0, exponent), value);
 }
 
-/// Maps a direction to two coordinates on an octahedron, whose lower half is folded outwards; `sum` is |x| + |y| + |z|.
+/// Projects a direction onto an octahedron, and returns two coordinates. The lower half of the octahedron is folded
+/// outwards. `sum` is |x| + |y| + |z|.
 [[nodiscard]] inline std::array<double, 2> on_octahedron(const Triple& v, double sum) {
   const double x = v[0] / sum, y = v[1] / sum;
   if (v[2] >= 0) return {x, y};
   return {(1 - std::fabs(y)) * (x >= 0 ? 1 : -1), (1 - std::fabs(x)) * (y >= 0 ? 1 : -1)};
 }
 
-/// Encodes and decodes a direction like Godot: on an octahedron with two coordinates that are truncated to integers
+/// Encodes and decodes a direction as Godot does: on an octahedron, with two coordinates that are truncated to integers
 /// from 0 to 65535.
 [[nodiscard]] inline Triple through_godot(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
@@ -70,16 +72,16 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({x, y, z});
 }
 
-/// Encodes and decodes a normal like Filament without texture coordinates: makes a frame by Frisvad's rule, converts
-/// its matrix (t, n x t, n) to a quaternion by the four cases of Shepperd's method, rounds it to four 16-bit integers,
-/// and takes the third axis.
+/// Encodes and decodes a normal as Filament does without texture coordinates. Makes a frame (t, n x t, n) by Frisvad's
+/// rule, and converts its matrix to a quaternion by the four cases of Shepperd's method. Then rounds the quaternion to
+/// four 16-bit integers, and returns the third axis of the decoded frame.
 [[nodiscard]] inline Triple through_filament(const Triple& n) {
   if (n == Triple{}) return {};
   const double a = 1 / (1 + n[1]);
   Triple t = {-n[2] * n[0] * a, -n[2], 1 - n[2] * n[2] * a};
   if (n[1] < -0.9999999) t = {-1, 0, 0};
   const Triple b = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  double w = 0, x = 0, y = 0, z = 0;  // each component times four times the largest one
+  double w = 0, x = 0, y = 0, z = 0;  // each component times four times the largest component
   if (t[0] + b[1] + n[2] > 0) {
     w = 1 + t[0] + b[1] + n[2], x = b[2] - n[1], y = n[0] - t[2], z = t[1] - b[0];
   } else if (t[0] >= b[1] && t[0] >= n[2]) {
@@ -94,8 +96,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
 }
 
-/// Returns the integer that is nearest to |value| times `most`, with the sign of the value. Finds it by trying all
-/// integers.
+/// Returns the integer that is nearest to value * most. Finds it by trying all integers. If two are equally near,
+/// returns the one with the larger absolute value.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
   for (int k = 1; k <= most; ++k)
@@ -103,11 +105,11 @@ using Triple = std::array<double, 3>;
   return value < 0 ? -best : best;
 }
 
-/// Rounds a value like gltfpack, and like glTF Transform at 8 bits.
+/// Rounds a component as gltfpack does, and as glTF Transform does with 8 bits.
 [[nodiscard]] inline double as_byte(double value) { return nearest_integer(value, 127) / 127.0; }
 
-/// Rounds a value like glTF Transform at 10 bits: nine binary digits and the sign are written, and the leading digits
-/// are repeated to make fifteen.
+/// Rounds a component as glTF Transform does with 10 bits: the file stores a sign and nine binary digits, and the
+/// leading digits are repeated to make fifteen digits.
 [[nodiscard]] inline double as_ten_bits(double value) {
   std::string digits;
   const int kept = std::abs(nearest_integer(value, 511));
@@ -116,8 +118,8 @@ using Triple = std::array<double, 3>;
   return std::copysign(std::stoi(fifteen, nullptr, 2) / 32767.0, value);
 }
 
-/// Encodes and decodes a direction like the meshopt command of glTF Transform: on an octahedron with coordinates from
-/// -127 to 127, and then as three bytes.
+/// Encodes and decodes a direction as the meshopt command of glTF Transform does: first on an octahedron with
+/// coordinates from -127 to 127, and then as three bytes.
 [[nodiscard]] inline Triple through_meshopt(const Triple& v) {
   const double sum = std::fabs(v[0]) + std::fabs(v[1]) + std::fabs(v[2]);
   if (sum == 0) return {};
@@ -137,7 +139,7 @@ using Triple = std::array<double, 3>;
   return {change(v[0]), change(v[1]), change(v[2])};
 }
 
-/// Returns the unit normal that a viewer renders for N, its deltas and these weights.
+/// Returns the unit normal that a viewer renders for a base normal, its deltas and these weights.
 [[nodiscard]] inline Triple shown_by(std::string_view viewer, const Triple& normal, const std::vector<Triple>& deltas,
                                      const std::vector<double>& weights) {
   const auto plus = [](const Triple& a, double w, const Triple& b) {
@@ -182,7 +184,7 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer plays from a track at a time between keys. `start` and `end` are the times at
+/// Returns the weights that a viewer computes from a track at a time between keys. `start` and `end` are the times at
 /// which the animation starts and ends.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
@@ -211,7 +213,7 @@ using Triple = std::array<double, 3>;
     return weights;
   }
   if (viewer == "playcanvas" && is_spline) {
-    // The parser of PlayCanvas makes a separate track for each of the numbers that a key has.
+    // PlayCanvas makes a separate track for each number of a key.
     const std::size_t tracks = values.size() / times.size(), keys = times.size();
     std::vector<double> weights;
     for (std::size_t j = 0; j < targets; ++j) {

@@ -1,8 +1,8 @@
-/// Polynomials with integer coefficients of any size, to check the exact roots and signs that the product finds.
+/// Polynomials with integer coefficients of any size, for checking the roots and signs that the library finds.
 ///
-/// Positions in float32 are integers times 2^-149, so values at the integers t = -1, 0, 1 and 2 are integers, too, and
-/// determine the polynomial. Roots are counted by Descartes' rule and bisection, on the polynomial without its multiple
-/// roots.
+/// Positions in float32 are integers times 2^-149. The values of a cubic at the integers t = -1, 0, 1 and 2 are
+/// therefore integers in this unit, and they determine the cubic. Roots are counted by Descartes' rule and bisection,
+/// after multiple roots were removed.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_WHOLE_POLYNOMIAL_H_
 
@@ -24,7 +24,7 @@ namespace chronormal::test {
 using Whole = mpz_class;
 using WholeVector = std::array<Whole, 3>;
 
-/// Returns a vector of floats times 2^149.
+/// Returns a vector of floats, multiplied by 2^149, as integers.
 [[nodiscard]] inline WholeVector whole(const Vec3f& v) {
   const auto one = [](float x) { return Whole(std::ldexp(static_cast<double>(x), 149)); };
   return {one(v.x), one(v.y), one(v.z)};
@@ -49,7 +49,8 @@ using WholeVector = std::array<Whole, 3>;
   return p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
 }
 
-/// Returns the normal of a polygon at an integer t: the sum over its triangles, times 2^298.
+/// Returns the normal of a polygon at an integer t, multiplied by 2^298: the sum of the cross products of its
+/// triangles.
 [[nodiscard]] inline WholeVector whole_normal(const Segment& segment, std::span<const std::uint32_t> vertices, long t) {
   const auto corner = [&](std::size_t c) {
     return on_line(whole(segment.from[vertices[c]]), whole(segment.to[vertices[c]]), t);
@@ -65,7 +66,7 @@ using WholeVector = std::array<Whole, 3>;
 
 class WholePolynomial {
  public:
-  /// Returns 6 times the polynomial of degree up to 3 with these values at t = -1, 0, 1, 2.
+  /// Returns six times the polynomial of degree 3 or less that has these values at t = -1, 0, 1 and 2.
   [[nodiscard]] static WholePolynomial through(const Whole& at_minus_1, const Whole& at_0, const Whole& at_1,
                                                const Whole& at_2) {
     const Whole c3 = at_2 - 3 * at_1 + 3 * at_0 - at_minus_1, c2 = 3 * (at_1 - 2 * at_0 + at_minus_1);
@@ -77,7 +78,7 @@ class WholePolynomial {
 
   [[nodiscard]] static WholePolynomial greatest_common_divisor(WholePolynomial p, WholePolynomial q);
 
-  /// Returns the sign at any finite double.
+  /// Returns the sign of the polynomial at any finite double.
   [[nodiscard]] int sign_at(double t) const {
     int exponent = 0;
     const Whole mantissa(std::ldexp(std::frexp(t, &exponent), 53));
@@ -90,7 +91,8 @@ class WholePolynomial {
     return sgn(value);
   }
 
-  /// Tells whether the polynomial is linear. slope_at_root() then returns the sign of the derivative of p at its root.
+  /// Tells whether this polynomial is linear. If so, slope_at_root() returns the sign of the derivative of another
+  /// polynomial p at the root of this one.
   [[nodiscard]] bool is_linear() const { return a_.size() == 2; }
   [[nodiscard]] int slope_at_root(const WholePolynomial& p) const {
     const Whole root = -a_[0], unit = a_[1];  // t = root / unit
@@ -103,16 +105,16 @@ class WholePolynomial {
     return is_odd ? sgn(slope) * sgn(unit) : sgn(slope);
   }
 
-  /// Counts the distinct roots in [0, 1].
+  /// Returns the number of distinct roots in [0, 1].
   [[nodiscard]] std::size_t count_roots() const {
     const std::size_t at_ends = (sign_at(0) == 0 ? 1U : 0U) + (sign_at(1) == 0 ? 1U : 0U);
     const std::vector<Whole> b = bernstein();
     return at_ends + (variations(b) < 2 ? variations(b) : count_in(without_multiple_roots().bernstein()));
   }
 
-  /// Counts the distinct roots in [low, high], for 0 <= low < high <= 1.
+  /// Returns the number of distinct roots in [low, high]. Requires 0 <= low < high <= 1.
   [[nodiscard]] std::size_t count_roots(double low, double high) const {
-    // Computes p(low + s (high - low)), where low and high are integers times 2^-shift.
+    // Substitutes t = low + s (high - low), where low and high are integers times 2^-shift.
     constexpr int kShift = 1080;
     const auto scaled = [](double t) {
       int exponent = 0;
@@ -157,12 +159,13 @@ class WholePolynomial {
     return result;
   }
 
-  // The quotient and the remainder of a division, scaled so that both have integer coefficients (pseudo-division).
+  // The quotient and the remainder of a division, multiplied by a number that makes all coefficients integers
+  // (pseudo-division).
   struct Division;
   [[nodiscard]] Division divided_by(const WholePolynomial& q) const;
   [[nodiscard]] WholePolynomial without_multiple_roots() const;
 
-  // Returns the Bernstein coefficients, times a positive number.
+  // Returns the coefficients in Bernstein form, multiplied by a positive number.
   [[nodiscard]] std::vector<Whole> bernstein() const {
     if (a_.empty()) return {};
     const std::size_t n = a_.size() - 1;
@@ -189,10 +192,10 @@ class WholePolynomial {
     return count;
   }
 
-  // Counts the roots in the open interval (0, 1), all of which must be simple.
+  // Returns the number of roots in the open interval (0, 1). All roots must be simple.
   static std::size_t count_in(const std::vector<Whole>& b) {
     if (variations(b) < 2) return variations(b);
-    // Both halves are scaled by 2^n.
+    // The coefficients of both halves are multiplied by 2^n, so that they are integers.
     std::vector<Whole> before = b, after = b, row = b;
     const std::size_t n = b.size() - 1;
     for (std::size_t level = 0; level <= n; ++level) {
@@ -203,7 +206,7 @@ class WholePolynomial {
     return count_in(before) + (sgn(after[0]) == 0 ? 1U : 0U) + count_in(after);
   }
 
-  std::vector<Whole> a_;  // coefficients by ascending powers; the last one is not zero
+  std::vector<Whole> a_;  // coefficients of 1, t, t^2, ...; the last one is not zero
 };
 
 struct WholePolynomial::Division {

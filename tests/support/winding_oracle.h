@@ -1,9 +1,9 @@
 /// Computes winding numbers and crossings of moving points in integers and rational numbers, to check containment.
 ///
-/// A winding number is counted along a slanted half-line, unlike in the product, with signs of integer determinants. A
-/// determinant is zero if the half-line meets an edge or a vertex. In this case the point is moved by a small step
-/// along x, a far smaller step along y and a still smaller step along z, and the winding number is computed again.
-/// Roots are isolated by Sturm's theorem in rational numbers.
+/// A winding number is counted along a slanted half-line, unlike in the library, from the signs of integer
+/// determinants. A determinant is zero if the half-line meets an edge or a vertex. In that case, the point is moved by
+/// a small step along x, a far smaller step along y and an even smaller step along z, and the winding number is counted
+/// again. Roots are isolated by Sturm's theorem in rational numbers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 #define CHRONORMAL_TESTS_SUPPORT_WINDING_ORACLE_H_
 
@@ -27,7 +27,7 @@ namespace chronormal::exact {
 using Integers = std::array<mpz_class, 3>;
 using Corners = std::array<std::uint32_t, 3>;
 
-/// Returns a float times 2^149, which is an integer.
+/// Returns a float multiplied by 2^149, which is an integer.
 [[nodiscard]] inline mpz_class whole(float x) {
   int exponent = 0;
   const auto mantissa = static_cast<long>(std::ldexp(std::frexp(x, &exponent), 24));
@@ -36,7 +36,7 @@ using Corners = std::array<std::uint32_t, 3>;
   return mpz_class(mantissa) << static_cast<unsigned>(shift);
 }
 
-/// A double from 0 to 1, with at most 53 binary places after the point.
+/// A time t from 0 to 1, as an integer number of units of 2^-53.
 struct Fraction {
   std::int64_t numerator;  // the denominator is 2^53
 
@@ -45,7 +45,7 @@ struct Fraction {
   }
 };
 
-/// Returns a coordinate at t relative to a moving point, in units of 2^-(149 + 53), in which it is an integer.
+/// Returns a vertex at t relative to a moving point. The unit is 2^-(149 + 53), so the coordinates are integers.
 [[nodiscard]] inline Integers seen_at(const Vec3f& from, const Vec3f& to, const Vec3f& point_from,
                                       const Vec3f& point_to, const Fraction& t) {
   const mpz_class after = t.numerator, before = (std::int64_t{1} << 53) - t.numerator;
@@ -56,7 +56,7 @@ struct Fraction {
           at(from.z, to.z, point_from.z, point_to.z)};
 }
 
-/// A position. Integer is mpz_class, or std::int64_t if it is large enough.
+/// A position. `Integer` is mpz_class, or std::int64_t if 64 bits are enough.
 template <class Integer>
 using Place = std::array<Integer, 3>;
 
@@ -69,14 +69,15 @@ template <class Integer>
   return sign_of(Integer(a[0] * x + a[1] * y + a[2] * z));
 }
 
-/// Returns the winding number of the origin, or nothing if a determinant is zero.
+/// Returns the winding number of the origin, counted along a half-line in this direction, or nothing if a determinant
+/// is zero.
 template <class Integer>
 [[nodiscard]] std::optional<int> winding_along(const std::vector<Place<Integer>>& vertices,
                                                std::span<const Corners> faces, const Place<Integer>& direction) {
   int number = 0;
   for (const Corners& face : faces) {
     const Place<Integer>&a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
-    if (a == b || b == c || c == a) continue;  // triangles without area
+    if (a == b || b == c || c == a) continue;  // skips triangles without area
     const int ab = sign_of_determinant(direction, a, b);
     if (ab == 0) return std::nullopt;
     const int bc = sign_of_determinant(direction, b, c);
@@ -92,7 +93,7 @@ template <class Integer>
   return number;
 }
 
-/// Returns the winding number of a point at t. The faces are triangles.
+/// Returns the winding number of a moving point at t relative to the mesh. The faces must be triangles.
 [[nodiscard]] inline int winding_number(const Segment& segment, std::span<const Corners> faces, const Vec3f& from,
                                         const Vec3f& to, double t) {
   std::vector<Integers> vertices;
@@ -105,7 +106,7 @@ template <class Integer>
       if (abs(x) > largest) largest = abs(x);
     }
   }
-  // Removes common factors of two, to make the numbers as small as possible.
+  // Removes common factors of two, so that the numbers may fit into 64 bits.
   for (Integers& v : vertices) {
     for (mpz_class& x : v) x >>= zeros;
   }
@@ -117,7 +118,8 @@ template <class Integer>
   }
   const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
   if (const auto number = winding_along(vertices, faces, directions[0])) return *number;
-  // The steps are small compared with every nonzero value: volumes and areas are integers, and areas are below size^2.
+  // Moves the point by steps that are small compared with every volume and area that is not zero. These are integers,
+  // and areas are below size^2.
   const mp_bitcnt_t size = mpz_sizeinbase(largest.get_mpz_t(), 2) + 8, finest = 7 * size;
   for (Integers& v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << finest) - (mpz_class(1) << (finest - (2 * k + 3) * size));
@@ -128,7 +130,7 @@ template <class Integer>
   throw std::logic_error("no direction meets no edge");
 }
 
-/// The coefficients of 1, t, t^2, ...
+/// A polynomial, as the coefficients of 1, t, t^2, ...
 using Polynomial = std::vector<mpq_class>;
 
 [[nodiscard]] inline Polynomial times(const Polynomial& p, const Polynomial& q) {
@@ -149,7 +151,7 @@ using Polynomial = std::vector<mpq_class>;
   return sgn(value);
 }
 
-/// Counts the distinct roots between two times that are not roots, by Sturm's sequence.
+/// Counts the distinct roots of a polynomial between two times by Sturm's sequence. The two times must not be roots.
 class SturmSequence {
  public:
   explicit SturmSequence(Polynomial p) {
@@ -197,12 +199,12 @@ class SturmSequence {
 
 struct ExactCrossing {
   std::size_t face;
-  mpq_class low, high;  // bounds of the root
+  mpq_class low, high;  // bounds of the root in t
   bool inward;
 };
 
-/// All crossings of faces by a point. If the point meets an edge or touches a face, is_general is false and the list is
-/// empty.
+/// All crossings of faces by a moving point. If the point meets an edge or only touches a face, is_general is false and
+/// the list is empty.
 struct ExactCrossings {
   bool is_general = true;
   std::vector<ExactCrossing> list;
@@ -219,8 +221,8 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // The coordinates in the face are measured along its normal n, and not along a vertical line: a point is inside the
-  // face if all three areas have the direction of n.
+  // The position in the face is found from three areas along the normal n of the face, and not along a vertical line. A
+  // point is inside the face if all three areas have the direction of n.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -271,7 +273,7 @@ struct ExactCrossings {
         is_inside = is_inside && sign > 0;
       }
       const int before = volume.sign_at(low), after = volume.sign_at(high);
-      if (before == after) return {false, {}};  // a double root
+      if (before == after) return {false, {}};  // the point touches the face: a double root
       if (is_inside) result.list.push_back({f, low, high, after > 0});
     }
   }

@@ -1,4 +1,4 @@
-/// Writes a motion by write_motion(), the function that programs use, and returns the bytes of the file.
+/// Writes a motion by write_motion(), the function that programs call, and returns the bytes of the file.
 #ifndef CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 #define CHRONORMAL_TESTS_SUPPORT_WRITTEN_H_
 
@@ -9,7 +9,7 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes of a file with this extension (".pc2"). Errors are those of write_motion().
+/// Returns the bytes of a file with this extension, such as ".pc2". Returns the error if write_motion() fails.
 [[nodiscard]] inline Result<std::string> written(const Motion& motion, const std::string& extension) {
   const TemporaryFolder folder;
   const std::string path = folder / ("motion" + extension);

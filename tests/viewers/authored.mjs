@@ -1,6 +1,6 @@
 // A sheet as an artist models it: quads, some hexagons, and some flat-shaded faces. The normal of a smooth point is the
-// sum over all polygons around it, weighted by the angle at their corners. Some normals were edited by hand,
-// differently in each key, and some of the edited normals point to the other side.
+// sum of the normals of all polygons around the point, weighted by the angles at their corners. Some normals are edited
+// as if by hand, differently in each key, and some of these point to the back.
 import { writeFile } from './fixtures.mjs';
 import { randomNumbers } from './random.mjs';
 
@@ -11,8 +11,8 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const single = (a) => a.map(Math.fround);
 
-// Makes polygons over n x n points. Each polygon has its corners in counterclockwise order, and the triangles into
-// which an exporter cuts it.
+// Makes polygons over n x n points. A polygon has its corners in counterclockwise order, and the triangles into which
+// an exporter cuts the polygon.
 function polygonsOf(n, random) {
   const polygons = [], middle = n >> 1, quad = [[0, 1, 2], [0, 2, 3]], ears = [[5, 0, 1], [2, 3, 4], [5, 1, 2], [5, 2, 4]];
   const isNear = (i, j) => Math.max(Math.abs(i + 0.5 - middle), Math.abs(j + 0.5 - middle)) < 1;
@@ -30,7 +30,7 @@ function polygonsOf(n, random) {
 
 const faceNormal = ({ corners }, p) => unit(corners.reduce((sum, v, i) => plus(sum, cross(p[v], p[corners[(i + 1) % corners.length]])), [0, 0, 0]));
 
-// Returns the unit normals of all points, summed over all polygons around each point.
+// Returns the unit normals of all points. Each is the sum of the normals of the polygons around the point.
 function pointNormals(polygons, p) {
   const sums = p.map(() => [0, 0, 0]);
   for (const polygon of polygons) {
@@ -43,7 +43,8 @@ function pointNormals(polygons, p) {
   return sums.map(unit);
 }
 
-/** Writes the file. Target 2 pulls the middle point up so far that all its edges are nearly parallel to its normal. */
+/** Writes the sheet as a file. Target 2 pulls the middle point up so far that all edges at this point are nearly
+ * parallel to its normal. */
 export async function writeAuthored(path, seed, n = 12) {
   const random = randomNumbers(seed), around = (size) => size * (2 * random() - 1);
   const polygons = polygonsOf(n, random), middle = (n >> 1) * n + (n >> 1), keys = [];
@@ -58,7 +59,7 @@ export async function writeAuthored(path, seed, n = 12) {
     return bent.map((x) => side[v] * x);
   }));
 
-  // There is one vertex for each smooth point, and one for each corner of a flat polygon.
+  // Each smooth point has one vertex, and so has each corner of a flat-shaded polygon.
   const vertices = [], indices = [], vertexOf = new Map();
   for (const polygon of polygons) {
     const flat = polygon.isFlat ? keys.map((p) => faceNormal(polygon, p)) : null;

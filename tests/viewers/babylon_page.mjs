@@ -1,4 +1,4 @@
-// Babylon.js as a viewer in the page: its loader, its animation groups, and its glTF material, which can show its
+// Makes Babylon.js a viewer in the test page: its loader, its animation groups, and its glTF material, which can show
 // normals as colours.
 import { Animation } from '@babylonjs/core/Animations/animation.js';
 import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
@@ -15,8 +15,8 @@ import '@babylonjs/loaders/glTF/2.0/index.js';
 import { driveBabylon } from '../../examples/drive.mjs';
 import * as live from '../../js/src/babylon.js';
 
-const FRAMES_PER_SECOND = 60;  // the loader multiplies seconds by this number
-const SHADED_NORMALS = 5;      // value of PBRMaterial.debugMode
+const FRAMES_PER_SECOND = 60;  // the loader multiplies times in seconds by this number
+const SHADED_NORMALS = 5;      // the value of PBRMaterial.debugMode that shows normals as colours
 
 let engine;
 
@@ -36,7 +36,7 @@ function toBase64(bytes) {
   return btoa(text);
 }
 
-// Sets all objects to a time, by the animation group.
+// Moves all objects to where they are at a time, by an animation group.
 export function play(model, animation, time) {
   model.scene.animationGroups.forEach((group) => group.stop());
   if (animation === null) return;
@@ -46,14 +46,15 @@ export function play(model, animation, time) {
   group.goToFrame(time * FRAMES_PER_SECOND);
 }
 
-// Sets the weights of the first targets of every mesh; drive() sets the weights of correction targets.
+// Sets the weights of the first targets of every mesh. drive() sets the weights of correction targets.
 export function setWeights({ scene }, weights) {
   for (const { morphTargetManager } of scene.meshes)
     if (morphTargetManager)
       weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
 }
 
-// Blends several animation groups, each with its weight.
+// Sets the weights by blending: plays an animation group for each weight, and all groups have the same share in the
+// blend.
 export function blend({ scene }, weights) {
   weights.forEach((weight, k) => {
     const group = new AnimationGroup(`group ${k}`, scene);
@@ -76,7 +77,8 @@ export const detach = ({ scene }) => live.detach(scene);
 
 export const dispose = ({ scene }) => scene.dispose();
 
-// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
+// Draws the normals in world space and returns the pixels as RGBA in float32: (n + 1) / 2 in RGB, and alpha 0 where
+// nothing is drawn.
 export async function drawNormals({ scene }, { eye, at, degrees, near, far }, size) {
   engine.setSize(size.width, size.height);
   const camera = new FreeCamera('camera', Vector3.FromArray(eye), scene);

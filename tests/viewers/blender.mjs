@@ -7,9 +7,9 @@ export function runBlender(script, ...args) {
   return runBlenderAs({}, fileURLToPath(new URL(script, import.meta.url)), ...args);
 }
 
-// Runs the script at a path, and returns what Blender printed. `how` has options of spawnSync(), such as `env` and
-// `uid`. Blender uses one thread: with several threads, the sums of normals may differ from run to run, and so may the
-// bytes of its exports.
+// Runs the script at a path in Blender, and returns what Blender printed. `how` has options for spawnSync(), such as
+// `env` and `uid`. Blender uses one thread: with several threads, the sums of normals and the bytes of exported files
+// may differ from run to run.
 export function runBlenderAs(how, path, ...args) {
   const options = ['--background', '--factory-startup', '--threads', '1', '--python-exit-code', '1', '--python', path];
   const { status, stdout, stderr, error } = spawnSync('blender', [...options, '--', ...args], {

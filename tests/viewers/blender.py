@@ -11,7 +11,7 @@ import sys
 
 import numpy
 
-# The glTF add-on of Blender 3.4 uses a name that NumPy dropped in 1.24; Debian 12 has both.
+# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of both.
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 

@@ -1,8 +1,8 @@
-// Imports baked files into Blender, and bakes files that Blender exports. ctest runs this as `blender` if Blender is
-// installed (`./test --full pipelines` installs it).
+// Imports baked files into Blender, and bakes files that Blender exports. ctest runs this file as `blender` if Blender
+// is installed (`./test --full pipelines` installs it).
 //
-// Blender renders normals that it computes by itself, so a bake changes no picture in Blender. The bake must not change
-// the shape either, and an exported file can be baked again.
+// Blender computes normals by itself, so a bake changes no picture in Blender. The bake must not change the shape
+// either, and it must be possible to bake an exported file again.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -22,7 +22,7 @@ let folder;
 before(() => (folder = mkdtempSync(join(tmpdir(), 'chronormal_blender_'))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// Imports a file into Blender, and exports it as `again`.
+// Imports a file into Blender and exports it as the file `again`. Returns the report of blender.py.
 function throughBlender(input, again) {
   const report = `${again}.json`;
   runBlender('blender.py', input, report, again);
@@ -32,7 +32,8 @@ function throughBlender(input, again) {
 const audited = (path) => JSON.parse(chronormal('audit', path, '--json', '--quiet'));
 const kinds = (path) => audited(path).findings.map(({ kind }) => kind);
 
-// Returns the largest distance of a vertex from its earlier position. Shape keys must keep their names.
+// Returns the largest distance between a vertex before and the same vertex after. Fails if the names of shape keys have
+// changed.
 function distance(before, after) {
   assert.equal(after.meshes.length, before.meshes.length);
   let worst = 0;
@@ -46,7 +47,7 @@ function distance(before, after) {
   return worst;
 }
 
-// Gives the targets names, since Blender 3.4 does not import a target with an empty name.
+// Gives the targets of a file names, since Blender 3.4 does not import a target without a name.
 async function nameTargets(path) {
   const document = await newIO().read(path);
   for (const mesh of document.getRoot().listMeshes())
@@ -66,7 +67,7 @@ async function checkRoundTrip(context, original) {
     const imported = throughBlender(baked, again);
     const apart = distance(before, imported);
     context.diagnostic(`${encoding}: vertices are up to ${apart.toPrecision(2)} from where they were`);
-    // Blender 3.4 reads the values of a cubic spline, but not its tangents.
+    // Blender 3.4 imports the values of a cubic spline, but not its tangents.
     if (encoding === 'harmless') assert.ok(apart < 1e-5);
     assert.ok(imported.meshes.some(({ keys }, m) => keys.length > extras[m]), 'the bake added no target');
 
@@ -75,14 +76,14 @@ async function checkRoundTrip(context, original) {
     const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    // In the second file, Blender has computed the normals anew. They are not a polynomial, so the bake can only fit
-    // them.
+    // Blender has computed the normals of the second file anew. These normals are not a polynomial in the weights, so
+    // the bake can only approximate them.
     const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
       `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;
     context.diagnostic(outcome);
     assert.ok(second.mean_degrees_after <= Math.max(1.2 * first.mean_degrees_after + 0.05, 0.1 * second.mean_degrees_before), outcome);
-    // The surface must become better as a whole, but a single normal may become slightly worse.
+    // A bake must improve the surface as a whole, but a single normal may become slightly worse.
     assert.ok(second.worst_degrees_after <= 1.2 * second.worst_degrees_before + 0.05, outcome);
     const spare = join(folder, 'spare.glb');
     if (encoding === 'harmless') assert.ok(distance(throughBlender(again, spare), throughBlender(anew, spare)) < 1e-5);

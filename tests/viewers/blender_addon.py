@@ -22,8 +22,8 @@ ADDON = "chronormal_blender"
 
 
 def switch_on(program):
-    """Enables the add-on and sets its program in the preferences. The add-on is off after every start and every new
-    model."""
+    """Enables the add-on and sets the path of the program in its preferences. The add-on is disabled after every start
+    of Blender and in every new model."""
     bpy.ops.preferences.addon_enable(module=ADDON)
     preferences = bpy.context.preferences.addons[ADDON].preferences
     preferences.program = program
@@ -41,7 +41,8 @@ def select(o):
 
 
 def looked_at(o, over, judged):
-    """Checks an object by the panel. Returns degrees on average and at worst, the rows of the list, and the colours."""
+    """Lets the panel check an object. Returns the average and the worst error in degrees, the rows of the list, and the
+    colours."""
     select(o)
     state = bpy.context.window_manager.chronormal
     state.judged = judged
@@ -55,14 +56,14 @@ def looked_at(o, over, judged):
 
 
 def everything():
-    """Returns the names of all data in the file."""
+    """Returns the names of all data in the Blender file."""
     kinds = ("scenes", "objects", "meshes", "actions", "shape_keys", "materials")
     return {kind: sorted(one.name for one in getattr(bpy.data, kind)) for kind in kinds}
 
 
 def models(folder, program, seed):
-    """Exports every model without the add-on, with the add-on switched off, and with it switched on; and checks each
-    by the panel."""
+    """Exports every model three times: without the add-on, with the add-on switched off, and with it switched on. Also
+    lets the panel check each model."""
     result = {}
     for name in blender_truth.MODELS:
         truth, how = blender_truth.make(int(seed), name)
@@ -101,7 +102,8 @@ def models(folder, program, seed):
 
 
 def jumps(o):
-    """Jumps to the worst pair of keys. Returns what the panel listed for it, and what the panel shows there."""
+    """Jumps to the worst pair of keys. Returns what the panel lists about this pair, and what it shows after the
+    jump."""
     state = bpy.context.window_manager.chronormal
     if looked_at(o, "KEYS", "PLAIN")["findings"] == []:
         return None
@@ -116,7 +118,7 @@ def jumps(o):
 
 
 def failures(folder, program):
-    """Exports under conditions that make a bake fail. The folder has programs that fail."""
+    """Exports under conditions in which a bake fails. The folder has programs that fail."""
     truth, how = blender_truth.make(1, "triangles")
     path = lambda name: os.path.join(folder, name)  # noqa: E731
     blender_truth.export(path("plain.glb"), how)
@@ -151,7 +153,7 @@ def failures(folder, program):
 
 
 def leaves(folder, program):
-    """Compares Blender before the add-on was enabled with Blender after it was disabled."""
+    """Compares the state of Blender before the add-on was enabled with the state after it was disabled."""
     from io_scene_gltf2.io.exp import gltf2_io_export
 
     def state():
@@ -170,7 +172,7 @@ def leaves(folder, program):
     preferences.use = True
     looked_at(truth.object, "NOW", "BAKED")
     blender_truth.export(os.path.join(folder, "left.glb"), how)
-    # If an export fails before it writes, the replaced function stays in the exporter.
+    # If an export fails before it writes a file, the function that the add-on replaces remains in the exporter.
     part("export").before_export({})
     part("colours").show()
     during = state()
@@ -179,8 +181,8 @@ def leaves(folder, program):
 
 
 def by_hand(path, program):
-    """Imports a file without the add-on, and mutes its correction keys by the button. Returns the number of muted
-    keys."""
+    """Imports a file without the add-on, and mutes its correction keys by the button of the add-on. Returns the number
+    of muted keys."""
     bpy.ops.preferences.addon_disable(module=ADDON)
     bpy.ops.import_scene.gltf(filepath=path)
     switch_on(program)
@@ -193,7 +195,7 @@ def by_hand(path, program):
 
 
 def imports(folder, program, *names):
-    """Imports files and exports them again: NAME.glb as NAME.again.glb, and with the add-on switched off as
+    """Imports each file NAME.glb and exports it again: as NAME.again.glb, and with the add-on switched off as
     NAME.again_off.glb."""
     result = {}
     for name in names:
@@ -219,7 +221,7 @@ def imports(folder, program, *names):
 
 
 def installs(folder, archive):
-    """Installs the zip like the preferences do, and exports with the program inside."""
+    """Installs the zip file of the add-on as Blender's preferences do, and exports with the program in the zip file."""
     truth, how = blender_truth.make(1, "triangles")
     bpy.ops.preferences.addon_install(filepath=archive)
     preferences = switch_on("")

@@ -1,5 +1,5 @@
-// Uses the add-on of blender/ in Blender like a person, and compares the normals of its files with those that Blender
-// evaluates. ctest runs this as `blender` if Blender is installed.
+// Uses the add-on of blender/ in Blender as a person does. Compares the normals of the exported files with the normals
+// that Blender evaluates. ctest runs this file as `blender` if Blender is installed.
 //
 //   CHRONORMAL_SEED  another seed for the models and poses; the seed in use is printed
 import assert from 'node:assert/strict';
@@ -18,17 +18,17 @@ import { read, shownNormals } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 
-// The largest errors in degrees, as in blender_truth.test.mjs: AT_KEYS at the base and at keys, MEAN and WORST at times
-// of the animation.
+// The largest permitted errors in degrees, as in blender_truth.test.mjs: AT_KEYS is for the base and the keys, MEAN
+// (average) and WORST are for times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// The largest difference in degrees between two measurements of the same pose: the panel and this test match corners
-// and vertices in different ways.
+// The largest permitted difference, in degrees, between two measurements of the same pose. The panel and this test
+// match corners with vertices in different ways.
 const AGREE = 0.02;
 
-// In this model, edges become hard by their angle in deformed poses alone, which a morph target cannot represent.
+// Models in which edges become hard by their angle in deformed poses only. Morph targets cannot represent that.
 const HARD_IN_POSES = ['facets'];
 
 const PLAIN = /your plain export was kept/;
@@ -37,8 +37,7 @@ let folder, program;
 const at = (name) => join(folder, name);
 const bytes = (name) => readFileSync(at(name));
 
-// Runs a task of blender_addon.py, and returns its results. The add-on is the one in blender/, unless `how` names
-// another.
+// Runs a task of blender_addon.py and returns its results. Uses the add-on in blender/ unless `how` names another one.
 function run(how, task, ...args) {
   const env = { BLENDER_USER_SCRIPTS: at('user'), TMPDIR: folder, HOME: folder, ...how.env };
   runBlenderAs({ ...how, env }, at('scripts/blender_addon.py'), task, folder, ...args);
@@ -51,8 +50,8 @@ function write(name, text, mode) {
 }
 
 before(() => {
-  // All files are in a folder that every user may read. One task runs as another user, because root could write even
-  // into a folder that is closed to all.
+  // Puts all files into a folder that every user may read. One task runs as another user, because root could write even
+  // into a folder without write permission.
   folder = mkdtempSync(join(tmpdir(), 'chronormal_addon_'));
   chmodSync(folder, 0o777);
   program = at('chronormal');
@@ -69,7 +68,7 @@ after(() => rmSync(folder, { recursive: true, force: true }));
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// Returns the worst error of a file's vertices at one recorded instant.
+// Returns the worst error, in degrees, of the vertices of a file at one recorded instant.
 function worstAt(model, posed, i) {
   let worst = 0;
   model.exported.meshes[0].primitives.forEach((primitive, p) => {
@@ -111,8 +110,8 @@ describe('The add-on', () => {
         assert.ok(times.mean <= MEAN && times.worst <= WORST, `${form}: ${times.mean} / ${times.worst} degrees`);
       }
       own.diagnostic(said);
-      // The operator warns if the error halfway to a key exceeds the tolerance, which no file can avoid unless a
-      // program sets the weights of correction targets.
+      // The operator warns if the error halfway to a key exceeds the tolerance. No file can avoid this error unless a
+      // program sets the weights of the correction targets.
       assert.equal(level, said.includes('could not bring') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');
@@ -147,8 +146,8 @@ describe('The add-on', () => {
       if (jumps) assert.ok(Math.abs(jumps.said - jumps.there) < 1e-3 && jumps.ones === 2, JSON.stringify(jumps));
     }));
 
-  // Blender imports triangles with custom normals, so an imported file differs from the author's model. Therefore the
-  // baked file is compared with the plain file after both were imported and exported again.
+  // Blender imports triangles with custom normals, so an imported file differs from the author's model. The test
+  // therefore imports and exports both the baked file and the plain file, and compares the results.
   test('makes the corrections of a baked file idle when it is imported, and bakes the keys of its author again', async (context) => {
     const names = ['head', 'sharp_cylinder', 'triangles', 'mixed', 'weighted'];
     for (const name of names) chronormal('bake', at(`${name}.glb`), '-o', at(`${name}.baked.glb`), '--quiet');

@@ -1,15 +1,15 @@
-// Reads the normals that Blender evaluates for a model, which blender_truth.py has written, and compares them with a
-// viewer that adds up the deltas of a file.
+// Reads the normals that Blender evaluates for a model, which blender_truth.py has written. Compares them with the
+// normals that a viewer renders by adding up the deltas of a file.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { basename } from 'node:path';
 import { angle } from './exact.mjs';
 import { nodeWeights, read, shownNormals } from './reader.mjs';
 
-// The largest distance at which two positions count as equal; models are about two units wide.
+// Two positions at this distance or less count as equal. Models are about two units wide.
 const ROUNDING = 1e-5;
 
-// Reads a file by blender_truth.py: {loops, instants, place(instant, loop), normal(instant, loop)}.
+// Reads a file of blender_truth.py. Returns {loops, instants, place(instant, loop), normal(instant, loop)}.
 export function readTruth(path) {
   const { loops, instants } = JSON.parse(readFileSync(`${path}.json`, 'utf8'));
   const bytes = readFileSync(`${path}.bin`);
@@ -28,8 +28,9 @@ const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
-// Returns, for each vertex of an exported primitive, the loop of Blender's mesh from which it was made. The loop has
-// the same position in the base and at each key. If several loops do, the one with the nearest normals is taken.
+// Returns, for each vertex of an exported primitive, the loop (corner of a polygon) of Blender's mesh from which the
+// vertex was made. This loop has the same position in the base and at each key. If several loops have, the loop with
+// the nearest normals is taken.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];
@@ -52,7 +53,7 @@ export function truthOf({ truth }, instant, loops) {
   return Float32Array.from({ length: 3 * loops.length }, (_, i) => truth.normal(instant, loops[Math.floor(i / 3)])[i % 3]);
 }
 
-// Reads a model: {name, path, truth, exported, loops}. `path` is without the extension. `loops` has an array for each
+// Reads a model: {name, path, truth, exported, loops}. `path` has no extension, and `loops` has an array for each
 // primitive.
 export async function readModel(path) {
   const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];
@@ -60,15 +61,15 @@ export async function readModel(path) {
   return { name: basename(path), path, truth, exported, loops };
 }
 
-// Returns the degrees between the normals of a file that was baked from a model and Blender's normals: {stills, times},
-// each {mean, worst}. The stills are the base and the keys.
+// Compares the normals of a file that was baked from a model with Blender's normals. Returns the errors in degrees:
+// {stills, times}, each {mean, worst}. The stills are the base and the keys.
 export function errors(file, { truth, exported, loops }) {
   const result = { stills: { sum: 0, count: 0, worst: 0 }, times: { sum: 0, count: 0, worst: 0 } };
   file.meshes[0].primitives.forEach((primitive, p) => {
     assert.deepEqual(primitive.positions, exported.meshes[0].primitives[p].positions);
     truth.instants.forEach(({ time, weights }, i) => {
       const still = time === undefined;
-      // A bake adds targets, whose weights are 0 when a single key is set.
+      // When a single key is set, the weights of the targets that a bake has added are 0.
       const alone = file.meshes[0].weights.map((_, k) => weights[k] ?? 0);
       const normals = shownNormals(primitive, still ? alone : nodeWeights(file, 0, file.animations[0], time));
       const kind = still ? result.stills : result.times;

@@ -16,7 +16,7 @@ import sys
 
 import numpy
 
-# The glTF add-on of Blender 3.4 uses a name that NumPy dropped in 1.24; Debian 12 has both.
+# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of both.
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 
@@ -29,7 +29,7 @@ KEYFRAMES = [0, 12, 24, 36, 48]
 INSTANTS = [0, 3, 6, 9, 12, 15, 18, 21, 24, 27, 30, 33, 36, 39, 42, 45, 48]
 
 
-# Deformations. Each function draws its parameters, and returns a function that moves the position of a vertex.
+# The deformations. Each function draws its parameters, and returns a function that moves the position of a vertex.
 
 def bend(draw, _):
     across, along = draw.sample(range(3), 2)
@@ -49,16 +49,16 @@ def wave(draw, _):
 
 
 def dent(draw, places):
-    """Moves only a few of the vertices."""
+    """Moves only some of the vertices."""
     center, radius, size = draw.choice(places), draw.uniform(0.5, 0.8), draw.choice((-1, 1)) * draw.uniform(0.15, 0.3)
     way = center.normalized() if center.length > 0.1 else Vector((0, 0, 1))
     return lambda co: co + way * (size * max(0, 1 - (co - center).length_squared / radius**2) ** 2)
 
 
-# Models. Each function makes an object with a mesh and no keys, about two units wide.
+# The models. Each function makes an object with a mesh, about two units wide and without keys.
 
 def edit(mesh, change):
-    """Changes a mesh by a function of its BMesh."""
+    """Calls change() with a BMesh of a mesh, and writes the changed BMesh back."""
     editable = bmesh.new()
     editable.from_mesh(mesh)
     change(editable)
@@ -77,7 +77,7 @@ def cut_in_rows(editable, cuts):
 
 
 def apply(o, kind, **settings):
-    """Applies a modifier."""
+    """Applies a modifier of a kind, with these settings, to an object."""
     modifier = o.modifiers.new(kind, kind)
     for name, value in settings.items():
         setattr(modifier, name, value)
@@ -85,8 +85,8 @@ def apply(o, kind, **settings):
 
 
 def split_at_sharp_edges(o, is_sharp):
-    """Marks edges as sharp. is_sharp tells from a BMesh edge whether to mark it. Normals are then split only at these
-    edges, in every pose."""
+    """Marks the edges as sharp for which is_sharp, given a BMesh edge, returns true. Normals are then split at exactly
+    these edges, in every pose."""
     def mark(editable):
         for edge in editable.edges:
             edge.smooth = not is_sharp(edge)
@@ -96,7 +96,7 @@ def split_at_sharp_edges(o, is_sharp):
 
 
 def tube(draw, rows):
-    """Makes a closed cylinder with n-gons as caps and rows of quads around it."""
+    """Makes a closed cylinder: rows of quads, and a polygon with many corners as each cap."""
     bpy.ops.mesh.primitive_cylinder_add(vertices=draw.randrange(11, 17), radius=0.7)
     o = bpy.context.object
 
@@ -120,7 +120,7 @@ def sharp_cylinder(draw):
 
 
 def polygons(draw):
-    """Makes a mesh of n-gons by dissolving edges."""
+    """Makes a mesh of polygons with many corners, by dissolving edges."""
     o = tube(draw, 8)
 
     def dissolve(editable):
@@ -131,7 +131,7 @@ def polygons(draw):
 
 
 def weighted(draw):
-    """Makes a bevelled block with custom normals, which Blender's modifier for weighted normals computes."""
+    """Makes a bevelled block with the custom normals of Blender's modifier for weighted normals."""
     bpy.ops.mesh.primitive_cube_add(size=1.4)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 3))
@@ -144,8 +144,8 @@ def weighted(draw):
 
 
 def ball(draw):
-    """Makes rows of quads between two poles of triangles, with texture coordinates that have a seam. (The vertices
-    of Blender's own sphere are in another order in every run.)
+    """Makes rows of quads between two poles of triangles. The texture coordinates have a seam. Blender's own sphere is
+    not used, since the order of its vertices changes from run to run.
     """
     rows, columns = draw.randrange(9, 13), draw.randrange(14, 19)
 
@@ -173,7 +173,8 @@ def ball(draw):
 
 
 def mixed(draw):
-    """Makes triangles, quads and flat faces; flat faces also contribute to the normals of smooth corners."""
+    """Makes triangles, quads and flat-shaded faces. Flat-shaded faces also contribute to the normals of smooth
+    corners."""
     o = ball(draw)
 
     def cut(editable):
@@ -183,14 +184,15 @@ def mixed(draw):
 
 
 def mixed_split(draw):
-    """Makes triangles, quads and flat faces. The normals of smooth faces are split where they meet flat faces."""
+    """Makes triangles, quads and flat-shaded faces. The normals of smooth faces are split where they meet flat-shaded
+    faces."""
     o = mixed(draw)
     split_at_sharp_edges(o, lambda edge: False)
     return o
 
 
 def mirrored(draw):
-    """Makes two halves that meet in a seam, in an object of negative scale."""
+    """Makes two halves that meet at a seam, in an object with a negative scale."""
     bpy.ops.mesh.primitive_cube_add(size=2)
     o = bpy.context.object
     roundness = draw.uniform(0.3, 0.7)
@@ -217,7 +219,7 @@ def materials(draw):
 
 
 def facets(_):
-    """Makes a flat-shaded cube with planar sides, in which edges inside a side become hard only in keys."""
+    """Makes a flat-shaded cube with planar sides. Edges inside a side become hard only in keys."""
     bpy.ops.mesh.primitive_cube_add(size=1.6)
     o = bpy.context.object
     edit(o.data, lambda editable: cut_in_rows(editable, 2))
@@ -233,19 +235,19 @@ def grid(draw, height):
 
 
 def triangles(draw):
-    """Makes a grid of plain triangles, cut as an exporter cuts quads."""
+    """Makes a grid of triangles, which are cut as an exporter cuts quads."""
     o = grid(draw, 0.3)
     edit(o.data, lambda editable: bmesh.ops.triangulate(editable, faces=editable.faces[:], quad_method="FIXED"))
     return o
 
 
 def sheet(draw):
-    """Makes a planar grid of quads, so that only keys depend on the weighting of normals."""
+    """Makes a planar grid of quads, in which only the keys depend on the weighting of normals."""
     return grid(draw, 0)
 
 
 def darts(draw):
-    """Makes a grid of uneven quads, some of them concave, which Blender cuts along their other diagonal."""
+    """Makes a grid of uneven quads. Some are concave, so Blender cuts them along their other diagonal."""
     o = grid(draw, 0.2)
     for vertex in o.data.vertices:
         vertex.co += Vector([draw.uniform(-size, size) for size in (0.1, 0.1, 0.02)])
@@ -261,7 +263,7 @@ def authored(draw):
     return o
 
 
-# The models by NAME: the function that makes each, its keys, and the interpolation of its animation.
+# The models: the name, the function that makes the model, its keys, and the interpolation of its animation.
 LINEAR, CUBIC, SAMPLED = "LINEAR", "BEZIER", "every frame"
 MODELS = {
     "head": (head, (bend, bulge), LINEAR),
@@ -293,7 +295,7 @@ def add_keys(o, draw, deformations):
 
 
 def animate(o, keys, draw, how):
-    """Adds keyframes that go from the base to each key in turn, with a share of the other keys."""
+    """Adds keyframes that go from the base to each key, one after the other. The other keys get smaller weights."""
     for n, frame in enumerate(KEYFRAMES):
         for i, key in enumerate(keys):
             key.value = 0 if n == 0 else 1 if (n - 1) % len(keys) == i else draw.uniform(0, 0.7)
@@ -304,14 +306,16 @@ def animate(o, keys, draw, how):
         slopes = [(after - before) / 24 for before, after in zip(values[:1] + values, values[1:] + values[-1:])]
         for point, slope in zip(points, slopes):
             point.interpolation = CUBIC if how == CUBIC else LINEAR
-            # Handles at a third of the gap make the curve a cubic in time, which glTF can represent.
+            # If handles are at a third of the gap between keyframes, the curve is a cubic in time, which glTF can
+            # represent.
             point.handle_left_type = point.handle_right_type = "FREE"
             point.handle_left = point.co - Vector((4, 4 * slope))
             point.handle_right = point.co + Vector((4, 4 * slope))
 
 
 def evaluated(o):
-    """Returns the position and normal of each loop as Blender evaluates them now, in the axes of glTF."""
+    """Returns the position and the normal of each loop, as Blender evaluates them at the current frame, in the axes of
+    glTF."""
     bpy.context.view_layer.update()
     graph = bpy.context.evaluated_depsgraph_get()
     instance = o.evaluated_get(graph)
@@ -328,7 +332,7 @@ def evaluated(o):
 
 
 class Truth:
-    """A record of Blender's evaluation of an object. note() adds the instant that the scene is at."""
+    """Records what Blender evaluates for an object. note() adds the current frame of the scene as an instant."""
 
     def __init__(self, o, keys):
         self.object, self.keys, self.instants, self.loops = o, keys, [], []
@@ -345,7 +349,7 @@ class Truth:
 
 
 def make(seed, name):
-    """Makes a model in an empty scene, and records Blender's evaluation. Returns (truth, interpolation of the
+    """Makes a model in an empty scene and records what Blender evaluates for it. Returns (truth, interpolation of the
     animation)."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene

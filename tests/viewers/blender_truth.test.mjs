@@ -1,5 +1,5 @@
-// Compares `audit` and `bake` with the normals that Blender evaluates for models that it exports. ctest runs this as
-// `blender` if Blender is installed.
+// Compares the results of `audit` and `bake` with the normals that Blender evaluates for models that Blender exports.
+// ctest runs this file as `blender` if Blender is installed.
 //
 //   CHRONORMAL_SEED  another seed for the models; the seed in use is printed
 import assert from 'node:assert/strict';
@@ -14,8 +14,8 @@ import { read } from './reader.mjs';
 
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 
-// The allowed errors in degrees. AT_KEYS is for the base and for each key alone. The other two are for times of the
-// animation: the average error, and the worst error.
+// The largest permitted errors in degrees. AT_KEYS is for the base and for each key alone. MEAN, for the average error,
+// and WORST are for times of the animation.
 const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
@@ -23,7 +23,7 @@ const WORST = 1;
 const text = ({ stills, times }) =>
   [stills, times].map(({ mean, worst }) => `${mean.toFixed(4)} / ${worst.toFixed(3)}`).join(', at times ');
 
-// Bakes a file. Exit code 4 is accepted: the closest result exceeds the tolerance.
+// Bakes a file. Exit code 4 is accepted, since the closest result may exceed the tolerance.
 function bake(...args) {
   try {
     chronormal('bake', ...args, '--no-audit', '--quiet');
@@ -41,7 +41,7 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// Checks the audit of the animation. The audit samples all recorded times, and further times.
+// Checks the audit of an animation. The audit takes samples at all recorded times and at other times.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');
   const message = `audit ${mean} / ${worst} degrees, Blender ${times.mean} / ${times.worst}`;
@@ -59,7 +59,7 @@ describe("Blender's own normals", () => {
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  // Runs check(model, context of the subtest) for each model.
+  // Calls check(model, context of the subtest) for each model, as a subtest.
   async function eachModel(context, check) {
     context.diagnostic(`CHRONORMAL_SEED=${SEED}`);
     for (const model of models) await context.test(model.name, (own) => check(model, own));
@@ -79,8 +79,8 @@ describe("Blender's own normals", () => {
       assertSameBetween(audited, errors(model.exported, model));
     }));
 
-  // In deformed poses, edges of `facets` become hard by their angle. The exporter has already decided in the base which
-  // corners share a vertex.
+  // In deformed poses, some edges of `facets` become hard because of their angle. But the exporter decides in the base
+  // pose which corners share a vertex.
   test('are shown at every time after a bake for a viewer that adds up deltas', (context) =>
     eachModel(context, async (model, own) => {
       const baked = `${model.path}.closest.glb`;

@@ -1,5 +1,5 @@
-// Runs headless Chromium with the page of page.mjs. The page can load only the files below; all other requests are
-// refused.
+// Runs headless Chromium with the page of page.mjs. The page can load only the files below; requests for other files
+// are refused.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
@@ -10,7 +10,7 @@ import puppeteer from 'puppeteer-core';
 const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-// The script filament.js defines the global variable `Filament`, which loads its wasm module when it starts.
+// The script filament.js defines the global variable `Filament`, which loads a wasm module when it starts.
 const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
 <script src="filament.js"></script><script src="page.js"></script>`;
 
@@ -40,7 +40,7 @@ export function launch() {
 
 const TYPES = { '/': 'text/html', js: 'text/javascript', html: 'text/html', wasm: 'application/wasm' };
 
-// Starts a server on this machine; body(path) returns the content of a path, or nothing.
+// Starts a server on this machine. body(path) returns the content of the file at a path, or nothing.
 async function listen(body) {
   const server = createServer(({ url }, response) => {
     const found = body(url.slice(1));
@@ -51,8 +51,8 @@ async function listen(body) {
   return { address: `http://127.0.0.1:${server.address().port}/`, close: () => server.close() };
 }
 
-/** Serves a folder whose page is index.html. If `fallback` is given, it is returned for all paths that do not exist,
- * as some servers do. */
+/** Serves a folder whose page is index.html. If `fallback` is given, the server returns it for all paths that do not
+ * exist, as some servers do. */
 export function serveFolder(folder, fallback) {
   return listen((path) => {
     const file = join(folder, path === '' ? 'index.html' : path);
@@ -60,7 +60,8 @@ export function serveFolder(folder, fallback) {
   });
 }
 
-// Opens a page on a local server, which serves the files of folders by their names, and other given contents.
+// Opens a page on a server on this machine. `contents` maps a name to a folder, whose files are served, or to the
+// content of a file.
 export async function openFolder(contents) {
   const { address, close: stop } = await listen((path) => {
     const [first, ...rest] = path.split('/'), found = contents[first];

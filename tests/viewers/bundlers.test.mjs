@@ -1,6 +1,6 @@
-// Tests the npm package as its users bundle it. An application of a few lines audits a GLB in Chromium, with and
-// without a worker. It is built from the packed package by Vite, webpack, esbuild and rollup, as js/README.md says, or
-// used without a bundler.
+// Tests the npm package as users bundle it. An application of a few lines audits a GLB file in Chromium, with and
+// without a worker. Vite, webpack, esbuild and rollup bundle the application as js/README.md says, with the package as
+// npm packs it. The application is also used without a bundler.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
 //   tests/viewers/bundlers.test.mjs
@@ -59,7 +59,8 @@ function makeApp(name, files = {}) {
   return root;
 }
 
-// Returns the results of the audits that the page at an address shows. The page may load files only from that server.
+// Opens the page at an address and returns the results of the audits that it shows. The page may load files only from
+// its own server.
 async function saidAt(address) {
   const page = await browser.newPage(), faults = [];
   page.on('console', (message) => ['error', 'warn'].includes(message.type()) && faults.push(message.text()));
@@ -87,14 +88,14 @@ async function assertAuditsIn(served) {
   }
 }
 
-// Adds the files that a page needs besides scripts to the output folder of a bundler.
+// Adds to the output folder of a bundler the files that the page needs besides scripts.
 function complete(made) {
   writeFileSync(join(made, 'index.html'), HTML);
   writeFileSync(join(made, 'bumps.glb'), face);
   return made;
 }
 
-// Writes the settings for a bundler from the README into a folder, and returns them.
+// Writes the settings that the README shows for a bundler into a folder. Returns the settings.
 async function settings(root, name) {
   const code = [...readme.matchAll(/```js\n([^`]*)```/g)].map(([, text]) => text).find((text) => text.startsWith(`// ${name}\n`));
   assert.ok(code, `no ${name} in the README`);

@@ -1,5 +1,6 @@
-// Bakes a captured face of 57 targets in a worker, under Node.js and in a page. Tests that memory is enough, that the
-// page stays responsive, and that a call ends properly if it is stopped or gets too little memory. Takes minutes.
+// Bakes a captured face with 57 targets in a worker, under Node.js and in a page. Tests that there is enough memory,
+// that the page stays responsive, and that a call ends properly if it is stopped or gets too little memory. Takes
+// minutes.
 //
 //   CHRONORMAL_DATA   the folder of the real data
 import assert from 'node:assert/strict';
@@ -19,7 +20,7 @@ const { audit, bake, ChronormalError } = await load('index.node.js');
 describe('a captured face', { skip: NO_DATA }, () => {
   const face = DATA && new Uint8Array(readFileSync(join(DATA, 'rigs/ict_capture.glb')));
   if (DATA) writeFileSync(join(folder, 'face.glb'), face);
-  // Returns the file that the native program bakes from the face, and bakes it only once.
+  // Returns the file that the native program bakes from the face. Bakes the file only at the first call.
   let made;
   const expected = () => {
     if (!made) {
@@ -66,8 +67,8 @@ describe('a captured face', { skip: NO_DATA }, () => {
     const { openFolder } = await import('./browser.mjs');
     const { page, close } = await openFolder({ chronormal: installed, 'face.glb': face, 'page.html': '<!doctype html><title>page</title>' });
     try {
-      // The page starts the bake, and the test then asks for its state again and again, so that no single call takes
-      // minutes.
+      // The test starts the bake in the page and then asks for its state again and again, since no single call to the
+      // browser may take minutes.
       await page.evaluate((options) => {
         window.state = { ticks: 0, heard: 0 };
         const start = performance.now(), clock = setInterval(() => ++state.ticks, 100);

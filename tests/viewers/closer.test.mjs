@@ -1,5 +1,5 @@
-// Tests by pixels that the output of `chronormal bake` is closer to the true normals than its input, in every viewer.
-// ctest runs this as `in_viewers`.
+// Tests by comparing pixels that the output of `chronormal bake` is closer to the true normals than its input, in every
+// viewer. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM  the program
 //   CHRONORMAL_DATA     the folder with a head by Blender and a test of morphs, if set
@@ -28,7 +28,7 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/head.png', import.met
 const PICTURE_TIME = 1.25;
 const VIEWERS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
-// Differences below this many degrees are ignored, since PlayCanvas loses as much by rounding to half floats.
+// Differences of less than this, in degrees, are ignored: PlayCanvas loses as much by rounding to 16-bit floats.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', () => {
@@ -44,7 +44,7 @@ describe('what is baked is closer to the truth', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // Returns a function that calls f only once for the same arguments.
+  // Returns a function that calls f only once for the same arguments, and then returns the same result.
   function once(f) {
     const known = new Map();
     return (...all) => {
@@ -57,15 +57,16 @@ describe('what is baked is closer to the truth', () => {
   const bake = once((input, ...options) => {
     const name = [basename(input, extname(input)), 'baked', ...options].join('.');
     const output = join(folder, `${name}.glb`);
-    // The still files with the true normals use area weights. Therefore the bake uses area weights too, whatever the
+    // The still files with the true normals use area weights, so the bake uses area weights too, whatever weighting the
     // author chose.
     const how = options.includes('--encode') ? options : ['--encode', 'harmless', ...options];
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...how);
     return output;
   });
 
-  // Returns {files, moments} for an animation of a file: the file before and after the bake, and the true normals at
-  // some times. In the full test, files also has a bake by --encode exact, for the figures of docs/viewers.md.
+  // Returns {files, moments} for an animation of a file. `files` has the file before and after the bake, and `moments`
+  // the true normals at some times. In the full test, `files` also has the result of --encode exact, for the figures of
+  // docs/viewers.md.
   const prepare = once(async (input, animation) => {
     const unbaked = Buffer.from(await newIO().writeBinary(await newIO().read(input)));
     const baked = [bake(input), ...(FULL ? [bake(input, '--encode', 'exact')] : [])];
@@ -91,7 +92,7 @@ describe('what is baked is closer to the truth', () => {
     assert.ok(rows.every(([{ mean }, then]) => then.mean < mean + ROUNDING), shown);
   }
 
-  // Draws the picture of the head for the README, and compares it with the picture in the documents.
+  // Draws the picture of the head for the README, and compares it with the picture in docs/.
   async function assertPicture() {
     const input = join(DATA, 'rigs', 'blender_suzanne_two_keys.glb');
     const output = join(folder, 'head.glb');

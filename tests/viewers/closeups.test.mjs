@@ -1,6 +1,6 @@
-// Draws in three viewers a close-up of the place where an exported file has the most torn edges: from the file, from
-// the baked file, and from a still file with Blender's own normals at that time. Compares the pixels of the baked file
-// with those of the still file. ctest runs this as `blender` if Blender is installed.
+// Draws close-ups in three viewers, at the place where an exported file has the most torn edges. Each viewer draws the
+// exported file, the baked file, and a still file with Blender's own normals at the same time. Compares the pixels of
+// the baked file with those of the still file. ctest runs this file as `blender` if Blender is installed.
 //
 //   CHRONORMAL_SEED          another seed for the models; the seed in use is printed
 //   CHRONORMAL_UPDATE_DOCS=1 writes docs/pictures/closeups.jpg
@@ -21,29 +21,29 @@ import { newIO, nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 const SEED = process.env.CHRONORMAL_SEED ?? '51';
 const SIZE = { width: 320, height: 320 };
 const PICTURE = fileURLToPath(new URL('../../docs/pictures/closeups.jpg', import.meta.url));
-const SHOWN = 'mirrored';  // the model in the documents' picture
-const TORN = 10;         // jump of the error over an edge, in degrees, that counts as torn
-// The width of the visible part of a model, and of the neighbourhood of a vertex in which torn edges are counted, as a
-// share of the model's size.
+const SHOWN = 'mirrored';  // the model in the picture of the documents
+const TORN = 10;         // an edge counts as torn if the error jumps by this many degrees
+// The width of the part of a model that a close-up shows, as a share of the size of the model. Torn edges are counted
+// in a neighbourhood of a vertex of the same size.
 const NEAR = 0.35;
 
-// The share of the error that may remain in these pixels. It is larger in Filament, which does not add up deltas but
-// keeps unit normals. `facets` is left out, since its edges become hard by angles in a pose, which no file can
-// represent.
+// The share of the error that may remain in the pixels of each viewer. It is larger in Filament, which does not add up
+// deltas but keeps unit normals. `facets` is skipped, since some of its edges become hard in a pose because of their
+// angle, which no file can represent.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
-const ROUNDING = 0.1;    // degrees of error by eight bits per colour, and by the viewer's own interpolation
+const ROUNDING = 0.1;    // in degrees, because of eight bits per colour and the interpolation of the viewer
 const VIEWERS = Object.keys(KEPT);
 
 const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const minus = (a, b) => a.map((x, c) => x - b[c]);
 const unit = (a) => a.map((x) => x / (length(a) || 1));
 
-// Returns the instant and the place of an exported file at which the surface has the most torn edges around it: {time,
-// at, from, radius}. `from` is a direction.
+// Returns the instant and the place at which an exported file has the most torn edges: {time, at, from, radius}. `from`
+// is the direction from which to look at the place.
 function mostTorn({ exported, truth, loops }) {
   let most = { count: -1 };
   truth.instants.forEach(({ time }, instant) => {
-    // At the end of an animation, Filament starts again from the beginning.
+    // Filament plays an animation from the beginning again when its end is reached, so the end is skipped.
     if (time === undefined || time >= exported.animations[0].end) return;
     exported.meshes[0].primitives.forEach((primitive, p) => {
       const weights = nodeWeights(exported, 0, exported.animations[0], time);
@@ -65,17 +65,17 @@ function mostTorn({ exported, truth, loops }) {
   return most;
 }
 
-// Returns a camera that looks at a place from the side of its normal.
+// Returns a camera that looks at a place from the side to which its normal points.
 function cameraAt({ at, from, radius }) {
   const degrees = 35, distance = (NEAR * radius) / Math.tan((degrees * Math.PI) / 360);
   const direction = unit(from.map((x, c) => x + [0.2, 0.3, 0.25][c]));
   return { eye: at.map((x, c) => x + distance * direction[c]), at, degrees, near: distance / 50, far: distance + 3 * radius };
 }
 
-// Returns the model at an instant as a file that does not move, with Blender's normals.
+// Returns the model at an instant as a file that does not move and has Blender's normals.
 async function stillAt({ path, exported, truth, loops }, { time, instant }) {
   const io = newIO(), document = await io.read(`${path}.glb`), root = document.getRoot();
-  // Filament reads beyond its memory if the extras name targets that do not exist.
+  // Filament reads beyond its memory if the extras name targets that the file does not have.
   root.listMeshes()[0].setWeights([]).setExtras({}).listPrimitives().forEach((primitive, p) => {
     const described = exported.meshes[0].primitives[p];
     const weights = nodeWeights(exported, 0, exported.animations[0], time);

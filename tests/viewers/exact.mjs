@@ -1,6 +1,6 @@
-// Computes the true normals of the vertices of a mesh from positions alone, in double. A true normal is the sum of
-// cross products over the faces around a point, turned by the rotation that takes the normal of the base's geometry to
-// the stored normal.
+// Computes the true normals of the vertices of a mesh from positions, in double. The sum of cross products over the
+// faces around a point gives the normal of the geometry. A rotation that takes the geometry's normal in the base to the
+// stored normal turns this sum into the true normal.
 const SAME_NORMAL = Math.cos((0.1 * Math.PI) / 180);
 
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -9,13 +9,13 @@ export const length = (a) => Math.hypot(a[0], a[1], a[2]);
 const scaled = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 const vector = (array, i) => [array[3 * i], array[3 * i + 1], array[3 * i + 2]];
 
-// Returns the degrees between two vectors.
+// Returns the angle between two vectors in degrees.
 export function angle(a, b) {
   return (Math.atan2(length(cross(a, b)), dot(a, b)) * 180) / Math.PI;
 }
 
-// Turns v by the smallest rotation that takes the direction of `from` to the direction of `to`. Returns v if one of the
-// two is zero, or if they are opposite, since then no rotation is the smallest.
+// Turns v by the smallest rotation from the direction of `from` to the direction of `to`. Returns v if one of the two
+// is zero, or if the two are opposite, since no rotation is then the smallest.
 function turned(v, from, to) {
   if (length(from) === 0 || length(to) === 0) return v;
   const a = scaled(from, 1 / length(from));
@@ -29,9 +29,9 @@ function turned(v, from, to) {
 }
 
 export class ExactNormals {
-  // Takes a mesh as reader.mjs describes it. Vertices at the same place in the base and in every target are one point,
-  // even in different primitives. They share a normal if their stored normals agree. Primitives without normals are
-  // flat: viewers compute their normals.
+  // Takes a mesh in the form of reader.mjs. Vertices that are at the same place in the base and in every target are one
+  // point, even in different primitives. Vertices of a point share a normal if their stored normals agree. Primitives
+  // without normals are flat: viewers compute their normals.
   constructor(mesh) {
     this.primitives = mesh.primitives.filter((primitive) => primitive.triangles);
     this.elements = 0;
@@ -57,7 +57,7 @@ export class ExactNormals {
     return result;
   }
 
-  // Returns n(w) of every element, not normalised.
+  // Returns n(w) of every element. The vectors do not have length 1.
   sums(weights) {
     const sums = new Float64Array(3 * this.elements);
     this.primitives.forEach((primitive, p) => {
@@ -73,9 +73,9 @@ export class ExactNormals {
     return sums;
   }
 
-  // Returns for each primitive null if it is flat, or else {directions, lengths}. `directions` has the true normal of
-  // each vertex, not normalised; `lengths` has the length of its sum of cross products. Both are zero for vertices in
-  // no triangle of the primitive.
+  // Returns for each primitive null if it is flat, and otherwise {directions, lengths}. `directions` has the true
+  // normal of each vertex, whose length is not 1. `lengths` has the length of the sum of cross products at the vertex.
+  // Both are zero for vertices in no triangle of the primitive.
   at(weights) {
     const sums = this.sums(weights);
     return this.primitives.map((primitive, p) => {

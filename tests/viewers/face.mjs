@@ -1,5 +1,5 @@
-// Extracts a face from a file in which nothing drives its targets. The result has only the face, without skins, and a
-// new animation in which all targets are active at once.
+// Extracts a face from a file in which nothing drives the targets of the face. The result has only the face, without
+// skins, and a new animation that activates all targets.
 import { writeFileSync } from 'node:fs';
 import { moves } from './judge.mjs';
 import { describe, newIO } from './reader.mjs';
@@ -17,7 +17,8 @@ export async function writeMovingFace(input, output) {
   writeFileSync(output, await newIO().writeBinary(document));
 }
 
-// Adds an animation that activates the targets one after the other. The earlier targets stay active at a half.
+// Adds an animation that activates the targets one after the other. Targets that were activated before keep a weight of
+// 1/2.
 function addAnimation(document, node) {
   const count = node.getMesh().listPrimitives()[0].listTargets().length;
   const rows = Array.from({ length: count + 1 }, (_, key) =>

@@ -1,5 +1,5 @@
-// Tests the panel of a face. Compares its values with `compare --face` of the program, and its pictures with values
-// that are computed from this output.
+// Tests the panel about one face of a mesh. Compares the values in the panel with the output of `compare --face`, and
+// its pictures with values that are computed from this output.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -21,7 +21,7 @@ export function figureByProgram({ from, to }, schemes, samples) {
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const vector = (flat, i) => flat.slice(3 * i, 3 * i + 3);
 
-/** Fails unless two figures have the same numbers. Paths that were rounded to float32 may differ in the last digits. */
+/** Fails unless two figures have the same numbers. If paths were rounded to float32, the last digits may differ. */
 export function assertSameFigure(found, expected) {
   assert.deepEqual(found.t, expected.t);
   found.schemes.forEach((one, k) => {
@@ -75,7 +75,7 @@ export async function assertShown(page, expected) {
     const along = (axis) => 135 * zoom * (dot(normal, axis) - dot(middle, axis));
     assert.ok(Math.hypot(x - (170 + along(right)), y - (160 - along(up))) < 0.05 * zoom, `${name} is drawn elsewhere`);
   }
-  // The exact normal's mark is drawn last and is therefore on top.
+  // The mark of the exact normal is drawn last, so no other mark covers it.
   const last = shown.marks.at(-1), wanted = [1, 3, 5].map((i) => parseInt(last.fill.slice(i, i + 2), 16));
   assert.equal(last.name, 'exact');
   last.pixel.forEach((value, c) => assert.ok(Math.abs(value - wanted[c]) < 12, `the pixel of the exact normal is ${last.pixel}, not ${wanted}`));

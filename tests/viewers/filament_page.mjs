@@ -1,16 +1,16 @@
-// Filament as a viewer in the page: its loader, its animator, and a light that makes its glTF material show normals as
-// colours. browser.mjs loads `Filament` itself into the page.
+// Makes Filament a viewer in the test page: its loader, its animator, and a light under which its glTF material shows
+// normals as colours. browser.mjs loads `Filament` itself into the page.
 //
 // Under a light from all sides with the irradiance (n + 1) / 2 in three colours, a white and rough surface shows k (n +
-// 1) / 2, where k depends on the material and the view. Under a light of 1, the same surface shows k, so the quotient
-// gives n.
+// 1) / 2, where k depends on the material and the view. Under a light of 1 from all sides, the same surface shows k, so
+// the quotient of the two pictures gives n.
 
-// Spherical harmonics in RGB, in the order 1, y, z, x.
+// Spherical harmonics of a light in RGB, in the order 1, y, z, x.
 const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EXPOSURE = [16, 1 / 125, 100];  // aperture, shutter and sensitivity
-const INTENSITY = 38_400;  // with this light and exposure, white is 1
+const INTENSITY = 38_400;  // the intensity of the light at which, with this exposure, white is 1
 const JSON_AT = 20;
 
 let viewer;
@@ -33,7 +33,7 @@ function createViewer() {
   return { gl, camera, engine, lights, loader, renderer, scene, swapChain, view };
 }
 
-// Records the framebuffer of the last drawing, since Filament has no function in JavaScript to read pixels.
+// Remembers the framebuffer of the last drawing, since Filament has no JavaScript function that reads pixels.
 function framebuffersNoted(gl) {
   const bind = gl.bindFramebuffer.bind(gl);
   gl.bindFramebuffer = (target, framebuffer) => {
@@ -53,7 +53,7 @@ async function loadAs(bytes, material) {
   return { asset, animator: asset.getInstance().getAnimator() };
 }
 
-// Returns a GLB in which all meshes have the same material, without textures.
+// Returns a GLB file in which all meshes have the same material without textures.
 function withMaterial(bytes, pbrMetallicRoughness) {
   const length = new DataView(bytes.buffer, bytes.byteOffset).getUint32(12, true);
   const json = JSON.parse(new TextDecoder().decode(bytes.subarray(JSON_AT, JSON_AT + length)));
@@ -73,7 +73,8 @@ function withMaterial(bytes, pbrMetallicRoughness) {
   return result;
 }
 
-// Sets all objects to a time by the animator, which starts an animation again when it ends.
+// Moves all objects to where they are at a time, by the animator. At the end of an animation, the animator starts again
+// from the beginning.
 export function play({ animator }, animation, time) {
   if (animation !== null) animator.applyAnimation(animation, time);
 }
@@ -82,7 +83,8 @@ export function dispose({ asset }) {
   viewer.loader.destroyAsset(asset);
 }
 
-// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
+// Draws the normals in world space and returns the pixels as RGBA in float32: (n + 1) / 2 in RGB, and alpha 0 where
+// nothing is drawn.
 export async function drawNormals({ asset }, viewed, size) {
   const { engine, lights, scene, view } = viewer;
   const { Filament } = window;
@@ -116,7 +118,8 @@ function lookFrom({ eye, at, degrees, near, far }, size) {
 async function render(light) {
   const { engine, renderer, scene, swapChain, view } = viewer;
   scene.setIndirectLight(light);
-  // Filament refuses a frame until the browser has reported, in a separate task, that an earlier frame is done.
+  // Filament refuses to draw a frame until the browser, in a separate task, has reported that an earlier frame is
+  // finished.
   while (!renderer.beginFrame(swapChain)) {
     engine.execute();
     await new Promise((resolve) => setTimeout(resolve));
@@ -138,8 +141,8 @@ async function drawn(light, { width, height }) {
 const BLUE_MATERIAL = { baseColorFactor: [0.03, 0.22, 0.47, 1], metallicFactor: 0.1, roughnessFactor: 0.35 };
 const SKY = [0.5, 0.55, 0.6, 0.25, 0.27, 0.3, 0.1, 0.1, 0.1, -0.1, -0.1, -0.1];
 
-// Returns a canvas with a file at a time of an animation, lit by a sun and a sky, on a transparent background. The next
-// call overwrites the canvas.
+// Returns a canvas that shows a file at a time of an animation, lit by a sun and a sky, on a transparent background.
+// The next call overwrites the canvas.
 export async function drawLit(bytes, animation, time, viewed, size) {
   const model = await loadAs(bytes, BLUE_MATERIAL);
   const { Filament } = window;

@@ -1,6 +1,6 @@
-// Compares how the program and npm meshoptimizer, which runs in browsers, decode the filters of
-// EXT_meshopt_compression. Normals must agree bit for bit. Each filter is applied to positions, since `chronormal
-// convert` can write positions.
+// Compares how two programs decode the filters of EXT_meshopt_compression: chronormal, and the npm package
+// meshoptimizer, which runs in browsers. Normals must agree bit for bit. Each filter is applied to positions, since
+// `chronormal convert` can write positions.
 //
 //   CHRONORMAL_PROGRAM        the program
 import assert from 'node:assert/strict';
@@ -16,8 +16,9 @@ const BYTE = 5120;
 const SHORT = 5122;
 const FLOAT = 5126;
 
-// Returns coded vectors for each number of bits: every (x, y) on a grid of at most mostSteps steps along each side of
-// the square. With few bits, these are all possible values. tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
+// Returns encoded vectors for each number of bits from leastBits to mostBits: all (x, y) on a grid with at most
+// mostSteps steps along each side of the square. If there are few bits, these are all possible values.
+// tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {
   const elements = [];
   for (let bits = leastBits; bits <= mostBits; ++bits) {
@@ -30,7 +31,7 @@ function lattice(T, leastBits, mostBits, mostSteps) {
   return T.from(elements);
 }
 
-// Returns a generator of numbers 0 <= x < 1, the same in every run.
+// Returns a function that draws numbers 0 <= x < 1. The numbers are the same in every run.
 function randomNumbers(seed) {
   let state = seed;
   return () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
@@ -64,7 +65,7 @@ const encoded = (elements, count) => {
   return MeshoptEncoder.encodeGltfBuffer(bytes, count, bytes.length / count, 'ATTRIBUTES', 0);
 };
 
-// Decodes compressed elements like a browser.
+// Encodes elements and decodes them as a browser does.
 function decoded(elements, count, filter) {
   const target = new Uint8Array(elements.byteLength);
   MeshoptDecoder.decodeGltfBuffer(target, count, target.length / count, encoded(elements, count), 'ATTRIBUTES', filter);
@@ -80,7 +81,8 @@ function chunk(type, bytes) {
   return Buffer.concat([head, bytes]);
 }
 
-// Makes a file whose positions are the first three numbers of compressed elements, with a target without effect.
+// Makes a GLB file whose positions are the first three numbers of compressed elements. It has a target that moves
+// nothing.
 function glbOf(elements, count, componentType, filter) {
   const stream = encoded(elements, count);
   const compression = { buffer: 0, byteLength: stream.length, byteStride: elements.byteLength / count, count, filter };
@@ -129,7 +131,8 @@ describe('the program decodes as browsers do', () => {
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  // Returns the positions that the program reads, which it writes as float32 after the header of a PLY file.
+  // Returns the positions that the program reads from such a file. The program writes them as float32 after the header
+  // of a PLY file.
   function positionsOf(elements, count, componentType, filter) {
     const input = join(folder, `${filter}.glb`);
     writeFileSync(input, glbOf(elements, count, componentType, filter));

@@ -1,9 +1,10 @@
-// Makes moving glTF files: a tube that twists, waves and swells, with various properties that make a bake difficult.
+// Makes moving glTF files: a tube that twists, waves and swells. Each file has a property that makes a bake difficult.
 import { Accessor, Document } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { newIO } from './reader.mjs';
 
-// Makes a tube around the y axis, open at both ends: rows x columns quads of two triangles each.
+// Makes the triangles of a tube around the y axis that is open at both ends: rows x columns quads of two triangles
+// each.
 function tube(columns, rows) {
   const indices = [];
   for (let r = 0; r < rows; ++r) {
@@ -16,7 +17,7 @@ function tube(columns, rows) {
   return { columns, rows, indices: Uint16Array.from(indices) };
 }
 
-// Places each vertex at place(angle, height), where height goes from -1 to 1.
+// Returns the positions of the vertices of a tube: place(angle, height), where the height is between -1 and 1.
 function placed({ columns, rows }, place) {
   const positions = [];
   for (let r = 0; r <= rows; ++r)
@@ -30,7 +31,7 @@ function twisted(turn) {
   return (a, y) => straight(a + turn * (y + 1) * 0.5, y);
 }
 
-// Makes ripples around the axis and along it.
+// Returns a position on a tube with ripples around and along its axis.
 function waved(a, y) {
   const radius = 0.55 + 0.22 * Math.sin(9 * y + 2 * a);
   return [radius * Math.cos(a), y, radius * Math.sin(a)];
@@ -52,7 +53,7 @@ function unitNormals(positions, indices) {
   return result;
 }
 
-// Makes a primitive for writeFile(): base and targets, with the true normals of each shape stored.
+// Makes a primitive for writeFile() with a base and targets. Stores the true normals of each shape.
 function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   const positions = placed(grid, base);
   const normals = unitNormals(positions, grid.indices);
@@ -70,13 +71,13 @@ function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   };
 }
 
-// Keeps some triangles of a primitive, but all of its vertices.
+// Returns a primitive with only some of the triangles, but all vertices.
 function part(primitive, from, to) {
   return { ...primitive, indices: primitive.indices.slice(from, to) };
 }
 
-// Writes a GLB from {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}], weights?,
-// names?}.
+// Writes a GLB file from {primitives, nodes: [{at, weights?}], tracks: [{node, interpolation, times, values}],
+// weights?, names?}.
 export async function writeFile(path, { primitives, nodes = [{ at: [0, 0, 0] }], tracks = [], weights, names }) {
   const document = new Document();
   const buffer = document.createBuffer();
@@ -130,7 +131,8 @@ const grid = tube(36, 48);
 const twist = () => primitiveOf(grid, straight, [twisted(2.4)]);
 const wave = () => primitiveOf(grid, straight, [waved]);
 
-// Maps a name to the function that writes the file. In all files except `pair`, one target is active at a time.
+// The files by name, each with the function that writes it. In all files but `pair`, only one target is active at a
+// time.
 export const fixtures = {
   twist: (path) => writeFile(path, { primitives: [twist()], tracks: [linear([0, 1, 0.25])] }),
   wave: (path) => writeFile(path, { primitives: [wave()], tracks: [linear([0, 1])] }),
@@ -142,7 +144,8 @@ export const fixtures = {
   spline: (path) =>
     writeFile(path, {
       primitives: [wave()],
-      // The values are in-tangent, value and out-tangent of three keys; the weight exceeds 0.8, and leaves [0, 1].
+      // The values of the three keys are an in-tangent, a weight and an out-tangent each. The weight exceeds 0.8, and
+      // leaves [0, 1].
       tracks: [{ node: 0, interpolation: 'CUBICSPLINE', times: [0, 1, 2], values: [0, 0, 6, 0, 0.8, -3, 0.4, 0.2, 0] }],
     }),
   step: (path) =>
@@ -173,7 +176,7 @@ export const fixtures = {
       nodes: [{ at: [-1.3, 0, 0] }, { at: [0, 0, 0] }, { at: [1.3, 0, 0], weights: [0.5] }],
       tracks: [linear([0, 1, 0]), linear([1, 0.25], 1, [0, 1.5])],
     }),
-  // The base normals lean away from the surface, as if an author had edited them.
+  // The base normals lean away from the normals of the surface, as if an author had edited them.
   authored: (path) => {
     const primitive = twist();
     for (let v = 0; v < primitive.normals.length; v += 3) {
@@ -183,7 +186,7 @@ export const fixtures = {
     primitive.targets[0].normals = null;
     return writeFile(path, { primitives: [primitive], tracks: [linear([0, 1])] });
   },
-  // The two targets follow each other, like an exported sequence of keyframes.
+  // The two targets are active one after the other, as in an exported sequence of keyframes.
   keyframes: (path) =>
     writeFile(path, {
       primitives: [primitiveOf(grid, straight, [twisted(1.8), waved])],
@@ -204,7 +207,7 @@ export function writeStill(path, { parts, weights = null }) {
   return writeFile(path, { primitives, weights });
 }
 
-// Returns the keyframes of a sequence, as the text of OBJ files.
+// Returns the keyframes of a sequence, each as the text of an OBJ file.
 export function sequenceFrames() {
   return [straight, twisted(1.6), waved].map((place) => {
     const positions = placed(grid, place);
@@ -216,8 +219,8 @@ export function sequenceFrames() {
   });
 }
 
-// Writes a vase that gets flutes and twists, for the picture. It may lack the normals of targets, since many exporters
-// leave these out.
+// Writes a vase that gets flutes and twists, for a picture in the documents. If targetNormals is false, the targets
+// have no normals, as in the files of many exporters.
 export function writeVase(path, { targetNormals }) {
   const profile = (y) => 0.45 + 0.13 * Math.sin(2.4 * y + 2);
   const fluted = (a, y) => {

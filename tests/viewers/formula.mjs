@@ -1,13 +1,13 @@
-// Bakes by the formula in a few lines of JavaScript, as an oracle for bakes with one target, whose weight is w. With
-// n(w) = c0 + w c1 + w^2 c2, a viewer that renders N + w D + w (1 - w) E shows the direction of n(w) if N = c0 / |c0|,
-// D = (c1 + c2) / |c0| and E = -c2 / |c0|, where E belongs to a correction target.
+// Bakes by the formula in a few lines of JavaScript, as an oracle for bakes with one target, whose weight is w. Let
+// n(w) = c0 + w c1 + w^2 c2. A viewer that renders N + w D + w (1 - w) E shows the direction of n(w) if N = c0 / |c0|,
+// D = (c1 + c2) / |c0| and E = -c2 / |c0|, where E is the delta of a correction target.
 import { Accessor } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { describe, newIO } from './reader.mjs';
 
 const withExtra = (w) => [w, w * (1 - w)];
 
-// Bakes a file with LINEAR animations that drive the only target of each mesh.
+// Bakes a file in which LINEAR animations drive the only target of each mesh.
 export async function bakeByFormula(inputPath, outputPath) {
   const io = newIO();
   const document = await io.read(inputPath);

@@ -1,4 +1,4 @@
-// Installs the npm package like a user: packs it, and unpacks it in a folder that contains only its peer dependencies.
+// Installs the npm package as a user does: packs it, and unpacks it in a folder that has only its peer dependencies.
 //
 //   CHRONORMAL_PROGRAM   the native program, to compare with
 //   CHRONORMAL_NPM       the folder of the package
@@ -10,8 +10,8 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 
 export const program = resolve(process.env.CHRONORMAL_PROGRAM);
 
-/** Installs the package, and returns functions: native() runs the native program, wasm() the program of the package,
- * and node() Node.js; load() imports a part of the package. */
+/** Installs the package and returns functions. native() runs the native program, wasm() the program in the package, and
+ * node() runs Node.js. load() imports a part of the package. */
 export function install() {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-npm-'));
   const installed = join(folder, 'node_modules/chronormal');

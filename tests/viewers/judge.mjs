@@ -4,7 +4,8 @@ import { drive } from '../../examples/drive.mjs';
 import { ExactNormals, angle, exactPositions, length } from './exact.mjs';
 import { nodeWeights, shownNormals, shownPositions } from './reader.mjs';
 
-// A sum of cross products that is shorter than this share of the vertex's longest sum has no reliable direction.
+// If the sum of cross products at a vertex is shorter than this share of its longest sum, its direction is not
+// reliable.
 const NO_DIRECTION = 1e-4;
 
 export function timesOf(animation, count) {
@@ -12,26 +13,27 @@ export function timesOf(animation, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * i) / (count - 1));
 }
 
-// Returns the midpoints of equal parts of an animation, which all viewers treat as inside of it.
+// Returns the midpoints of equal parts of an animation. All viewers treat these times as inside the animation.
 export function timesWithin({ start, end }, count) {
   return Array.from({ length: count }, (_, i) => start + ((end - start) * (i + 0.5)) / count);
 }
 
-// Tells whether some target of a mesh moves a vertex.
+// Tells whether any target of a mesh moves any vertex.
 export function moves(mesh) {
   const somewhere = (array) => array?.some((number) => number !== 0) ?? false;
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
-// Returns an empty result over samples, each of a vertex in a state: {mean, max, where, pairs, excluded, flat, drift}.
-// `mean` and `max` are degrees. `excluded` counts samples without a direction or a triangle. `flat` counts primitives
-// without normals, which viewers shade by themselves. `drift` is the largest distance between a vertex in `shown` and
-// in `source`, as a share of the size of its mesh.
+// Returns an empty result: {mean, max, where, pairs, excluded, flat, drift}. It is about samples, each of a vertex in a
+// state of a mesh. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded` counts
+// samples without a direction or a triangle. `flat` counts primitives without normals, which viewers shade by
+// themselves. `drift` is the largest distance between a vertex in `shown` and in `source`, as a share of the size of
+// its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
 
-// Adds a mesh to a result. The mean of the result is a sum until all meshes are added. A state is {name, weights,
+// Adds the errors of a mesh to a result. Until all meshes are added, `mean` is a sum. A state is {name, weights,
 // shownWeights}.
 function addMesh(result, source, shown, states) {
   const exact = new ExactNormals(source);
@@ -74,7 +76,7 @@ function averaged(result) {
   return { ...result, mean: result.mean / Math.max(result.pairs, 1) };
 }
 
-// Compares all nodes at some times of an animation. Meshes that never move are left out.
+// Compares all nodes at some times of an animation. Skips meshes that never move.
 export function compareAnimation(source, shown, animation, times) {
   const result = nothing();
   source.nodes.forEach((node, n) => {
@@ -95,8 +97,8 @@ function stands({ times, values, interpolation }) {
   return interpolation !== 'CUBICSPLINE' && values.every((value, i) => value === values[i % width]);
 }
 
-// Compares meshes that no animation moves, in a viewer that sets each target alone, and then all targets together. The
-// extras of the mesh tell how correction targets are driven.
+// Compares the meshes that no animation moves, in a viewer that sets each target alone, and then all targets together.
+// The extras of a mesh tell how its correction targets are driven.
 function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));
   const driven = new Set(moving.map(({ node }) => source.nodes[node].mesh));
@@ -119,8 +121,8 @@ function compareUndriven(source, shown) {
   return averaged(result);
 }
 
-// Returns a result for each animation with weights, and one for the meshes that no animation moves. An animation with
-// constant weights is sampled once.
+// Returns a result for each animation with weights, and one result for the meshes that no animation moves. If the
+// weights of an animation are constant, takes only one sample.
 export function compareFiles(source, shown, count = 101) {
   const results = source.animations.flatMap((animation, a) => {
     if (animation.tracks.length === 0) return [];

@@ -19,7 +19,7 @@ import * as babylon from '../../js/src/babylon.js';
 import { drive, formulasOf } from '../../js/src/drive.js';
 import * as three from '../../js/src/three.js';
 
-// The mesh has two targets of its own. Targets 2 and 3 have the weights w0 w1 and w0 (1 - w0); only animations drive
+// Targets 0 and 1 are the author's. Targets 2 and 3 have the weights w0 w1 and w0 (1 - w0). Only animations drive
 // target 4.
 const mark = () => ({
   chronormal: {
@@ -45,7 +45,7 @@ test('extra weights are the sums of their terms, and other versions are left alo
 });
 
 describe('three.js', () => {
-  // Makes a mesh like the loader; the mark may be in the parent object.
+  // Makes a mesh as the loader of three.js does. The mark of a bake may be in the parent object.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;
@@ -159,8 +159,8 @@ describe('three.js', () => {
       const track = new THREE.NumberKeyframeTrack('face.morphTargetInfluences', [0], weights);
       return new THREE.AnimationClip(name, 1, [track]);
     };
-    // The clips of a baked file have weights of correction targets that are right only if one clip is played alone. One
-    // target is driven by clips alone.
+    // The weights of correction targets in the clips of a baked file are right only if one clip plays alone. Target 4
+    // is driven only by clips.
     const clips = [clip('a', [1, 0, 0, 0, 0.5]), clip('b', [0, 0.5, 0, 0, 0])];
     const mixer = new THREE.AnimationMixer(mesh);
     clips.forEach((each) => mixer.clipAction(each).setEffectiveWeight(0.5).play());
@@ -168,7 +168,7 @@ describe('three.js', () => {
     mixer.update(0.1);
     draw(mesh);
     assert.deepEqual(weightsOf(mesh), [0.5, 0.25, 0.125, 0.25, 0.25]);
-    // Another mixer plays a clone of the mesh.
+    // A second mixer plays a clone of the mesh.
     const copy = mesh.clone(), other = new THREE.AnimationMixer(copy);
     other.clipAction(clips[0]).play();
     three.attach(copy);
@@ -198,7 +198,7 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // Makes a mesh like the loader: the extras are at a node above the mesh.
+  // Makes a mesh as the loader of Babylon.js does: the extras are in a node above the mesh.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);
     for (let k = 0; k < TARGETS; ++k) manager.addTarget(MorphTarget.FromMesh(mesh, `target ${k}`, 0));

@@ -1,8 +1,9 @@
-// Tests the npm package, installed from its tarball in a folder with nothing else.
+// Tests the npm package, which is installed from its tarball in a folder with nothing else.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test tests/viewers/npm.test.mjs
 //
-// CHRONORMAL_NPM is the folder of the package. Its output must equal the output of the native program, byte for byte.
+// CHRONORMAL_NPM is the folder of the package. The output of the package must equal the output of the native program,
+// byte for byte.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -20,7 +21,7 @@ after(remove);
 const { bake, audit, inspect, compare, sample, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
-// The face has two targets and an animation. It is the built-in sample bumps, which convert writes without a bake.
+// The face is the built-in sample bumps, which has 12 targets and an animation. `convert` writes it without a bake.
 const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));
@@ -138,7 +139,7 @@ test('wrong input is refused in the words of the program, and the next call work
   assert.equal((await inspect(face)).report.command, 'inspect');
 });
 
-// Returns the report of a call, or the code and the message of its error.
+// Returns the report of a call or, if the call fails, the name, the code and the message of the error.
 const outcomeOf = (call) => call.then(({ report }) => report, ({ name, code, message }) => ({ name, code, message }));
 
 test('a file of any name is read under it, or refused with it, in a worker and in this thread', async () => {
@@ -163,7 +164,7 @@ test('a file of any name is read under it, or refused with it, in a worker and i
   }
   assert.ok(read > 30, `${read}`);
   const { bytes: baked } = await bake(face, { encode: 'endpoint' });
-  // All of the names below are possible, although the program runs in its own folder /work, which has the inputs, and
+  // Inputs may have all of these names, although the program runs in its own folder /work, which has the inputs, and
   // writes to /work/out (js/src/task.js).
   for (const name of ['out', 'out/a.glb', '-x.glb', '../work/out/b.glb']) {
     assert.deepEqual((await bake(face, { name, encode: 'endpoint', worker: false })).bytes, baked, name);
@@ -218,8 +219,7 @@ test('where memory runs out, that is said, and the next call works', async () =>
 
 test('progress is said while it goes on, up to its end', async () => {
   const heard = [];
-  // In the first 0.3 s no progress is reported. The audit therefore takes so many samples that it runs for some
-  // seconds.
+  // No progress is reported in the first 0.3 s, so the audit takes so many samples that it runs for some seconds.
   await audit(face, { samples: 6001, onProgress: (progress) => heard.push(progress) });
   assert.ok(heard.length > 2, JSON.stringify(heard));
   for (const { label, percent } of heard) assert.ok(typeof label === 'string' && percent >= 0 && percent <= 100);
@@ -304,7 +304,7 @@ Use import { bake } from 'chronormal' in a module, or const { bake } = await imp
 
 test('where WebAssembly has no vectors, a sentence says so', (t) => {
   const script = "import('chronormal').then(({ inspect }) => inspect(new Uint8Array(9))).catch(({ message }) => console.log(message));";
-  const without = ['--no-enable-sse4-1']; // this disables vectors of V8 on x86
+  const without = ['--no-enable-sse4-1']; // turns off the vectors of V8 on x86
   const { stdout, status } = node([...without, '-e', script]);
   if (status !== 0 || /glTF/.test(stdout)) return t.skip('this processor has vectors whatever V8 is told');
   assert.match(stdout, /^WebAssembly with vectors \(SIMD\) .*Safari 16\.4, Node\.js 18/s);

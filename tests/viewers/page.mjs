@@ -1,5 +1,5 @@
-// The entry point of the page. It has all viewers behind the same functions. The page also compares pictures, so that
-// pixels need not leave it.
+// The entry point of the test page. It gives all viewers the same functions. The page also compares pictures, so that
+// pixels need not leave the page.
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';
@@ -12,9 +12,8 @@ const viewers = { three, babylon, playcanvas, filament };
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
 
-// Compares drawings of a viewer at several moments {time, truth, view}: of each file at that time of an animation, and
-// of the still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at each
-// moment.
+// Compares drawings of a viewer at several moments {time, truth, view}: each file at that time of an animation, and the
+// still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at each moment.
 window.compareInViewer = async (viewer, files, animation, moments, size) => {
   const { play, drawNormals, dispose } = viewers[viewer];
   const models = [];
@@ -36,9 +35,9 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   return results;
 };
 
-// Compares drawings of a viewer: of each file at a time of an animation, and of the still file `truth`. Returns
-// {compared, picture}. `compared` has the results of compareNormals(). `picture` has all drawings beside the true one,
-// lit in the same way, as a PNG in a data URL.
+// Compares drawings of a viewer: each file at a time of an animation, and the still file `truth`. Returns {compared,
+// picture}. `compared` has the results of compareNormals(). `picture` shows all drawings beside the true one, lit in
+// the same way, as a PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
   const draw = async (file, animated) => {
@@ -61,8 +60,8 @@ const urlOf = async (canvas, type) => {
   return `data:${type};base64,${btoa(bytes.reduce((text, byte) => text + String.fromCharCode(byte), ''))}`;
 };
 
-// Returns the pictures of closeUpInViewer() of several viewers, one below the other with a title above each, as a JPEG
-// in a data URL.
+// Returns one JPEG in a data URL with the pictures of closeUpInViewer() of several viewers. The pictures are one below
+// the other, and each has a title above it.
 window.sheetOfCloseUps = async (pictures, { width, height }) => {
   const HEAD = 30, sheet = new OffscreenCanvas(3 * width, pictures.length * (height + HEAD)), ink = sheet.getContext('2d');
   ink.fillStyle = '#f8fafc';
@@ -78,7 +77,7 @@ window.sheetOfCloseUps = async (pictures, { width, height }) => {
   return urlOf(sheet, 'image/jpeg');
 };
 
-// Draws a file in a viewer as pictures of normals, at times of its first animation. Returns the results of
+// Draws a file in a viewer as pictures of normals, at some times of its first animation. Returns the results of
 // made(picture).
 async function ofPictures(viewer, file, times, view, size, made) {
   const { play, drawNormals, dispose } = viewers[viewer];
@@ -92,16 +91,16 @@ async function ofPictures(viewer, file, times, view, size, made) {
   return results;
 }
 
-// Returns the normals at the pixels [x, y] of each picture; null if nothing is drawn there.
+// Returns the normals at the pixels [x, y] of each picture. A normal is null if nothing is drawn there.
 window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
   ofPictures(viewer, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
 
-// Returns the middle of the drawn pixels; null if there are none.
+// Returns the middle of the drawn pixels of each picture, or null if nothing is drawn.
 window.middlesInViewer = (viewer, file, times, view, size) =>
   ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
 
 // Compares pictures of a file in a viewer with the still file of the same moment, four times: after a program has set
-// the weights of the file's own targets, while our package drives the correction targets, after the package has
+// the weights of the author's targets, while chronormal's package drives the correction targets, after the package has
 // stopped, and after the program has driven the correction targets itself.
 window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, setWeights, drive, attach, detach, dispose } = viewers[viewer];
@@ -118,8 +117,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   return results;
 };
 
-// Compares pictures as compareDriven() does, while several clips are blended whose sum gives the weights. In three.js,
-// the mixer of a clone plays the clips.
+// Makes the comparisons of compareDriven() while several clips are blended. The weights are the sum of the clips. In
+// three.js, the mixer of a clone plays the clips.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

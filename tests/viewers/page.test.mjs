@@ -1,10 +1,10 @@
-// Tests the page with the engine inside. Dropped files must show the same numbers as the program, bakes must have the
-// same bytes, unreadable files must get a helpful message, and the page must make no requests.
+// Tests the page that has the program inside. For dropped files, the page must show the same numbers as the program.
+// Bakes must have the same bytes, unreadable files must get a helpful message, and the page must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
-//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_DATA           a folder of moving files from other projects, if set
 //   CHRONORMAL_FULL=1         tests all of these files
 import assert from 'node:assert/strict';
 import { closeSync, existsSync, ftruncateSync, mkdtempSync, openSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -20,8 +20,8 @@ import { newIO, read } from './reader.mjs';
 import { clickWorst, openPages } from './web_page.mjs';
 
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
-const NEAR = 1e-3; // largest error of the page's numbers in degrees
-const SHOWN = 5e-4; // degrees; places with smaller errors are not listed
+const NEAR = 1e-3; // largest error of the page's numbers, in degrees
+const SHOWN = 5e-4; // in degrees; the page does not list places with smaller errors
 const WAIT = { timeout: 600_000 };
 
 let folder, pages, page;
@@ -45,7 +45,7 @@ afterEach(() => assert.deepEqual(pages.faults.splice(0), []));
 const audited = (file) => JSON.parse(chronormal('audit', file, '--json', '-q'));
 const said = () => page.$eval('.message', (box) => (box.hidden ? '' : box.innerText));
 
-// Gives files to the page, and waits until it shows a report or a message.
+// Drops files on the page, and waits until the page shows a report or a message.
 async function drop(...files) {
   await page.evaluate(() => {
     delete document.getElementById('report').dataset.ready;
@@ -62,8 +62,8 @@ async function downloaded(name) {
   }
 }
 
-// Returns the file that the program bakes, or the program's message if it writes no file. The program also writes a
-// file that exceeds the tolerance.
+// Returns the bytes of the file that the program bakes, or the message of the program if it writes no file. The program
+// also writes a file whose errors exceed the tolerance.
 function bakedByProgram(file) {
   const target = path('expected.glb');
   rmSync(target, { force: true });
@@ -78,7 +78,7 @@ function bakedByProgram(file) {
 async function bakeAndDownload(file) {
   const name = basename(file).replace(/\.glb$/, '.right.glb'), { bytes, words } = bakedByProgram(file);
   await press('button.bake');
-  // A bake may take longer than a single call to the browser may take.
+  // A bake may take longer than a single call to the browser is allowed to take, so the test asks repeatedly.
   while (await page.$('.busy:not([hidden])')) await new Promise((resolve) => setTimeout(resolve, 200));
   if (words) {
     await page.waitForSelector('.busy[hidden]', WAIT);
@@ -99,7 +99,7 @@ test('a dropped file shows the number of the audit, a plan, and is baked to the 
   await bakeAndDownload(path('bumps.glb'));
 });
 
-// Sets the sliders of the weights like a person.
+// Sets the sliders of the weights as a person does.
 const setSliders = (weights) => page.evaluate((values) => {
   const rows = document.querySelectorAll('.weights input');
   values.forEach((value, k) => {
@@ -108,7 +108,8 @@ const setSliders = (weights) => page.evaluate((values) => {
   });
 }, weights);
 
-// Draws one half of the picture as normals, with a given camera or with the page's. Returns {camera, pixels}.
+// Draws one half of the picture as normals, from the given camera or, without it, from the camera of the page. Returns
+// {camera, pixels}.
 const half = (side, camera) => page.evaluate((right, given) => {
   const { view, setMode } = globalThis.chronormal, { canvas } = view;
   setMode('normals');
@@ -126,8 +127,8 @@ const half = (side, camera) => page.evaluate((right, given) => {
   };
 }, side === 'right', camera);
 
-// Writes a still file: the mesh of another file at some weights, with the exact normals at these weights and a target
-// that does nothing.
+// Writes a still file: the mesh of another file at some weights, with the exact normals at these weights. It has a
+// target that moves nothing.
 async function writeFrozen(target, source, weights) {
   const io = newIO(), document = await io.read(source), root = document.getRoot();
   const described = (await read(source)).meshes[0], truth = new ExactNormals(described).at(weights);
@@ -159,7 +160,7 @@ test('a face that is clicked has the figures of the program, and they follow its
   writeFileSync(path('k0.obj'), 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 4 0 0\nv 5 0 1\nv 4 1 0\nf 1 2 3\nf 4 5 6\n');
   writeFileSync(path('k1.obj'), 'v 0 0 0\nv 0 1 0\nv 0 0 1\nv 4 0 0\nv 5 2 1\nv 4 1 3\nf 1 2 3\nf 4 5 6\n');
   await drop(path('k0.obj'), path('k1.obj'));
-  // Waits until the program has computed the figure of the path that the panel shows.
+  // Waits until the program has computed the figure for the path that the panel shows.
   const settled = async () => {
     await page.waitForSelector('.face[data-state=done]', WAIT);
     const way = await page.evaluate(() => globalThis.chronormal.faces.way());
@@ -209,10 +210,10 @@ test('a face that is clicked has the figures of the program, and they follow its
   assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than a phone');
   await page.setViewport({ width: 1280, height: 800 });
 
-  // A click in the picture selects the face at that place.
+  // A click on the picture selects the face at that place.
   const spot = await page.evaluate(async () => {
     scrollTo(0, 0);
-    // Waits until the stage has its size.
+    // Waits some frames until the area of the picture has its final size.
     for (let i = 0; i < 3; ++i) await new Promise((resolve) => requestAnimationFrame(resolve));
     const { view, player } = globalThis.chronormal, box = view.canvas.getBoundingClientRect(), { positions } = player.surface;
     view.frame(true);

@@ -1,12 +1,12 @@
-// Makes files whose pictures can be read as numbers: a board of squares, each with its own normal and deltas, and a
-// single square that a target moves.
+// Makes files whose pictures can be read as numbers. One file is a board of squares, each with its own normal and
+// deltas. The other is a single square that a target moves.
 import { linear, writeFile } from './fixtures.mjs';
 
 export const BOARD = 12;      // number of squares in a row, and of rows
 export const SIZE = { width: 192, height: 192 };
 const DISTANCE = 20;
 
-// Returns a camera in front of the origin. A square of this width around the origin fills its picture.
+// Returns a camera in front of the origin. A square of this width around the origin fills the picture.
 function viewOf(width) {
   const degrees = (2 * Math.atan(width / 2 / DISTANCE) * 180) / Math.PI;
   return { eye: [0, 0, DISTANCE], at: [0, 0, 0], degrees, near: DISTANCE / 2, far: 2 * DISTANCE };
@@ -14,12 +14,13 @@ function viewOf(width) {
 
 export const BOARD_VIEW = viewOf(BOARD);
 
-// The pixels in the middle of each square.
+// The pixel [x, y] in the middle of each square.
 export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
   [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
 
-// Writes a board. `patches` has {normal, deltas} for each square: `normal` is a vector, and `deltas` has a vector for
-// each target, or null in all squares if the target has no normals. `rows` has the weights at the times 0, 1, 2, ...
+// Writes a board as a file. `patches` has {normal, deltas} for each square. `normal` is a vector. `deltas` has a vector
+// for each target, or null if the target has no normals; it then has none in any square. `rows` has the weights at the
+// times 0, 1, 2, ...
 export function writeBoard(path, patches, rows) {
   const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
   const places = patches.flatMap((_, p) =>
@@ -35,15 +36,15 @@ export function writeBoard(path, patches, rows) {
   return writeFile(path, { primitives, tracks: [linear(rows, 0, rows.map((_, k) => k))] });
 }
 
-const REACH = 4;  // distance by which the last target moves the square to the right at weight 1
+const REACH = 4;  // distance by which the last target moves the square to the right, at weight 1
 
 export const MOVER_VIEW = viewOf(4 * REACH);
 
-// Returns the weight that moves the middle of the square to a pixel.
+// Returns the weight at which the middle of the square is at a pixel.
 export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
 
-// Writes a square that stands half a reach left of the middle. One of several targets moves it, by default the last
-// one. `track` is a track for writeFile().
+// Writes a file with a square that is half of REACH to the left of the middle. Target `moving`, by default the last
+// one, moves the square. `track` is a track for writeFile().
 export function writeMover(path, { targets = 1, moving = targets - 1, names, ...track }) {
   const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
   const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);

@@ -1,5 +1,5 @@
-// Draws pictures with wrong normals beside pictures with true normals, in the page: files side by side at the same
-// moment, lit by a viewer.
+// Draws pictures in the page that show the same moment with wrong and with true normals. The pictures are side by side,
+// lit by a viewer.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import * as filament from './filament_page.mjs';
@@ -9,9 +9,10 @@ const BACKGROUND = '#f8fafc';
 const INK = ['#1e293b', '#64748b'];
 const FAMILY = '"DejaVu Sans", "Liberation Sans", sans-serif';
 const FONTS = [`600 17px ${FAMILY}`, `14px ${FAMILY}`];
-const SAMPLES = 2;  // pictures are first drawn this many times larger in each direction
+const SAMPLES = 2;  // pictures are drawn larger by this factor in each direction, and then reduced
 
-// Draws `items`, each {bytes, caption} with a caption of two lines. Returns a PNG as a data URL.
+// Draws `items` side by side. Each item is {bytes, caption}, and its caption has two lines. Returns a PNG as a data
+// URL.
 export async function drawPicture(viewer, items, animation, time, view, size) {
   const drawLit = { three: drawLitByThree, filament: filament.drawLit }[viewer];
   const canvas = document.createElement('canvas');
@@ -34,7 +35,7 @@ export async function drawPicture(viewer, items, animation, time, view, size) {
   return canvas.toDataURL('image/png');
 }
 
-// Returns a canvas with a file as three.js draws it with its standard material under the lights of a room.
+// Returns a canvas that shows a file as three.js draws it, with its standard material under the lights of a room.
 async function drawLitByThree(bytes, animation, time, view, size) {
   const renderer = rendererOf(size);
   renderer.toneMapping = THREE.ACESFilmicToneMapping;
@@ -57,8 +58,8 @@ async function drawLitByThree(bytes, animation, time, view, size) {
   return renderer.domElement;
 }
 
-// Returns the difference of two PNGs: the average of |a - b| over all channels, on a scale of 0 to 255; Infinity if
-// their sizes differ.
+// Returns the difference between two PNGs: the average of |a - b| over all channels, which are 0 to 255. Returns
+// Infinity if the sizes differ.
 export async function differenceOfPictures(bytes, others) {
   const [a, b] = await Promise.all([bytes, others].map((png) => createImageBitmap(new Blob([png]))));
   if (a.width !== b.width || a.height !== b.height) return Infinity;

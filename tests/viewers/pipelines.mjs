@@ -1,4 +1,4 @@
-// Runs other people's tools that rewrite glTF files, with the commands that people use, and audits the results.
+// Runs tools of other projects that rewrite glTF files, by the commands that people use, and audits the results.
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, mkdirSync, symlinkSync } from 'node:fs';
 import { delimiter, join, resolve } from 'node:path';
@@ -9,14 +9,15 @@ import { describe, newIO } from './reader.mjs';
 
 const TOOLS = fileURLToPath(new URL('node_modules/.bin', import.meta.url));
 
-// Makes a folder for runLine(), in which `chronormal` is the program under test.
+// Makes a folder for runLine(). The command `chronormal` in this folder is the program under test.
 export function makeWorkshop(folder) {
   mkdirSync(join(folder, 'bin'), { recursive: true });
   symlinkSync(resolve(process.env.CHRONORMAL_PROGRAM), join(folder, 'bin', 'chronormal'));
   return folder;
 }
 
-// Runs a shell line in that folder, with gltf-transform and gltfpack of the versions in package-lock.json.
+// Runs a line of shell commands in a folder of makeWorkshop(). gltf-transform and gltfpack have the versions in
+// package-lock.json.
 export function runLine(line, folder) {
   const path = [TOOLS, join(folder, 'bin'), process.env.PATH].join(delimiter);
   const options = { cwd: folder, encoding: 'utf8', env: { ...process.env, PATH: path }, maxBuffer: 1 << 28 };
@@ -25,7 +26,8 @@ export function runLine(line, folder) {
   if (status !== 0) throw new Error(`${line}: exit code ${status}\n${stderr}${stdout}`);
 }
 
-// Runs a line that makes web.glb from head.glb, and returns the path of the result.
+// Runs a line of shell commands that makes web.glb from head.glb. Copies web.glb to the path `result`, which is
+// returned.
 export function webOf(line, head, result, folder) {
   copyFileSync(head, join(folder, 'head.glb'));
   runLine(line, folder);
@@ -33,14 +35,14 @@ export function webOf(line, head, result, folder) {
   return result;
 }
 
-// Returns the errors in degrees against the true normals of the file's own positions: {mean, worst}. `how` has further
-// options of audit.
+// Returns the errors of a file in degrees, compared with the true normals of its own positions: {mean, worst}. `how`
+// has more options for audit.
 export function audited(path, ...how) {
   const report = JSON.parse(chronormal('audit', path, ...how, '--json', '--quiet'));
   return { mean: report.mean_degrees, worst: report.worst_degrees };
 }
 
-// Returns the largest component of any normal delta of a file.
+// Returns the largest absolute value of a component of a normal delta in a file.
 export function largestDelta(file) {
   let largest = 0;
   for (const { primitives } of file.meshes)
@@ -49,7 +51,8 @@ export function largestDelta(file) {
   return largest;
 }
 
-// Writes a file like a careful exporter: every target has the unit normals of its shape, and nothing else is added.
+// Writes a file as a careful exporter does: every target has the unit normals of its shape, and the file has no
+// correction targets.
 export async function writePlainEndPoints(input, output) {
   const io = newIO();
   const document = await io.read(input);

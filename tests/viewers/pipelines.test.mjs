@@ -1,8 +1,8 @@
-// Tests how much of a bake survives other people's tools, gltf-transform and gltfpack, with the commands that people
-// use. ctest runs this as `pipelines`. Also checks the commands and figures in the tables of docs/web.md.
+// Tests how much of a bake survives when gltf-transform and gltfpack process the file, by the commands that people use.
+// ctest runs this file as `pipelines`. Also checks the commands and figures in the tables of docs/web.md.
 //
 //   CHRONORMAL_PROGRAM        the program
-//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_DATA           a folder of moving files from other projects, if set
 //   CHRONORMAL_FULL=1         every tool on every file; otherwise one file, with the tools that change the most
 //   CHRONORMAL_UPDATE_DOCS=1  with the two above, writes the figures of docs/web.md
 import assert from 'node:assert/strict';
@@ -24,8 +24,8 @@ const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
 const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
-// The commands of the tools. The number is how many degrees worse a baked file may be after a command than a file with
-// plain end-point deltas.
+// The commands of the tools, each with a number of degrees. By this much, a baked file may have larger errors after the
+// command than a file with plain deltas at weight 1.
 const PACK_12 = '-vn 12 -vtf -af 0';
 const LINES = [
   ['gltf-transform quantize head.glb web.glb', 1],
@@ -53,7 +53,7 @@ let folder;
 before(() => (folder = makeWorkshop(mkdtempSync(join(tmpdir(), 'chronormal_pipelines_')))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// Returns the variants of a file that are processed by tools, by name.
+// Makes the variants of a file that the tools process. Returns their paths by name.
 const inputs = new Map();
 async function inputsOf(name) {
   if (!inputs.has(name)) {
@@ -67,7 +67,7 @@ async function inputsOf(name) {
   return inputs.get(name);
 }
 
-// Returns the errors in degrees of a variant after a tool.
+// Returns the errors in degrees of a variant after a tool has processed it.
 const measured = new Map();
 async function measure(line, name, kind) {
   const key = [line, name, kind].join('\n');
@@ -82,23 +82,23 @@ async function measure(line, name, kind) {
 async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
-  // Tools clamp components of deltas beyond 1, so a bake may not write such a component. Only the author's own deltas
-  // may have one.
+  // Tools limit components of deltas to 1, so a bake may not write a larger component. Only the author's own deltas may
+  // have one.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {
     const plain = await measure(line, name, 'plain');
     const kept = await measure(line, name, 'baked');
-    // A vertex that keeps its author's delta keeps the error of the exported file. A bake may add keys, and audit takes
-    // the same number of samples between any two keys. Therefore a file with few keys is sampled more often, to find
-    // the same errors.
+    // A vertex that keeps the author's delta keeps the error of the exported file. A bake may add keys, and audit takes
+    // the same number of samples between any two keys. The exported file has fewer keys, so it is sampled more often to
+    // find the same errors.
     const exported = await measure(line, name, 'exported');
     let worst = Math.max(plain.worst, exported.worst);
     if (kept.worst > worst + allowed) worst = Math.max(worst, audited(exported.path, '--samples', '81').worst);
     const text = (degrees) => `${degrees.mean.toFixed(3)} / ${degrees.worst.toFixed(2)}`;
     const outcome = `${line}: plain ${text(plain)}, baked ${text(kept)}`;
     context.diagnostic(outcome);
-    // The surface must become better as a whole, but a single normal may become slightly worse.
+    // A bake must improve the surface as a whole, but a single normal may become slightly worse.
     if (!(kept.worst <= 1.05 * worst + allowed && kept.mean <= plain.mean + allowed)) faults.push(outcome);
   }
   assert.deepEqual(faults, []);
@@ -111,12 +111,13 @@ describe('a baked file is no worse than one with plain end-point deltas, after t
     test(name, { skip: NO_DATA }, (context) => assertKept(context, name, LINES));
 });
 
-// Checks that a bake after the tools gives true normals, whatever the tools did to positions, base normals and tracks.
+// Checks that a bake after the tools gives true normals, whatever the tools have done to positions, base normals and
+// tracks.
 async function assertExactLast(name, lines) {
   for (const [line] of lines) {
     const { path } = await measure(line, name, 'exported');
     const output = join(folder, 'exact_last.glb');
-    const how = ['--encode', 'exact', '--weighting', 'area'];  // with other weightings n(w) is only fitted
+    const how = ['--encode', 'exact', '--weighting', 'area'];  // by other weightings, n(w) is only approximated
     chronormal('bake', path, '-o', output, ...how, '--force', '--no-audit', '--quiet');
     assert.deepEqual(await newComplaints(output, path), []);
     const { worst } = audited(output, '--weighting', 'area');
@@ -158,8 +159,8 @@ test('gltfpack -ke leaves what drives extra targets where audit and three.js fin
   weights.forEach((weight, i) => assert.ok(Math.abs(shown[i] - weight) < 1e-6, String(shown)));
 });
 
-// Reads the tables of docs/web.md: each is below a line <!-- measured: NAME -->, and its rows begin with a command in
-// backticks.
+// Reads the tables of docs/web.md. Each table is below a line <!-- measured: NAME -->, and its rows begin with a
+// command in backticks.
 const lines = readFileSync(PAGE, 'utf8').split('\n');
 
 function blocksOfPage() {
@@ -170,7 +171,7 @@ function blocksOfPage() {
   return blocks;
 }
 
-// Returns the tables about a file: their columns, and the {index, line} of each row.
+// Returns the tables about a file. Each has its columns, and {index, line} for each row.
 function tablesOfPage(name) {
   const tables = [];
   lines.forEach((line, begin) => {

@@ -1,5 +1,5 @@
-// Pictures of normals: RGBA in float32, with (n + 1) / 2 as colour, alpha 0 where nothing was drawn, and the lowest row
-// first.
+// Functions for pictures of normals. A picture has RGBA in float32: the colour is (n + 1) / 2, and alpha is 0 where
+// nothing was drawn. The lowest row is first.
 import { angle } from './exact.mjs';
 
 // Returns the normal of a pixel, or null if nothing is drawn there.
@@ -10,7 +10,7 @@ export function normalAt(picture, { width }, x, y) {
 
 const normalIn = (picture, i) => [2 * picture[i] - 1, 2 * picture[i + 1] - 1, 2 * picture[i + 2] - 1];
 
-// Returns the average place of all drawn pixels, or null if there are none.
+// Returns the average position of all drawn pixels, or null if nothing was drawn.
 export function middleOf(picture, { width, height }) {
   const sum = [0, 0];
   let count = 0;
@@ -25,9 +25,9 @@ export function middleOf(picture, { width, height }) {
   return count > 0 ? sum.map((c) => c / count) : null;
 }
 
-// Draws a picture of normals as a glossy surface under one lamp, as pixels of a canvas. Tears become visible as in a
-// viewer, with the same light for all viewers. Normals are in world space if `view` is given, and otherwise in camera
-// space.
+// Draws a picture of normals as a glossy surface under one lamp, and returns the pixels for a canvas. Torn edges are
+// then visible as in a viewer, but with the same light for all viewers. Normals are in world space if `view` is given,
+// and otherwise in the space of the camera.
 export function lit(picture, view, { width, height }) {
   const LAMP = unit([-0.45, 0.6, 0.66]), HALF = unit([LAMP[0], LAMP[1], LAMP[2] + 1]), BASE = [47, 127, 181], BACK = [248, 250, 252];
   const axes = view ? cameraAxes(view) : null, image = new ImageData(width, height);
@@ -48,14 +48,14 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((x) => x / (Math.hypot(...a) || 1));
 const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 
-// Returns the directions right, up and backwards of a camera.
+// Returns the directions to the right, up and backwards of a camera.
 function cameraAxes({ eye, at }) {
   const back = unit(eye.map((x, c) => x - at[c])), right = unit(cross([0, 1, 0], back));
   return [right, cross(back, right), back];
 }
 
-// Compares two pictures pixel by pixel. A pixel counts only if it and its eight neighbours are covered in both
-// pictures, which leaves out silhouettes. Returns {pixels, mean, p99, max} in degrees.
+// Compares two pictures of normals pixel by pixel. A pixel counts only if the pixel and its eight neighbours are drawn
+// in both pictures, so silhouettes do not count. Returns {pixels, mean, p99, max}, with angles in degrees.
 export function compareNormals(shown, truth, { width, height }) {
   const covered = (x, y) => {
     const alpha = 4 * (y * width + x) + 3;

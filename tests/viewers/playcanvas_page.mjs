@@ -1,5 +1,5 @@
-// PlayCanvas as a viewer in the page: its loader, its animation component, and its glTF material, which can show its
-// normals as colours.
+// Makes PlayCanvas a viewer in the test page: its loader, its animation component, and its glTF material, which can
+// show normals as colours.
 import {
   ADDRESS_CLAMP_TO_EDGE, AnimClipHandler, AnimComponentSystem, AppBase, AppOptions, Asset, CameraComponentSystem, Color,
   ContainerHandler, Entity, FILTER_NEAREST, MaterialHandler, PIXELFORMAT_RGBA32F, RenderComponentSystem, RenderHandler,
@@ -9,7 +9,7 @@ import {
 import * as live from '../../js/src/playcanvas.js';
 
 let app;
-let loaded = 0;  // makes names unique, since files with the same name are loaded only once
+let loaded = 0;  // makes names unique, since PlayCanvas loads files of the same name only once
 
 async function createApp() {
   const canvas = document.createElement('canvas');
@@ -34,12 +34,12 @@ export async function load(bytes) {
     app.assets.load(asset);
   });
   const entity = asset.resource.instantiateRenderEntity();
-  entity.enabled = false;  // entities are drawn while they are enabled
+  entity.enabled = false;  // only enabled entities are drawn
   app.root.addChild(entity);
   return { asset, entity };
 }
 
-// Sets all objects to a time, by the animation component.
+// Moves all objects to where they are at a time, by the animation component.
 export function play({ asset, entity }, animation, time) {
   if (animation === null) return;
   entity.removeComponent('anim');
@@ -67,7 +67,8 @@ export function dispose({ asset, entity }) {
   asset.unload();
 }
 
-// Draws the world-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
+// Draws the normals in world space and returns the pixels as RGBA in float32: (n + 1) / 2 in RGB, and alpha 0 where
+// nothing is drawn.
 export async function drawNormals({ entity }, { eye, at, degrees, near, far }, size) {
   const device = app.graphicsDevice;
   const colorBuffer = new Texture(device, {

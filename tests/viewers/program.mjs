@@ -1,4 +1,4 @@
-// Runs the program like a user. CHRONORMAL_PROGRAM is its path.
+// Runs the program as a user does. CHRONORMAL_PROGRAM is the path of the program.
 import { spawnSync } from 'node:child_process';
 
 export function chronormal(...args) {

@@ -1,7 +1,7 @@
-// Draws random numbers and directions, which are the same everywhere for the same seed.
+// Draws random numbers and directions. For the same seed, they are the same on every machine.
 import { length } from './exact.mjs';
 
-// Draws numbers from 0 to 1 by mulberry32.
+// Returns a function that draws numbers from 0 to 1 by the algorithm mulberry32.
 export function randomNumbers(seed) {
   let state = seed;
   return () => {

@@ -1,5 +1,5 @@
-// Reads a glTF file as plain arrays, and computes what every viewer must show at a time by the formulas of glTF 2.0.
-// Uses float32 wherever viewers do. Correction targets are treated like all others.
+// Reads a glTF file into plain arrays, and computes what every viewer must show at a time by the formulas of glTF 2.0.
+// Computes in float32 wherever viewers do. Treats correction targets like all other targets.
 import { Logger, NodeIO } from '@gltf-transform/core';
 import { ALL_EXTENSIONS } from '@gltf-transform/extensions';
 
@@ -11,7 +11,7 @@ export function newIO() {
   return new NodeIO().setLogger(errorsOnly).registerExtensions(ALL_EXTENSIONS);
 }
 
-// Returns all numbers of an accessor: floats as stored, and the values of normalised integers.
+// Returns all numbers of an accessor. Normalised integers are converted to the values that they stand for.
 function numbers(accessor) {
   const width = accessor.getElementSize();
   const result = new Float32Array(accessor.getCount() * width);
@@ -39,9 +39,9 @@ function readPrimitive(primitive) {
   };
 }
 
-// Returns {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name, start, end,
-// tracks}]}. `nodes` has the nodes with a mesh, in the order of the file. A track names its node by its index in
-// `nodes`.
+// Describes a document as {meshes: [{name, primitives, weights, extras}], nodes: [{mesh, weights}], animations: [{name,
+// start, end, tracks}]}. `nodes` has only the nodes with a mesh, in the order of the file. A track names its node by
+// the index in `nodes`.
 export function describe(document) {
   const root = document.getRoot();
   const meshes = root.listMeshes();
@@ -82,13 +82,14 @@ export async function read(path) {
   return describe(await newIO().read(path));
 }
 
-// Returns the weights of a track at a time (glTF 2.0, appendix C), rounded to float32 like in viewers.
+// Returns the weights of a track at a time, by appendix C of glTF 2.0. Rounds them to float32, as viewers do.
 export function weightsAt(track, time) {
   const { times, values, interpolation } = track;
   const spline = interpolation === 'CUBICSPLINE';
   const last = times.length - 1;
   const count = values.length / times.length / (spline ? 3 : 1);
-  // Parts 0, 1 and 2 of a spline's key are its in-tangents, values and out-tangents; other keys have only values.
+  // Returns number i of a key. For the key of a spline, parts 0, 1 and 2 are its in-tangents, its values and its
+  // out-tangents. Other keys have only values.
   const at = (k, part, i) => values[spline ? (3 * k + part) * count + i : k * count + i];
   const weights = (weight) => Float32Array.from({ length: count }, (_, i) => weight(i));
   if (time <= times[0]) return weights((i) => at(0, 1, i));
@@ -108,15 +109,15 @@ export function weightsAt(track, time) {
   );
 }
 
-// Returns the weights of a node at a time of an animation: from its track, or else from the node, or else from its
-// mesh.
+// Returns the weights of a node at a time of an animation: those of its track or, without a track, those of the node
+// or, without them, those of its mesh.
 export function nodeWeights(file, node, animation, time) {
   const track = animation?.tracks.find((candidate) => candidate.node === node);
   if (track) return weightsAt(track, time);
   return file.nodes[node].weights ?? file.meshes[file.nodes[node].mesh].weights;
 }
 
-// Computes base + sum_i w_i delta_i in float32, rounding after each product and each sum.
+// Returns base + sum_i w_i delta_i in float32, which rounds after each product and each sum.
 export function morphed(base, deltas, weights) {
   const result = Float32Array.from(base);
   deltas.forEach((delta, i) => {

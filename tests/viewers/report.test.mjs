@@ -1,9 +1,9 @@
-// Tests the page of `chronormal report`: its numbers must equal the program's, its right half must show the true
+// Tests the page of `chronormal report`. Its numbers must equal those of the program, its right half must show the true
 // normals, and it must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
-//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_DATA           a folder of moving files from other projects, if set
 //   CHRONORMAL_FULL=1         tests all of these files
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
@@ -25,8 +25,8 @@ import { randomNumbers } from './random.mjs';
 import { clickWorst, openPages, worstNow } from './web_page.mjs';
 
 const FULL = process.env.CHRONORMAL_FULL === '1', DATA = process.env.CHRONORMAL_DATA;
-const NEAR = 1e-3; // largest error of the page's numbers in degrees
-const SHOWN = 5e-4; // degrees; places with smaller errors are not listed
+const NEAR = 1e-3; // largest error of the page's numbers, in degrees
+const SHOWN = 5e-4; // in degrees; the page does not list places with smaller errors
 const SEED = 49;
 
 let folder, template;
@@ -144,7 +144,8 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
 
 const DAMAGED = /^The data of this page (are damaged|are cut off|are not a report|have version)/;
 
-// Returns the {begin, size, count} of the floating-point arrays of a container, in bytes.
+// Returns {begin, size, count} for each array of floating-point numbers in a container. `begin` and `size` are in
+// bytes.
 function arraysOf(bytes) {
   const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
   const look = (value) => {

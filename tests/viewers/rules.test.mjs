@@ -1,5 +1,5 @@
-// Tests how real viewers compute a normal from stored numbers, and a weight from a track, by comparing their pictures
-// with rules in double. docs/viewers.md has the findings. ctest runs this as `in_viewers`.
+// Tests how real viewers compute a normal from stored numbers, and a weight from a track. Compares their pictures with
+// rules that are computed in double. docs/viewers.md states the results. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_FULL=1  all viewers and rules; otherwise only the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';
@@ -24,18 +24,18 @@ const scaled = (a, s) => a.map((c) => s * c);
 const unit = (a) => scaled(a, 1 / length(a));
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
-// The rules: each computes a normal, not normalised, from the stored normal N and deltas D_k.
+// The rules by which viewers compute a normal from the stored normal N and the deltas D_k. The result does not have
+// length 1.
 const rules = {
   // glTF specifies N + sum of w_k D_k.
   sum: ({ normal, deltas }, w) => deltas.reduce((n, delta, k) => plus(n, delta, w[k]), normal),
-  // Some viewers render N + sum of w_k (u_k - N), where u_k is the direction of N + D_k, which they store for each
-  // target.
+  // Some viewers render N + sum of w_k (u_k - N). For each target, they store the direction u_k of N + D_k.
   unit: ({ normal, deltas }, w) =>
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };
 
-// The rule of each viewer, and its allowed error in degrees. PlayCanvas has larger errors since it stores deltas and
-// their sum as half floats, and Filament since it stores directions as quaternions of 16 bits.
+// The rule of each viewer, and its largest permitted error in degrees. PlayCanvas has larger errors because it stores
+// deltas and their sum as 16-bit floats, and Filament because it stores directions as quaternions of 16-bit integers.
 const viewers = {
   three: { rule: 'sum', degrees: 0.001, splines: true },
   babylon: { rule: 'sum', degrees: 0.001, splines: true },
@@ -47,9 +47,9 @@ const anyWeights = (random) => [0, 1, 2].map(() => 3.5 * random() - 1.5);
 const targetsOfLength = (lengthOf) => (normal, random) =>
   [0, 1, 2].map(() => minus(scaled(randomDirection(random, 0.35), lengthOf(random)), normal));
 
-// Boards: the deltas of a square, computed from its normal, and the weights at a key of the track. If `free` is given,
-// N + D_k does not have length 1, and Filament treats a frame as orthonormal that is not. Its error is then at least
-// `free` degrees.
+// The boards. For each board, `deltas` computes the deltas of a square from its normal, and `weights` gives the weights
+// at a key of the track. If `free` is given, N + D_k does not have length 1, so Filament treats a frame as orthonormal
+// that is not. Its error is then at least `free` degrees.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -62,8 +62,8 @@ const boards = {
     weights: anyWeights,
     free: 90,
   },
-  // The first target has a unit normal. The other two together give any vector D of length up to 1.95: the unit normals
-  // h + D/2 and h - D/2 have the weights s and -s, where h is perpendicular to D.
+  // The first target has a unit normal. The second and third together give any vector D of length up to 1.95. Their
+  // unit normals are h + D/2 and h - D/2, where h is perpendicular to D, and their weights are s and -s.
   'a pair of targets for any delta': {
     deltas: (normal, random) => {
       const any = scaled(randomDirection(random), 1.95 * random());
@@ -80,8 +80,8 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, `weights` those at TIMES. By no
-// rule does the normal of a square in `patches` become short.
+// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, and `weights` has those at TIMES.
+// `patches` has only squares whose normal is not short by any rule.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));
@@ -96,8 +96,8 @@ function boardOf({ deltas, weights: weightsOf }) {
   return { rows, weights, patches };
 }
 
-// Returns the weight that Filament computes from a spline: it multiplies the tangents by the elapsed share of the key
-// interval instead of its length.
+// Returns the weight that Filament computes from a spline. Filament multiplies the tangents by the elapsed share of the
+// interval between two keys, instead of by the length of the interval.
 function splineInFilament({ times, values }, time) {
   let k = 0;
   while (k + 2 < times.length && times[k + 1] <= time) ++k;
@@ -121,7 +121,8 @@ describe('a real viewer', () => {
     assert.deepEqual(browser?.faults, []);
   });
 
-  // Returns for each rule the largest angle between its normals and the viewer's, over all squares and times.
+  // Returns, for each rule, the largest angle between the normals by this rule and the normals of the viewer, over all
+  // squares and times.
   async function worstByRule(viewer, { rows, weights, patches }) {
     const path = join(folder, 'board.glb');
     await writeBoard(path, patches, rows);
@@ -145,8 +146,8 @@ describe('a real viewer', () => {
   }
   if (!FULL) return;
 
-  // Viewers differ if only some targets have normals: for a missing normal, three.js uses the base normal. Babylon.js
-  // renders only the base normal if the first target has none. PlayCanvas uses only targets with normals.
+  // Viewers differ if some targets lack normals. Three.js replaces a missing normal delta by the base normal.
+  // Babylon.js renders only the base normal if the first target has none. PlayCanvas uses only targets with normals.
   for (const viewer of Object.keys(viewers)) {
     const right = viewer === 'filament';
     test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${viewer}`, async () => {
@@ -160,7 +161,7 @@ describe('a real viewer', () => {
     });
   }
 
-  // Returns the places to which a target has moved a square at some times, as weights. A pixel is 0.02.
+  // Returns how far a target has moved a square at some times, as weights. A pixel is a weight of 0.02.
   async function weightsInViewer(viewer, track, times, page) {
     const path = join(folder, 'mover.glb');
     await writeMover(path, track);
@@ -194,14 +195,14 @@ describe('a real viewer', () => {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
           // PlayCanvas makes separate tracks of the tangents of each key, and then looks for tangents in each of these
-          // tracks. After the first key it finds none, and no longer moves the target.
+          // tracks. After the first key it finds no tangents, so it no longer moves the target.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }
       });
 
-    // PlayCanvas finds a target by its name, if the target has one. If several targets have the same name, it finds
-    // only the last.
+    // PlayCanvas finds a target by its name, if the target has one. If several targets have the same name, PlayCanvas
+    // finds only the last of them.
     const mixes = viewer === 'playcanvas';
     test(`${mixes ? 'mixes up' : 'tells apart'} targets of the same name: ${viewer}`, async () => {
       const track = { interpolation: 'STEP', times: [0, 1], values: [0.75, 0.25, 0.75, 0.25], targets: 2, moving: 0 };

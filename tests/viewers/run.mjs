@@ -1,4 +1,4 @@
-// Runs tests of this folder, and writes their output to standard output, and as TAP to a file.
+// Runs tests of this folder. Writes their results to standard output, and in the format TAP to a file.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal node tests/viewers/run.mjs build/release/viewers.tap viewers.test.mjs
 import { spawnSync } from 'node:child_process';

@@ -1,5 +1,5 @@
-// Checks that the npm package and the native program write the same bytes and print the same text for the files of the
-// real data. ./test --full npm checks a few files; CHRONORMAL_FULL=1 checks all.
+// Checks that the npm package and the native program write the same bytes and print the same text for files of real
+// data. ./test --full npm checks a few files; CHRONORMAL_FULL=1 checks all files.
 import assert from 'node:assert/strict';
 import { mkdirSync, readdirSync, readFileSync, rmSync } from 'node:fs';
 import { basename, extname, join, relative } from 'node:path';
@@ -20,7 +20,7 @@ const filesOf = (root) =>
     .map((entry) => relative(root, join(entry.parentPath ?? entry.path, entry.name)))
     .sort();
 
-// Runs a command with both programs, each in a separate folder that contains a folder `out`.
+// Runs a command with both programs. Each runs in a separate folder, which has a folder `out`.
 function both(args) {
   const [expected, found] = [['native', native], ['wasm', wasm]].map(([name, run]) => {
     const cwd = join(folder, name);
@@ -32,7 +32,7 @@ function both(args) {
   return { expected, found };
 }
 
-// Checks that both programs have the same results. Returns the number of written files.
+// Checks that both programs give the same results. Returns the number of files that they wrote.
 function assertSame(args) {
   const { expected, found } = both(args), what = args.join(' ');
   assert.equal(found.status, expected.status, `${what}\n${found.stderr}`);
@@ -49,7 +49,7 @@ function assertSame(args) {
 const found = DATA
   ? ['gltf', 'rigs', 'attack'].flatMap((part) => filesOf(join(DATA, part)).map((path) => join(DATA, part, path)))
   : [];
-// Leaves out the captured face, which takes minutes; captured_face.test.mjs tests it.
+// Skips the captured face, which takes minutes and which captured_face.test.mjs tests.
 const models = found.filter((path) => /^\.(gltf|glb|vrm)$/.test(extname(path)) && basename(path) !== 'ict_capture.glb');
 const quick = ['AnimatedMorphCube.gltf', '01_cs_morph.gltf', 'wild_times.in.glb'];
 const dance = DATA ? join(DATA, 'sequences/rumba_13') : '';

@@ -1,4 +1,4 @@
-// Describes a sequence of OBJ files in the form of reader.mjs, to compare the sequence with its bake.
+// Describes a sequence of OBJ files in the form of reader.mjs, so that the sequence can be compared with its bake.
 import { ExactNormals, length } from './exact.mjs';
 
 function parse(text) {
@@ -14,8 +14,8 @@ function parse(text) {
   return { positions: Float32Array.from(positions), indices: Uint32Array.from(indices) };
 }
 
-// Makes one mesh whose targets are the deltas of frames 1, 2, ... The weight of each target is 1 at its own frame and 0
-// at all others, and linear in between.
+// Describes a sequence as one mesh whose targets are the differences of frames 1, 2, ... from frame 0. The weight of a
+// target is 1 at its own frame, 0 at all other frames, and linear in between.
 export function describeSequence(texts, framesPerSecond) {
   const frames = texts.map(parse);
   const [{ positions, indices }] = frames;
@@ -45,7 +45,8 @@ export function describeSequence(texts, framesPerSecond) {
   };
 }
 
-// Returns `baked` with its vertices in the order of the sequence, matched by their positions in the first frame.
+// Returns `baked` with its vertices in the order of the sequence. Vertices are matched by their positions in the first
+// frame.
 export function inOrderOf(sequence, baked) {
   const [wanted] = sequence.meshes[0].primitives;
   const [primitive] = baked.meshes[0].primitives;

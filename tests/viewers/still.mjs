@@ -1,15 +1,16 @@
 // Makes a still file from a moving file at one time, with the positions and the exact normals that the mesh has at this
-// time. A viewer's picture of the still file is the expected picture of the moving file.
+// time. A viewer's picture of the still file is what its picture of the moving file must look like.
 import { Accessor, getBounds } from '@gltf-transform/core';
 import { cloneDocument } from '@gltf-transform/functions';
 import { ExactNormals, exactPositions, length } from './exact.mjs';
 import { describe, newIO, nodeWeights } from './reader.mjs';
 
-// The field of view in degrees, and the direction of the camera, which sees three sides of a box.
+// The field of view in degrees, and the direction of the camera, from which three sides of a box are visible.
 const VIEW_DEGREES = 35;
 const VIEW_FROM = [0.5, 0.45, 1];
 
-// Returns {time, truth, view} for each time: a GLB in base64, and a camera that sees the whole mesh.
+// Returns {time, truth, view} for each time. `truth` is the still file as GLB in base64, and `view` is a camera that
+// sees the whole mesh.
 export async function stillMoments(path, animation, times) {
   const io = newIO();
   const source = await io.read(path);
@@ -27,7 +28,7 @@ export async function stillMoments(path, animation, times) {
       node.setMesh(frozen(document, meshes[m], file.meshes[m], exact[m], weights)).setWeights([]);
     });
     root.listAnimations().forEach((moving) => moving.dispose());
-    // Filament aborts if a mesh with targets is used by no node.
+    // Filament aborts if a file has a mesh with targets that no node uses.
     const shown = new Set(root.listNodes().map((node) => node.getMesh()));
     for (const mesh of meshes) if (!shown.has(mesh)) mesh.dispose();
     moments.push({

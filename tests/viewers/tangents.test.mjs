@@ -1,6 +1,6 @@
-// Tests tangents, which a normal map needs, in Babylon.js, which adds up the tangents of targets. `chronormal bake`
-// recomputes the tangents of a morph. The result is compared with a still mesh whose tangents follow from the formula
-// of its surface. ctest runs this as `viewers`.
+// Tests tangents, which normal maps need, in Babylon.js, which adds up the tangents of targets. `chronormal bake`
+// computes the tangents of a morph anew. The picture of the result is compared with that of a still mesh, whose
+// tangents follow from the formula of its surface. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
 //   CHRONORMAL_CHROMIUM  the browser, if it is not in its usual place
@@ -23,16 +23,17 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((c) => c / Math.hypot(...a));
 
-// A square sheet that bends around an axis and shears: its positions, and the directions of x and y there.
+// A square sheet that bends around an axis and shears. The functions return the position at (x, y), and the directions
+// of x and y there.
 const bent = (x, y) => [Math.sin(BEND * x) / BEND + SHEAR * y, y, (1 - Math.cos(BEND * x)) / BEND];
 const alongX = (x) => [Math.cos(BEND * x), 0, Math.sin(BEND * x)];
 const alongY = () => [SHEAR, 1, 0];
 
-// The [x, y] of all vertices, from -1/2 to 1/2.
+// The coordinates [x, y] of all vertices, which are between -1/2 and 1/2.
 const places = Array.from({ length: (CELLS + 1) ** 2 }, (_, i) =>
   [i % (CELLS + 1), Math.floor(i / (CELLS + 1))].map((c) => c / CELLS - 0.5));
 
-// Makes a picture of one pixel: a normal that leans along both axes of the texture.
+// Makes a PNG of one pixel as a normal map: its normal leans along both axes of the texture.
 function normalMap() {
   const chunk = (type, data) => {
     const body = Buffer.concat([Buffer.from(type), data]), word = Buffer.alloc(8);
@@ -46,7 +47,7 @@ function normalMap() {
     chunk('IDAT', deflateSync(Buffer.from([0, ...pixel]))), chunk('IEND', Buffer.alloc(0))]);
 }
 
-// Returns the CRC-32 of a chunk, for which Node.js 18 has no function.
+// Returns the CRC-32 of a chunk of a PNG. Node.js 18 has no function for it.
 function checksum(bytes) {
   let rest = 0xffffffff;
   for (const byte of bytes) {
@@ -56,7 +57,8 @@ function checksum(bytes) {
   return (rest ^ 0xffffffff) >>> 0;
 }
 
-// Writes the sheet with a target that bends it. The target's normals are right at weight 1, and it has no tangents.
+// Writes the sheet with a target that bends it. The normals of the target are true at weight 1, and the target has no
+// tangents.
 async function writeSheet(path) {
   const document = new Document(), buffer = document.createBuffer();
   const accessor = (type, numbers, Numbers = Float32Array) =>
@@ -91,7 +93,7 @@ async function writeSheet(path) {
   await newIO().write(path, document);
 }
 
-// Gives the still mesh tangents along x, perpendicular to its normals. The normals come from the moving mesh.
+// Gives the still mesh tangents along x that are perpendicular to its normals. The normals come from the moving mesh.
 async function withRightTangents(glb) {
   const document = await newIO().readBinary(Buffer.from(glb, 'base64'));
   const primitive = document.getRoot().listMeshes()[0].listPrimitives()[0];

@@ -1,4 +1,5 @@
-// three.js as a viewer in the page: its loader, its animation mixer, and its normal material.
+// Makes three.js a viewer in the test page: its loader, its animation mixer, and its material that shows normals as
+// colours.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';
@@ -21,7 +22,7 @@ export async function load(bytes) {
   return { scene, mixer, clips: gltf.animations };
 }
 
-// Sets all objects to a time, by the mixer.
+// Moves all objects to where they are at a time, by the animation mixer.
 export function play(model, animation, time) {
   model.mixer.stopAllAction();
   if (animation === null) return;
@@ -32,12 +33,12 @@ export function play(model, animation, time) {
   model.mixer.setTime(time);
 }
 
-// Sets the weights of the first targets of every mesh; drive() sets the weights of correction targets.
+// Sets the weights of the first targets of every mesh. drive() sets the weights of correction targets.
 export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
 
-// Replaces the model by a clone whose mixer blends a clip for each weight.
+// Replaces the model by a clone. The mixer of the clone blends one clip for each weight.
 export function blend({ scene }, weights) {
   const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
   scene.remove(original);
@@ -71,7 +72,8 @@ export function cameraOf({ eye, at, degrees, near, far }, size) {
 
 export const normalsAreOfView = true;
 
-// Draws the view-space normals of all pixels, RGBA in float32: (n + 1) / 2, with alpha 0 where nothing is drawn.
+// Draws the normals in view space and returns the pixels as RGBA in float32: (n + 1) / 2 in RGB, and alpha 0 where
+// nothing is drawn.
 export async function drawNormals(model, view, size) {
   model.scene.traverse((object) => {
     if (!object.isMesh || object.material.isMeshNormalMaterial) return;

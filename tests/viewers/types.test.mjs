@@ -1,4 +1,5 @@
-// Tests the types of the npm package. They must match the arguments of its functions and the contents of reports.
+// Tests the TypeScript types of the npm package. They must match the arguments of its functions and the contents of
+// reports.
 //
 //   CHRONORMAL_PROGRAM=build/release/chronormal CHRONORMAL_NPM=build/wasm-test/package node --test
 //   tests/viewers/types.test.mjs
@@ -17,7 +18,8 @@ const { flagsOf } = await load('options.js');
 const COMMANDS = ['audit', 'bake', 'compare', 'inspect', 'sample'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
-// First, options that only a call has. Then, options of the program that only make sense for people or with files.
+// CALL has the options that only a call has. FOR_PEOPLE has the options of the program that make sense only for people
+// or with files.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
 const FOR_PEOPLE = ['help', 'help-all', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table', 'format'];
 
@@ -25,7 +27,7 @@ const listed = (name) => readFileSync(new URL(`../cli/${name}`, import.meta.url)
 const optionsOf = (command) => listed('stable_options.txt').filter(([of, option]) => of === command && !FOR_PEOPLE.includes(option.slice(2)))
   .map(([, option]) => option.slice(2).replace(/-([a-z])/g, (_, letter) => letter.toUpperCase()));
 
-// Compiles a text as TypeScript, and returns the lines with errors.
+// Compiles a text as TypeScript. Returns the lines with errors.
 function checked(text) {
   const path = join(folder, 'user.mts');
   writeFileSync(path, text);
@@ -115,7 +117,7 @@ test('what compilers refuse is refused when it runs, and nothing else', () => {
   const lines = drawn.map(({ command, name, value }) => `${command}(null! as Uint8Array, { ${name}: ${JSON.stringify(value)} });`);
   const { faults } = checked([`import { ${COMMANDS.join(', ')} } from 'chronormal';`, ...lines].join('\n'));
   const refusedByTypes = new Set(faults.map(({ line }) => line - 1)), known = new Map();
-  // Tells whether the program knows the words of an option, even if it then refuses a particular file.
+  // Tells whether the program knows these flags, even if it then refuses a particular file.
   const knows = (command, flags) => {
     const key = [command, ...flags].join('\0');
     if (!known.has(key)) {
@@ -163,7 +165,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   assert.deepEqual(faults.map(({ line, said }) => `${reports[line - 6]?.run}: ${said}`), []);
 
   const checker = program.getTypeChecker(), exported = checker.getExportsOfModule(checker.getSymbolAtLocation(source));
-  // Some keys occur only with several inputs, which a call cannot have.
+  // These keys occur only with several inputs, which a call cannot have.
   const elsewhere = (path) => /^(audit (error|files)|compare inputs)/.test(path);
   const parts = (type) => (type.isUnion() ? type.types.flatMap(parts) : [type]);
   for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => command in REPORTS && !elsewhere(`${command} ${path}`))) {

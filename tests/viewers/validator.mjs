@@ -1,11 +1,11 @@
-// Returns the errors and warnings of the Khronos validator about a file.
+// Returns the errors and warnings that the Khronos validator reports about a file.
 import { readFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
 import validator from 'gltf-validator';
 
 const WARNING = 1;
 
-// Returns the validator's complaints about a file, each as "CODE at POINTER: message".
+// Returns what the validator reports about a file. Each entry is "CODE at POINTER: message".
 export async function complaints(path) {
   const report = await validator.validateBytes(new Uint8Array(await readFile(path)), {
     uri: path,
@@ -18,7 +18,7 @@ export async function complaints(path) {
     .map((issue) => `${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
 }
 
-// Returns the complaints that the source file did not have, since bake does not repair its input.
+// Returns the entries that the validator did not report about the source file, since a bake does not repair its input.
 export async function newComplaints(path, sourcePath) {
   const before = new Set(await complaints(sourcePath));
   return (await complaints(path)).filter((complaint) => !before.has(complaint));

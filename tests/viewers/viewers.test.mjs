@@ -1,9 +1,9 @@
-// Compares the output of `chronormal bake` with other people's glTF: the validator of Khronos, a reader that adds up
-// targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. ctest runs this as `in_viewers`.
+// Tests the output of `chronormal bake` with programs of other projects: the validator of Khronos, a reader that adds
+// up targets in float32, three.js and Babylon.js in Chromium, and glTF Transform. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
-//   CHRONORMAL_DATA           a folder of moving files by other people, if set
+//   CHRONORMAL_DATA           a folder of moving files from other projects, if set
 //   CHRONORMAL_FULL=1         every file in every viewer
 //   CHRONORMAL_UPDATE_DOCS=1  writes docs/pictures/shading.png
 import assert from 'node:assert/strict';
@@ -35,13 +35,14 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/shading.png', import.
 let folder;
 const original = (name) => join(folder, `${name}.glb`);
 
-// Bakes a file, and returns the path of the result. The same file is baked only once with the same options.
+// Bakes a file and returns the path of the result. Bakes a file with the same options only once.
 const bakedBefore = new Map();
 function bake(input, ...options) {
   const key = [input, ...options].join(' ');
   if (!bakedBefore.has(key)) {
     const output = join(folder, `${basename(input, extname(input))}.${bakedBefore.size}.glb`);
-    // The exact normals of this test are area-weighted, so the bake uses area weights, whatever the author chose.
+    // The exact normals of this test use area weights, so the bake uses area weights too, whatever weighting the author
+    // chose.
     chronormal('bake', input, '-o', output, '--weighting', 'area', ...options);
     bakedBefore.set(key, output);
   }
@@ -127,7 +128,7 @@ async function assertSequence(paths, output) {
 }
 
 describe('a fault is found where', () => {
-  // Each of these functions makes one fault in a description of twist.baked.
+  // The functions that make one fault each in the description of twist.baked.
   const faults = {
     'the extra target has no weight': ({ track: { values } }) => values.forEach((_, i) => i % 2 && (values[i] = 0)),
     'the tangents of a key are swapped': ({ track }) => {
@@ -169,8 +170,8 @@ describe('glTF Transform keeps normals exact', () => {
   }
 });
 
-// Compares pictures of a file before and after the bake with exact normals at some times. Errors must exceed `wrong`
-// degrees before the bake at 7 or more of these times, and must be below 1 degree after the bake at all of them.
+// Compares pictures of a file, before and after the bake, with exact normals at some times. Before the bake, errors
+// must exceed `wrong` degrees at 7 or more of these times. After the bake, errors must be below 1 degree at all times.
 async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) {
   const output = bake(input, '--encode', 'exact');
   const times = timesOf((await read(input)).animations[0], count);
@@ -183,12 +184,12 @@ async function assertDrawn(page, viewer, input, { wrong = 5, count = 15 } = {}) 
   assert.ok(rows.filter(([before]) => before.p99 > wrong).length >= 7, shown);
 }
 
-// The weights that a program sets for two targets.
+// The weights that a program sets for the two targets of a file.
 const WEIGHTS = [0.8, 0.6];
 
-// Tests a mesh of several primitives that no animation moves. A program sets the weights of its targets, and then the
-// weights of the correction targets by the formulas in the file (examples/drive.mjs). Without this second step, the
-// normals are wrong.
+// Tests a mesh of several primitives that no animation moves. A program sets the weights of the targets, and then the
+// weights of the correction targets by the formulas in the file (examples/drive.mjs). Without the second step, the
+// normals must be wrong.
 async function assertDriven(page, viewer, parts) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.${parts}.${viewer}.glb`));
   await writeStill(still, { parts });
@@ -196,7 +197,7 @@ async function assertDriven(page, viewer, parts) {
   await assertDrivenLike(page, viewer, still, moved, WEIGHTS);
 }
 
-// Tests, like assertDriven(), a file whose mesh rests at some weights.
+// Makes the test of assertDriven() with a given file. `moved` is the same file with its mesh at rest at these weights.
 async function assertDrivenLike(page, viewer, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
@@ -205,11 +206,12 @@ async function assertDrivenLike(page, viewer, still, moved, weights) {
   assert.ok(before.p99 > 5, JSON.stringify(before));
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
   assert.deepEqual(detached, before);
-  if (viewer !== 'playcanvas') assert.deepEqual(after, attached); // examples/drive.mjs supports the other two viewers
+  // examples/drive.mjs supports only three.js and Babylon.js
+  if (viewer !== 'playcanvas') assert.deepEqual(after, attached);
 }
 
-// Tests the head of Blender's monkey with two overlapping shape keys, at weights drawn from a fixed seed, without its
-// animation.
+// Tests the head of Blender's monkey, which has two overlapping shape keys, without its animation. The weights are
+// drawn from a fixed seed.
 async function assertSuzanneDriven(page, viewer) {
   const random = randomNumbers(21), weights = [random(), random()];
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `suzanne.${name}.${viewer}.glb`));
@@ -222,7 +224,7 @@ async function assertSuzanneDriven(page, viewer) {
   await assertDrivenLike(page, viewer, still, moved, weights);
 }
 
-// Tests, like assertDriven(), a mesh while several independent clips are blended.
+// Makes the test of assertDriven() while several independent clips are blended.
 async function assertBlended(page, viewer) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${viewer}.glb`));
   await writeStill(still, { parts: 2 });
@@ -235,8 +237,7 @@ async function assertBlended(page, viewer) {
   assert.ok(attached.pixels > 2000 && attached.p99 < 1, JSON.stringify(attached));
 }
 
-// Draws a vase at one moment with wrong beside true normals, and compares the drawing with the picture in the
-// documents.
+// Draws a vase at one moment with wrong normals beside true normals. Compares the drawing with the picture in docs/.
 async function assertPicture(page) {
   const TIME = 0.4;
   const [bare, stored] = ['bare', 'stored'].map((name) => join(folder, `vase.${name}.glb`));
@@ -286,8 +287,8 @@ describe('Chromium', () => {
       test(`shows right normals of ${name} in ${viewer}`, async () =>
         assertDrawn(browser.page, viewer, original(name)));
     }
-    // The cube is at rest most of the time, and its largest error is 4.02 degrees. The stress test has errors of 2.69
-    // degrees at few vertices.
+    // The cube is at rest most of the time, and its largest error is 4.02 degrees. In the stress test, a few vertices
+    // have errors of 2.69 degrees.
     for (const [name, how] of [
       ['AnimatedMorphSphere', {}],
       ['AnimatedMorphCube', { wrong: 2, count: 41 }],

@@ -1,5 +1,5 @@
-// Tests the avatars of docs/viewers.md with the code that is shown there. An avatar is baked and loaded by three-vrm,
-// whose expressions set the weights of targets. A face tracker sets weights by name. This test runs in Node.js;
+// Tests the avatars of docs/viewers.md with the code on that page. An avatar is baked, and three-vrm loads the result.
+// Its expressions set the weights of targets, and a face tracker sets weights by name. This test runs in Node.js;
 // viewers.test.mjs tests the pixels that are drawn with such weights.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -21,7 +21,7 @@ const BONES = ['hips', 'spine', 'head', ...['left', 'right'].flatMap((side) =>
   ['UpperLeg', 'LowerLeg', 'Foot', 'UpperArm', 'LowerArm', 'Hand'].map((bone) => side + bone))];
 const EXPRESSIONS = { happy: [[0, 1]], aa: [[1, 0.75]] }; // [target, weight]
 
-// Returns a GLB with changed JSON.
+// Returns a GLB file with JSON that change() has changed.
 function withJson(glb, change) {
   const size = glb.readUInt32LE(12), json = JSON.parse(glb.subarray(20, 20 + size).toString());
   change(json);
@@ -60,7 +60,7 @@ await writeAvatar(avatar);
 chronormal('bake', avatar, baked, '--poses', 'random', '--weighting', 'area', '--for', 'three');
 
 async function load(path) {
-  globalThis.self ??= globalThis; // the loader needs this variable
+  globalThis.self ??= globalThis; // the loader of three-vrm needs this variable
   const loader = new GLTFLoader();
   loader.register((parser) => new VRMLoaderPlugin(parser));
   const { buffer, byteOffset, byteLength } = readFileSync(path);
@@ -72,7 +72,8 @@ async function load(path) {
 
 const draw = (face) => face.onBeforeRender(null, null, null, face.geometry, face.material, null);
 
-// Returns the average error in degrees between the normals rendered with these weights and the normals of the surface.
+// Returns the average angle, in degrees, between the normals rendered with the weights of `face` and the normals of the
+// surface.
 async function errorOf(face) {
   const [mesh] = (await read(baked)).meshes, [primitive] = mesh.primitives, w = face.morphTargetInfluences;
   const own = new ExactNormals((await read(avatar)).meshes[0]).at(Float32Array.from(w.slice(0, 2)))[0];

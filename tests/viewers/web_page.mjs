@@ -1,12 +1,12 @@
-// Opens a page of web/ as a file in headless Chromium. Refuses and records every other request, and records errors of
-// the page.
+// Opens a page of web/ as a file in headless Chromium. Refuses and records all other requests, and records the errors
+// of the page.
 import { pathToFileURL } from 'node:url';
 import { launch } from './browser.mjs';
 
 const DESKTOP = { width: 1280, height: 800 };
 
-/** Returns {page, faults, show(path), close()}: `faults` has the requests and errors of pages, and show() opens another
- * page instead. */
+/** Opens a browser with a page. Returns {page, faults, show(path), close()}: `faults` has the requests and errors of
+ * the page, and show() opens another page instead. */
 export async function openPages() {
   const browser = await launch(), page = await browser.newPage(), faults = [];
   let address;
@@ -29,13 +29,13 @@ export async function openPages() {
   return { page, faults, show, close: () => browser.close() };
 }
 
-/** Returns the worst error at the moment that the page shows: degrees and vertex. */
+/** Returns the worst error at the moment that the page shows, in degrees, and its vertex. */
 export const worstNow = (page) => page.evaluate(() => {
   const { degrees, vertex } = document.querySelector('.now').dataset;
   return { degrees: Number(degrees), vertex: Number(vertex) };
 });
 
-/** Goes to the first of the worst places by clicking on it. */
+/** Clicks on the first entry in the list of worst places, which takes the page to that place. */
 export async function clickWorst(page) {
   await page.evaluate(() => document.querySelector('.places button').click());
   return worstNow(page);

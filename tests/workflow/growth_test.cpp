@@ -1,5 +1,5 @@
-// Checks that the time of every computation of normals and every comparison is linear in the number of corners of a
-// polygon. The normal at each corner depends on the whole polygon.
+// Checks that the time of every computation of normals, and of every comparison, grows only linearly with the number of
+// corners of a polygon, although the normal at each corner depends on the whole polygon.
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ std::vector<Way> ways() {
 
 TEST(Growth, is_linear_in_the_corners_of_a_polygon) {
   constexpr std::uint32_t kFew = 1000, kMany = 8000;
-  constexpr double kOnce = 0.05;  // seconds for computations in integers, which only large polygons need
+  constexpr double kOnce = 0.05;  // in seconds, for computations in integers that only large polygons need
   for (const LargePolygons kind : {LargePolygons::kAlone, LargePolygons::kPillow, LargePolygons::kPrism}) {
     Random random(49007);
     const Motion few = test::large_polygons(kind, kFew, random, 3), many = test::large_polygons(kind, kMany, random, 3);

@@ -1,6 +1,6 @@
-// Tests processes that share a task, as threads. Their samples are one output with the bytes of a single process, which
-// appears only when all processes are done. Their audits have the bytes of a single process, although each processes
-// only its own segments.
+// Tests peers, processes that share a task; here they are threads. Their samples form one output with the same bytes as
+// from a single process. It appears only when all peers are done. Their audits have the same bytes as from a single
+// process, although each peer processes only its own segments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 
 using test::TemporaryFolder;
 
-// A meeting of several threads, in which they exchange texts. Each call adds a text to a list, and returns the list
+// A meeting at which threads exchange texts. Each thread calls it with a text. The calls return the list of all texts
 // when all threads have called.
 class Meeting {
  public:
@@ -84,7 +84,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard, peers);
 }
 
-// Lets every peer write its share in a thread. Returns the results of all peers.
+// Lets every peer write its share in a separate thread. Returns the results of all peers.
 std::vector<SampleSummary> write_together(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                           const SampleOutput& output, std::size_t count) {
   Meeting meeting(count);
@@ -148,7 +148,7 @@ TEST(SamplesOfPeers, normals_without_a_direction_are_counted_over_all) {
   EXPECT_EQ(found[0].normals, found[0].zeros);
 }
 
-// The test acts as the first of two peers and communicates with the second.
+// The test plays the first of two peers itself, and communicates with the second peer, which is a thread.
 TEST(SamplesOfPeers, no_name_is_given_before_all_are_done) {
   for (const SampleFormat format : {SampleFormat::kNpy, SampleFormat::kNpz, SampleFormat::kObj}) {
     const TemporaryFolder folder;
@@ -216,8 +216,8 @@ TEST(SamplesOfPeers, a_file_that_a_peer_cannot_see_and_a_stream_are_refused) {
   EXPECT_EQ(stream.error().code, ErrorCode::kUsage);
 }
 
-// Makes a sheet of which the first half moves only in the first segment, where it becomes large. The second half moves
-// only in the last segment.
+// Makes a sheet whose first half moves only in the first segment, in which it becomes large. The second half moves only
+// in the last segment.
 Motion moving_by_turns() {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.resize(1);
@@ -239,7 +239,7 @@ Motion moving_by_turns() {
 
 TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
   const Motion motion = moving_by_turns();
-  // Both rules are computed in blocks, and vertex by vertex.
+  // An audit by nlerp measures blocks of faces, and an audit by slerp measures one vertex after the other.
   for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
     AuditOptions options;
     options.rule = rule;
@@ -272,7 +272,7 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard also reads the first keyframe. Apart from this, it reads only the keyframes of its own segments.
+      // The last shard also reads the first keyframe. Otherwise, it reads only the keyframes of its own segments.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

@@ -1,4 +1,4 @@
-// Checks that memory and time of an audit grow only linearly with the file, even if a small file repeats a part
+// Checks that the memory and the time of an audit grow only linearly with the file, even if a small file repeats a part
 // thousands of times.
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using test::GltfBuilder;
 
-// Makes a triangle whose stored normals do not follow its target. The target is listed `targets` times.
+// Makes a triangle whose stored normals do not follow its target. The target is in the file `targets` times.
 GltfBuilder triangle(std::size_t targets) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}),
@@ -33,7 +33,7 @@ GltfBuilder triangle(std::size_t targets) {
   return builder;
 }
 
-// Makes clips of two keys, which either share their arrays or have separate arrays.
+// Makes a file with `count` animations of two keys each, which share their arrays if are_shared.
 GltfBuilder clips(std::size_t count, bool are_shared) {
   GltfBuilder builder = triangle(1);
   for (std::size_t i = 0; i < count; ++i) {
@@ -47,7 +47,7 @@ GltfBuilder clips(std::size_t count, bool are_shared) {
 
 TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
   if (!test::AllocationCounter::works()) GTEST_SKIP() << "operator new is a sanitizer's";
-  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // in bytes; bins of a histogram would take 36 kB
+  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // in bytes; the bins of a histogram would take 36 kB
   for (const GltfBuilder& builder : {clips(kMany, true), clips(kMany, false), triangle(kMany)}) {
     const test::GltfFixture fixture(builder);
     ASSERT_TRUE(fixture.ok()) << fixture.error();
@@ -60,7 +60,7 @@ TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
   }
 }
 
-// Eight times as many targets must take about eight times as long, not 64 times.
+// Eight times as many targets must take about eight times as long, and not 64 times.
 TEST(AuditGrowth, time_is_linear_in_targets) {
   constexpr std::size_t kFew = 500, kMany = 4000;
   const test::GltfFixture few(triangle(kFew)), many(triangle(kMany));

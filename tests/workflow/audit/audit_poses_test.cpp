@@ -1,4 +1,5 @@
-// Tests poses in an audit: the poses in which a file opens, requested poses, and weights of targets outside of 0 to 1.
+// Tests the poses that an audit judges: the poses in which a file opens, requested poses, and weights of targets
+// outside of 0 to 1.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ std::vector<AuditSubject> subjects_of(const Audit& audit, Kind kind) {
   return result;
 }
 
-// Returns the hinge with a second target, which opens the hinge further.
+// Returns the hinge with a second target that is the same as the first, so both together fold it further.
 ShadedMesh two_targets() {
   ShadedMesh mesh = hinge();
   mesh.targets.push_back(mesh.targets[0]);
@@ -50,14 +51,14 @@ TEST(AuditPoses, the_weights_of_every_node_are_a_subject_each_and_shut_the_gate)
   GltfBuilder builder = two_targets().file();
   builder.json["meshes"][0]["weights"] = {0.25, 0.0};
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});
-  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // another node that shows the same mesh
+  builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {1.0, 1.0}}});  // a second node with the same mesh
   builder.json["nodes"].push_back({{"mesh", 0}, {"weights", {0.0, 0.0}}});
   const Audit audit = audited(builder).value();
   const std::vector<AuditSubject> opening = subjects_of(audit, Kind::kOpening);
   ASSERT_EQ(opening.size(), 2U);
   EXPECT_EQ(opening[0].node, std::size_t{0});
   EXPECT_EQ(opening[1].node, std::size_t{1});
-  // If this pose is requested with the same weights, it has the same errors.
+  // The audit of a requested pose with the same weights must give the same errors.
   for (std::size_t n = 0; n < 2; ++n) {
     AuditOptions options;
     options.is_posed = true;

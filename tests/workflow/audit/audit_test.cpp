@@ -1,4 +1,4 @@
-// Checks that audits find the errors that a file was made with, and report everything that they cannot judge.
+// Checks that audits find the errors that a file was made with, and that they report what they cannot judge.
 #include "chronormal/workflow/audit.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ std::vector<Kind> kinds_of(const Audit& audit) {
   return kinds;
 }
 
-// Makes a target that moves every vertex by a function of its position.
+// Makes a target that moves every vertex by delta(position).
 ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(const Vector&)>& delta) {
   ShadedMesh::Target target;
   for (std::size_t v = 0; v < mesh.vertices(); ++v)
@@ -50,8 +50,8 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
 // ---- by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
-  // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. The normals of vertices 1 and
-  // 2 are the sum of an upward and a sideways normal.
+  // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. At vertices 1 and 2, an upward
+  // and a sideways normal are added.
   const Audit result = audit_of(hinge().file(), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const AuditSubject& subject = result.subjects[0];
@@ -64,7 +64,7 @@ TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
   EXPECT_EQ(subject.error.worst_at.vertex, 3U);
   EXPECT_EQ(subject.error.worst_at.at, 1);
   EXPECT_EQ(subject.error.histogram[0], 3U);
-  // 45 degrees is the boundary between two bins.
+  // An error of 45 degrees is at the boundary between two bins, so rounding decides its bin.
   EXPECT_EQ(subject.error.histogram[8] + subject.error.histogram[7], 2U);
   EXPECT_EQ(subject.error.histogram[9] + subject.error.histogram[8], 3U - subject.error.histogram[7]);
   EXPECT_EQ(result.worst, 0U);
@@ -90,12 +90,12 @@ TEST(Audit, percentiles_are_known_to_a_thousandth_of_a_degree_or_a_percent) {
 }
 
 TEST(Audit, halfway_is_where_the_drawing_has_it) {
-  // At weight 1/2 the folding face has the corner (1, 0, 1), so its normal is parallel to (-1, 0, 1).
+  // At weight 1/2, the folding face has the corner (1, 0, 1), so its normal is parallel to (-1, 0, 1).
   const Audit result = audit_of(hinge().file(), {.samples = 3});
   EXPECT_NEAR(result.error.mean(), (45 + 45 + 90 + 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi) / 9, 1e-12);
 }
 
-// Adds an avatar's expression that sets the only target of a file to a weight.
+// Adds an expression of an avatar that sets the only target of the file to this weight.
 GltfBuilder with_expression(GltfBuilder builder, double weight, bool is_first_version) {
   if (is_first_version) {
     const Json binds = {{{"mesh", 0}, {"index", 0}, {"weight", 100 * weight}}};
@@ -118,8 +118,8 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
     EXPECT_EQ(subject.mesh, 0U);
     EXPECT_EQ(subject.samples, 1U);
     EXPECT_EQ(subject.vertices, 3U);
-    // Halfway, the vertex that belongs only to the folding face has an error of 45 degrees. The errors at the edge are
-    // smaller.
+    // At weight 1/2, the vertex that belongs only to the folding face has an error of 45 degrees. The errors at the
+    // edge are smaller.
     EXPECT_EQ(subject.error.judged, 3U);
     EXPECT_NEAR(subject.error.worst, 45, 1e-12);
     EXPECT_NEAR(subject.error.sum, 45 + 2 * std::atan(1 / 3.0) * 180 / std::numbers::pi, 1e-12);
@@ -130,12 +130,12 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
 }
 
 TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
-  // The target reaches weight 1, and the expression exceeds it.
+  // The target alone is judged up to weight 1. The expression sets a larger weight.
   const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
   EXPECT_EQ(result.findings[1].expression, 0U);
   EXPECT_FALSE(result.findings[1].target || result.findings[1].animation);
-  // The corner is then at (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
+  // The corner of the folding face is then at (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
   EXPECT_NEAR(result.findings[1].degrees, 180 - std::atan(1.5) * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(result.worst, 1U);
 }
@@ -153,9 +153,10 @@ TEST(Audit, an_expression_that_moves_nothing_is_no_subject_and_one_animation_alo
 }
 
 TEST(Audit, flat_rule_shows_faces) {
-  // At weight 1, each face at the edge is at 45 degrees from the vertices' sum; the other vertices are right.
+  // At weight 1, each face at the edge is at 45 degrees from the normal sum of vertices 1 and 2. Vertices 0 and 3 have
+  // no error.
   const Audit result = audit_of(hinge().file(), {.rule = AuditRule::kFlat, .samples = 2});
-  EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 occur twice, vertex 3 once
+  EXPECT_EQ(result.error.judged, 10U);  // corners: vertices 1 and 2 are in both faces, vertex 3 in one
   EXPECT_NEAR(result.error.sum, 4 * 45, 1e-12);
 }
 
@@ -193,7 +194,7 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 }
 
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
-  // The file stores N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would. This test computes them
+  // The file stores N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would. The test computes these
   // from three normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
@@ -213,7 +214,7 @@ TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats
   builder.json["meshes"][0]["extras"]["chronormal"] = {
       {"version", 1}, {"encode", "exact"}, {"sequence", false}, {"extras", {{{"target", 1}, {"factors", {0, 0}}}}}};
   const Audit result = audit_of(builder);
-  ASSERT_EQ(result.subjects.size(), 1U);  // a correction target is not a subject by itself
+  ASSERT_EQ(result.subjects.size(), 1U);  // a correction target is not judged alone
   EXPECT_LT(result.error.worst, 1e-3);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kBaked}));
   EXPECT_EQ(result.findings[0].count, 1U);
@@ -230,7 +231,7 @@ void expect_same(const MotionError& error, const std::vector<Real>& expected) {
     worst = std::max(worst, e);
   }
   const auto count = static_cast<Real>(expected.size());
-  constexpr double kFloat = 2e-4;  // rendered normals are summed in float32
+  constexpr double kFloat = 2e-4;  // viewers add up normals in float32
   EXPECT_NEAR(error.mean(), static_cast<double>(sum / count), kFloat);
   EXPECT_NEAR(error.rms(), static_cast<double>(std::sqrt(squares / count)), kFloat);
   EXPECT_NEAR(error.worst, static_cast<double>(worst), kFloat);
@@ -275,7 +276,7 @@ TEST(Audit, targets_alone_have_the_errors_of_an_oracle) {
   }
 }
 
-// Evaluates a cubic spline between two keys by appendix C of the specification.
+// Returns the value of a cubic spline between two keys, by appendix C of the glTF specification.
 double hermite(double t, double v0, double out0, double in1, double v1, double td) {
   const double t2 = t * t, t3 = t2 * t;
   return (2 * t3 - 3 * t2 + 1) * v0 + td * (t3 - 2 * t2 + t) * out0 + (-2 * t3 + 3 * t2) * v1 + td * (t3 - t2) * in1;
@@ -320,14 +321,15 @@ TEST(Audit, animations_of_every_interpolation_have_the_errors_of_an_oracle) {
   }
 }
 
-// If many targets are active, an audit interpolates positions between the positions at two keys.
+// If many targets are active, the audit interpolates positions between the positions at two keys instead of adding up
+// the targets.
 TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
   constexpr std::size_t kTargets = 12;
   const ShadedMesh mesh = random_sheet(21, 4, kTargets, 0.1);
   fixtures::Random random(21);
   const std::vector<float> times = {0, 1, 1.5F, 4};
-  // Each key has in-tangents, weights and out-tangents. At one of the keys, few targets are active, so that the audit
-  // does not interpolate there.
+  // Each key has in-tangents, weights and out-tangents. At one key, few targets are active, so the audit does not
+  // interpolate there.
   std::vector<float> cubic, weights;
   for (std::size_t key = 0; key < times.size(); ++key) {
     for (std::size_t row = 0; row < 3; ++row) {
@@ -367,7 +369,7 @@ TEST(Audit, animations_of_many_targets_have_the_errors_of_an_oracle) {
 }
 
 TEST(Audit, angle_weighting_judges_by_angles) {
-  // A wide face and a narrow face meet in vertex 0; the target lifts the far corner of the narrow one.
+  // A wide face and a narrow face meet at vertex 0. The target lifts the far corner of the narrow face.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -1, 4, 0};
@@ -391,7 +393,7 @@ TEST(Audit, angle_weighting_judges_by_angles) {
 
 TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
   ShadedMesh mesh = random_sheet(5, 6, 1, 0);
-  // The faces around a vertex have equal weights.
+  // Stores the normals of a weighting in which all faces around a vertex have equal weights.
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < mesh.corners.size(); ++c) {
@@ -415,7 +417,7 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
 }
 
 TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
-  // Two coplanar triangles have the same normal by every weighting, and the author's normals are turned away from it.
+  // Two triangles in one plane have the same normal by every weighting. The author's normals are turned away from it.
   ShadedMesh mesh = hinge();
   for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
   const Audit result = audit_of(mesh.file());
@@ -426,7 +428,7 @@ TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) 
 }
 
 TEST(Audit, takes_from_2_to_1000001_samples) {
-  // For an invalid number of samples the file is not even read.
+  // If the number of samples is invalid, the file is not even read.
   for (const std::size_t samples : {std::size_t{0}, std::size_t{1}, std::size_t{1000002}, ~std::size_t{0}}) {
     const test::GltfFixture file(hinge().file());
     const Result<Audit> result = audit(*file, {.samples = samples});
@@ -443,16 +445,17 @@ TEST(Audit, takes_from_2_to_1000001_samples) {
 // ---- samples that are not judged
 
 TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
-  // Vertex 3 crosses the edge at weight 1/2. There its face has no area, and after that the face points down.
+  // Vertex 3 crosses the edge at weight 1/2. At that weight its face has no area, and at larger weights the face points
+  // down.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   const Audit result = audit_of(mesh.file(), {.samples = 3});
-  // At weight 1 the two faces at the edge cancel, so the vertices 1 and 2 have no normal either.
+  // At weight 1, the normals of the two faces cancel at the edge, so vertices 1 and 2 have no normal either.
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
-  // The faces at vertices 1 and 2 have an area although their sum is zero, and this exceeds every tolerance. The face
-  // of vertex 3 has no area, so it is not drawn.
+  // At vertices 1 and 2, the faces have an area although their normals add up to zero, and this counts as exceeding
+  // every tolerance. The only face of vertex 3 has no area, so it is not drawn.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -461,7 +464,8 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_FALSE(result.is_within(180));
 }
 
-// Two strips of triangles with a hinge between them. At t = 1/2 the strips coincide where they are equally wide.
+// Two strips of triangles with a hinge between them. At t = 1/2, the strips lie on each other where they are equally
+// wide.
 struct Hinges {
   std::vector<std::array<int, 3>> from, to;
   std::vector<std::uint32_t> corners;
@@ -482,14 +486,14 @@ struct Hinges {
     }
   }
 
-  // Returns the positions at t = half / 2, which are integers.
+  // Returns the positions at t = half / 2 as integers.
   [[nodiscard]] std::vector<std::array<int, 3>> at(int half) const {
     std::vector<std::array<int, 3>> result = from;
     for (std::size_t v = 0; v < result.size(); ++v)
       for (std::size_t c = 0; c < 3; ++c) result[v][c] += half * (to[v][c] - from[v][c]) / 2;
     return result;
   }
-  // Counts the vertex normals that are zero at t = half / 2 although faces around the vertex have an area.
+  // Returns the number of vertices whose normal is zero at t = half / 2 although a face at the vertex has an area.
   [[nodiscard]] std::size_t count_cancelled(int half) const {
     const std::vector<std::array<int, 3>> places = at(half);
     std::vector<std::array<int, 3>> sums(places.size());
@@ -529,14 +533,15 @@ TEST(Audit, normals_of_drawn_faces_that_cancel_are_counted_apart_and_shut_every_
     for (std::size_t v = 0; v < mesh.vertices(); ++v) mesh.normals.insert(mesh.normals.end(), {0.6F, 0, 0.8F});
     mesh.targets.push_back({hinges.floats(true), {}, {}});
     const Audit of_file = audit_of(mesh.file(), {.samples = 3, .viewers = {kViewers[0]}});
-    // A sequence without stored normals is measured in blocks. With slerp it is measured output by output.
+    // An audit of a sequence without stored normals measures faces in blocks, except by slerp, for which it measures
+    // one vertex after the other.
     std::vector<float> moved = mesh.positions;
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += mesh.targets[0].positions[i];
     Motion motion;
     motion.topology = Topology::triangles(mesh.vertices(), mesh.corners).value();
     motion.keyframes = {{mesh.positions, 0, ""}, {moved, 1, ""}};
     motion.connect_as_sequence();
-    // A viewer renders black if the normals at both ends are opposite, since their average is zero.
+    // If the normals at both ends are opposite, their average is zero and a viewer renders black.
     for (const Audit& found : {of_file, audit(motion, {}, {.samples = 3}).value(),
                                audit(motion, {}, {.rule = AuditRule::kSlerp, .samples = 3}).value()}) {
       EXPECT_EQ(found.error.cancelled + found.error.unlit, right) << draw;
@@ -575,7 +580,7 @@ TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_
 }
 
 TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
-  // Weights of 3e38 turn deltas of 2 into infinity, and infinities of opposite signs sum to NaN.
+  // With weights of 3e38, deltas of 2 become infinite, and infinities of opposite signs add up to NaN.
   for (const bool has_opposite : {false, true}) {
     ShadedMesh mesh = hinge();
     mesh.targets[0].normals.assign(12, 2);
@@ -598,21 +603,22 @@ TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
 }
 
 TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_only_where_nothing_is_drawn) {
-  // The face of vertex 3 has no area at weight 1/2. At weight 1 it coincides with the other face. Their normals then
-  // cancel at the vertices 1 and 2, but both faces are drawn.
+  // The face of vertex 3 has no area at weight 1/2. At weight 1, it coincides with the other face. Their normals then
+  // cancel at vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
-  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at weight 1
+  // vertex 3: zero at weight 1/2, downwards at weight 1
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};
   MotionError error = audit_of(mesh.file(), {.samples = 3}).error;
   EXPECT_EQ(error.no_normal, 3U);
   EXPECT_EQ(error.unlit, 0U);
   EXPECT_NEAR(error.worst, 0, 1e-9);
-  mesh.targets[0].normals = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -2};  // vertex 1: zero at 1
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, -1, 0, 0, 0, 0, 0, -2};  // vertex 1: zero at weight 1
   error = audit_of(mesh.file(), {.samples = 3}).error;
   EXPECT_EQ(error.no_normal, 2U);
   EXPECT_EQ(error.unlit, 1U);
   EXPECT_EQ(error.unlit_at.vertex, 1U);
-  // An infinite normal cannot be lit, not even where the surface has no normal.
+  // A viewer cannot light an infinite normal. This counts even where the surface has no normal.
   mesh.normals[11] = 3e38F;
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
   error = audit_of(mesh.file(), {.samples = 3}).error;
@@ -647,7 +653,7 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
   EXPECT_EQ(result.still, 1U);
   EXPECT_FALSE(result.worst.has_value());
   mesh = hinge();
-  mesh.normals.clear();  // no normals, so viewers shade the mesh flat
+  mesh.normals.clear();  // without normals, viewers shade the mesh flat
   result = audit_of(mesh.file());
   EXPECT_TRUE(result.subjects.empty());
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kFlat}));
@@ -659,8 +665,8 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
 // ---- faults
 
 TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
-  // At weight 1 the sum of both faces is (-4, 0, 4), and N + D is its unit vector. The normal of vertex 3 goes from z
-  // to -x.
+  // At weight 1, the sum of both face normals is (-4, 0, 4), and N + D is its unit vector. The normal of vertex 3 goes
+  // from z to -x.
   ShadedMesh mesh = hinge();
   const float h = std::sqrt(0.5F);
   mesh.targets[0].normals = {0, 0, 0, -h, 0, h - 1, -h, 0, h - 1, -1, 0, -1};
@@ -668,9 +674,9 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
-  // At weight 1, the rendered normal of vertex 3 is parallel to (-1, 0, 1).
+  // At weight 1, the rendered normal of vertex 3 is now parallel to (-1, 0, 1), and so wrong.
   mesh.targets[0].normals[11] = 0;
-  // This weighting differs from the weighting of the author.
+  // This weighting is not the weighting of the author.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
@@ -678,16 +684,17 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
 }
 
 TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
-  // The targets stretch the mesh along x and y. Each target alone does not turn the plane x + z = 0, but shears by both
-  // together do.
+  // Target 0 tilts the face, and target 1 shears it within its plane. The normals of each target alone are right, but
+  // both targets together turn the normal further.
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1};
-  // n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1) is linear. Changing e and f along x and z gives a term w0 w1.
+  // If both targets moved vertices along z, n(w) = (1, 0, w0) x (0, 1, w1) = (-w0, -w1, 1) would be linear. Here,
+  // target 1 moves a vertex along x, so n(w) has a term with w0 w1.
   mesh.targets = {{{0, 0, 0, 0, 0, 1, 0, 0, 0}, {-1, 0, 0, -1, 0, 0, -1, 0, 0}, {}},
                   {{0, 0, 0, 0, 0, 0, 1, 0, 0}, {}, {}}};
-  // n = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
+  // n(w) = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
   GltfBuilder builder = mesh.file();
   builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   const Audit result = audit_of(builder);
@@ -696,7 +703,7 @@ TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
   EXPECT_LT(result.subjects[1].error.worst, 1e-4);
   EXPECT_NEAR(result.error.worst, std::atan(1 / std::sqrt(2)) * 180 / std::numbers::pi, 1e-4);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongTogether, Kind::kMissingNormals}));
-  EXPECT_FALSE(result.findings[1].is_fault());  // target 1 turns no normal
+  EXPECT_FALSE(result.findings[1].is_fault());  // target 1 alone turns no normal
 }
 
 TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
@@ -707,10 +714,10 @@ TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
   EXPECT_EQ(result.findings[1].count, 3U);
   EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
   EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
-  // True tangents follow the folded face, and at the edge they are halfway up.
+  // True tangents lie in the folded face. At the edge, they point up by half of the angle.
   mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
   EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
-  // Tangents along the hinge do not change.
+  // Tangents along the hinge do not change when it folds.
   mesh.targets[0].tangents.clear();
   mesh.tangents.clear();
   for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {0, 1, 0, 1});
@@ -796,8 +803,8 @@ TEST(Audit, one_animation_can_be_asked_for) {
 }
 
 TEST(Audit, other_rules_join_the_normals_of_the_keys) {
-  // In a single triangle, vertex 2 moves from y to z, so n(t) = (0, -t, 1 - t). The stored normals at the keys are (0,
-  // 0, 1) and (0, -3, 0).
+  // The mesh is a single triangle, in which vertex 2 moves from y to z, so n(t) = (0, -t, 1 - t). The stored normals at
+  // the keys are (0, 0, 1) and (0, -3, 0).
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -810,7 +817,7 @@ TEST(Audit, other_rules_join_the_normals_of_the_keys) {
     const double t = i / 4.0, right = angle(t, 1 - t);
     lerp_sum += std::fabs(angle(3 * t, 1 - t) - right);
     slerp_sum += std::fabs(90 * t - right);
-    step_sum += i < 4 ? right : 0;  // by the rule step, the next keyframe is shown from its time on
+    step_sum += i < 4 ? right : 0;  // by the rule step, only the last sample shows the second key
   }
   EXPECT_NEAR(sum(AuditRule::kGltf), lerp_sum, 1e-4);
   EXPECT_NEAR(sum(AuditRule::kLerp), lerp_sum, 1e-4);
@@ -849,7 +856,8 @@ TEST(Audit, bad_options_are_refused) {
 
 // ---- sequences
 
-// Makes a triangle whose vertex 2 moves from y through z to -y: n = (0, 0, 1), (0, -1, 0), (0, 0, -1) at the keyframes.
+// Makes a triangle whose vertex 2 moves from y through z to -y. At the three keyframes, n is (0, 0, 1), (0, -1, 0) and
+// (0, 0, -1).
 Motion turning() {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -874,13 +882,13 @@ TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
   ASSERT_EQ(result.subjects.size(), 1U);
   EXPECT_EQ(result.subjects[0].segments, 2U);
   EXPECT_EQ(result.error.judged, 3U * 2 * 5);
-  const double quarter = std::atan2(1.0, 3.0) * 180 / std::numbers::pi;  // n at t = 1/4
+  const double quarter = std::atan2(1.0, 3.0) * 180 / std::numbers::pi;  // the angle of n at t = 1/4, in degrees
   EXPECT_NEAR(result.error.worst, 22.5 - quarter, 1e-5);
   EXPECT_EQ(result.error.worst_at.at, 0.5);
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_TRUE(result.offsets.empty());
-  // Linear interpolation of unit normals is exact here.
+  // In this motion, linear interpolation of unit normals is exact.
   EXPECT_LT(audit_of(turning(), {}).error.worst, 1e-4);
 }
 
@@ -895,14 +903,14 @@ TEST(Audit, stored_normals_of_a_sequence_that_stay_behind_are_errors) {
 }
 
 TEST(Audit, offset_that_an_author_carries_along_is_none) {
-  // The normals are tilted by 45 degrees towards x at every keyframe.
+  // At every keyframe, the stored normals are tilted by 45 degrees towards x.
   const StoredNormals tilted{{thrice(1, 0, 1), thrice(2, -2, 0), thrice(3, 0, -3)}};
   const Audit result = audit_of(turning(), tilted, {.samples = 2});
   EXPECT_LT(result.error.worst, 1e-4);
   ASSERT_EQ(result.offsets.size(), 1U);
   EXPECT_NEAR(result.offsets[0].worst, 45, 1e-9);
   EXPECT_EQ(result.offsets[0].vertices, 3U);
-  // An offset that grows is an error by the amount that it grows. Here it grows from 45 to 60 degrees.
+  // If the author's offset grows over time, the growth counts as an error. Here the offset grows from 45 to 60 degrees.
   StoredNormals growing = tilted;
   const float t = std::tan(60 * std::numbers::pi_v<float> / 180);
   growing.of_keyframes[1] = thrice(t, -1, 0);
@@ -910,8 +918,8 @@ TEST(Audit, offset_that_an_author_carries_along_is_none) {
 }
 
 TEST(Audit, normals_of_keyframe_0_alone_say_which_edges_are_hard) {
-  // The hinge becomes a sequence. With a hard edge each face has its own normal, which linear interpolation renders
-  // exactly.
+  // The keyframes of the hinge as a sequence. If the edge is hard, each face has its own normal, and linear
+  // interpolation is exact.
   const ShadedMesh mesh = hinge();
   Motion motion;
   motion.topology = Topology::triangles(4, mesh.corners).value();

@@ -1,5 +1,5 @@
 // Compares the errors that an audit finds in each viewer with plain loops. The loops compute the weights that the
-// viewer plays, the positions and true normals at these weights, and the normals that the viewer renders.
+// viewer plays, the positions and true normals at the specified weights, and the normals that the viewer renders.
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ Triple triple(const Vector& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-// The errors that an oracle finds.
+// The errors that an oracle finds, in degrees.
 struct Expected {
   std::vector<Real> errors;
   Real displaced = 0;
 
-  // Adds the errors of all vertices. The rendered normals have the weights that the viewer plays, and the true normals
-  // the weights of the specification.
+  // Adds the errors of all vertices in one pose. The rendered normals have the weights that the viewer plays, and the
+  // true normals have the weights of the specification.
   void add(const ShadedMesh& mesh, std::string_view viewer, const std::vector<double>& played,
            const std::vector<double>& specified) {
     const std::vector<double> none(played.size());
@@ -66,7 +66,8 @@ void expect_same(const ViewerAudit& viewer, Expected expected, const std::string
   Real sum = 0;
   for (const Real e : expected.errors) sum += e;
   std::sort(expected.errors.begin(), expected.errors.end());
-  // A number halfway between two representable numbers may be rounded either way.
+  // Numbers that are halfway between two representable numbers may be rounded up or down, so small differences are
+  // permitted.
   constexpr double kMean = 0.002, kWorst = 0.1;
   EXPECT_NEAR(viewer.error.mean(), static_cast<double>(sum) / static_cast<double>(expected.errors.size()), kMean);
   EXPECT_NEAR(viewer.error.worst, static_cast<double>(expected.errors.back()), kWorst);
@@ -169,12 +170,12 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
   builder.add_track(builder.add_animation("moves"), 0, std::vector<float>{0, 1}, values);
   const Audit result = audit_of(builder, {.viewers = find_viewers("three,filament").value()});
   EXPECT_GT(result.viewers[0].error.worst, 1);
-  EXPECT_LT(result.viewers[1].error.worst, 0.01);  // there is no motion
+  EXPECT_LT(result.viewers[1].error.worst, 0.01);  // nothing moves
   EXPECT_GT(result.viewers[1].displaced, 0.05);
   EXPECT_EQ(result.viewers[0].displaced, 0);
   EXPECT_TRUE(result.viewers[0].is_within(180));
   EXPECT_EQ(result.viewers[1].beyond, 2U);
-  EXPECT_FALSE(result.viewers[1].is_within(180));  // the viewer renders zero normals
+  EXPECT_FALSE(result.viewers[1].is_within(180));  // the viewer renders normals of length zero
   const auto note = std::find_if(result.findings.begin(), result.findings.end(),
                                  [](const AuditFinding& f) { return f.kind == AuditFinding::Kind::kBeyondViewer; });
   ASSERT_NE(note, result.findings.end());
@@ -186,8 +187,8 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
 }
 
 TEST(AuditViewers, a_normal_that_a_viewer_cannot_light_is_counted_for_that_viewer) {
-  // By the specification, N + D is (0, 0, 0.003). Viewers with eight bits per component round it to zero. Viewers that
-  // keep directions keep it exactly.
+  // By the specification, N + D is (0, 0, 0.003). Viewers that store eight bits per component round this to zero.
+  // Viewers that store directions keep the direction exactly.
   ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals.assign(12, 0);
   mesh.targets[0].normals[11] = -1 + 0.003F;

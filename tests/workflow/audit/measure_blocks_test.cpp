@@ -1,5 +1,5 @@
-// Checks that an audit gives the same figures block by block and vertex by vertex. An audit that keeps single errors
-// works vertex by vertex.
+// Checks that an audit gives the same figures whether it measures blocks of faces or one vertex after the other. An
+// audit that keeps the errors of single samples measures one vertex after the other.
 #include "workflow/audit/measure_blocks.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ void expect_same(const MotionError& a, const MotionError& b) {
   if (a.unlit > 0) expect_same(a.unlit_at, b.unlit_at);
 }
 
-// Compares both kinds of audit. Returns the number of judged samples.
+// Runs both kinds of audit and compares them. Returns the number of judged samples.
 std::size_t expect_same_audits(const Motion& motion, AuditOptions options) {
   const Result<Audit> blocks = audit(motion, {}, options);
   options.keep_errors = true;

@@ -40,7 +40,7 @@ const AuditFinding* find(const Audit& audit, Kind kind) {
   return found == audit.findings.end() ? nullptr : &*found;
 }
 
-// Makes a skin whose weights for three joints, in two sets, do not sum to 1.
+// Makes a skin with three joints and two sets of weights, whose sum is not 1.
 Skin random_skin(fixtures::Random& random, std::size_t vertices) {
   Skin skin;
   for (std::size_t j = 0; j < 3; ++j) {
@@ -73,8 +73,8 @@ Trs random_place(fixtures::Random& random, double scale) {
   return place;
 }
 
-// The nodes of a rig. Node 0 has the mesh, and its own transform must not matter. Node 1 is a joint, and node 2 is a
-// joint and a child of node 1. Node 3 is a joint and a child of node 4, which has a matrix.
+// The nodes of a rig. Node 0 has the mesh, and its own transform must have no effect. Node 1 is a joint, and so is its
+// child, node 2. Node 3 is a joint and a child of node 4, which has a matrix.
 struct Rig {
   Trs one, two, three;
   Rows four = {{{{1, 0.25, 0, 2}, {0, 1, 0.5, 0}, {0.125, 0, 1, -1}}}};
@@ -153,7 +153,7 @@ TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
     EXPECT_FALSE(note->is_fault());
     EXPECT_EQ(note->count, 1U);
     EXPECT_NEAR(note->degrees, most, 1e-6);
-    // Without the skin, the errors are different.
+    // The audit without the skin must have different errors.
     EXPECT_GT(std::fabs(audit_of(builder, {.skins = false}).error.mean() - result.error.mean()), 0.05) << seed;
   }
 }
@@ -163,7 +163,7 @@ TEST(SkinnedAudit, viewers_see_the_same_normals_through_a_skin_in_ways_of_their_
   fixtures::Random random(11);
   const Skin skin = random_skin(random, mesh.vertices());
   Rig rig{random_place(random, 0.5), random_place(random, 0.5), random_place(random, 0.5)};
-  rig.three.scale[1] *= -1;  // one joint mirrors, the others do not
+  rig.three.scale[1] *= -1;  // this joint mirrors, the others do not
   GltfBuilder builder = mesh.file();
   rig.add_to(builder);
   skin.add_to(builder, {1, 2, 3});
@@ -187,7 +187,7 @@ TEST(SkinnedAudit, viewers_see_the_same_normals_through_a_skin_in_ways_of_their_
   EXPECT_GT(std::fabs(result.viewers[2].error.mean() - result.viewers[1].error.mean()), 0.1);
 }
 
-// Evaluates a track by the formulas of the specification, with an independent search for the key.
+// Returns the value of a track at a time, by the formulas of the glTF specification, with its own search for the key.
 template <std::size_t N>
 std::array<Real, N> value_at(const std::string& interpolation, const std::vector<float>& times,
                              const std::vector<float>& values, double time, bool just_before) {
@@ -211,7 +211,7 @@ std::array<Real, N> value_at(const std::string& interpolation, const std::vector
   std::array<Real, N> to{};
   for (std::size_t c = 0; c < N; ++c) to[c] = value(key + 1, 1, c);
   Real s = 1 - t, r = t;
-  if (N == 4) {  // rotations use slerp
+  if (N == 4) {  // rotations are interpolated by slerp
     Real cosine = 0, a = 0, b = 0;
     for (std::size_t c = 0; c < N; ++c) {
       a += result[c] * result[c];
@@ -230,7 +230,7 @@ std::array<Real, N> value_at(const std::string& interpolation, const std::vector
   return result;
 }
 
-// A channel of a node, and its values at any time.
+// A channel of a node. It can be evaluated at any time.
 struct Channel {
   std::string path, interpolation;
   std::vector<float> times, values;
@@ -272,15 +272,15 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
     const std::size_t animation = builder.add_animation("talk");
     const std::vector<float> times = {0.25F, 1, 1.5F};
     std::vector<float> keys = {0, 0.5F, 1, 0.25F, 0.5F, 1};
-    if (seed % 2 == 0) keys = {0, 0.5F, 1, 0.25F, 1, 0.25F};  // between the last two keys, only joints move
+    if (seed % 2 == 0) keys = {0, 0.5F, 1, 0.25F, 1, 0.25F};  // only joints move between the last two keys
     builder.add_track(animation, 0, times, keys);
     const Channel turn(random, "rotation", kinds[seed % 3]), grow(random, "scale", kinds[(seed + 1) % 3]),
         move(random, "translation", kinds[(seed + 2) % 3]), other(random, "rotation", kinds[(seed + 1) % 3]);
     turn.add_to(builder, animation, 1, false);
     grow.add_to(builder, animation, 2, seed % 2 == 0);
     move.add_to(builder, animation, 2, false);
-    other.add_to(builder, animation, 0, false);  // the transform of the mesh's node turns nothing
-    // Another animation must have no influence.
+    other.add_to(builder, animation, 0, false);  // the transform of the node with the mesh turns no normals
+    // An animation that is not selected must have no effect.
     other.add_to(builder, builder.add_animation("walk"), 2, false);
     const Audit result = audit_of(builder, {.animation = "talk"});
     ASSERT_EQ(result.subjects.size(), 1U);
@@ -309,7 +309,7 @@ TEST(SkinnedAudit, tracks_are_seen_in_the_pose_of_their_animation_at_that_time) 
 
 // ---- invariants
 
-// Returns the errors of an audit, to compare with ==.
+// Returns all errors of an audit in a list, which can be compared with ==.
 std::vector<double> figures(const Audit& audit) {
   std::vector<double> result;
   for (const AuditSubject& subject : audit.subjects)
@@ -319,7 +319,7 @@ std::vector<double> figures(const Audit& audit) {
   return result;
 }
 
-// Gives a mesh one joint with a transform, without inverse bind matrices.
+// Gives a mesh a skin with one joint, which has this transform. The skin has no inverse bind matrices.
 GltfBuilder with_one_joint(const ShadedMesh& mesh, const Json& place) {
   GltfBuilder builder = mesh.file();
   builder.add("nodes", place);
@@ -352,17 +352,17 @@ TEST(SkinnedAudit, bind_pose_gives_the_figures_without_a_skin_and_so_do_turns_an
 }
 
 TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing) {
-  // The face folds from (0, 0, 1) to (-1, 0, 0), while its vertex 3 renders (0, 0, 1). Halving z turns the true normal
-  // at w, (-sin, 0, cos) of the fold angle, towards x.
+  // The normal of the folding face goes from (0, 0, 1) to (-1, 0, 0), while vertex 3 renders (0, 0, 1). On the screen,
+  // the joint halves the z of normals. It turns the true normal, (-sin, 0, cos) of the fold angle, towards -x.
   const Audit result = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0.5}}}), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const MotionError& error = result.subjects[0].error;
   EXPECT_EQ(error.judged, 6U);
   EXPECT_NEAR(error.worst, 90, 1e-12);
-  // At the edge, n is (-1, 0, 1). On the screen its z is halved.
+  // At the edge, n is (-1, 0, 1), and its z is halved on the screen.
   const double edge = std::atan2(1, 0.5) * 180 / std::numbers::pi;
   EXPECT_NEAR(error.mean(), (edge + edge + 90) / 6, 1e-12);
-  // The skinned surface turns the other way: its normal is (-0.5, 0, 1).
+  // The normal of the skinned surface is turned the other way: it is (-0.5, 0, 1).
   const double skinned = std::atan2(0.5, 1) * 180 / std::numbers::pi;
   EXPECT_NEAR(result.subjects[0].skinning->worst, edge - skinned, 1e-12);
   EXPECT_EQ(result.subjects[0].skinning->judged, 6U);
@@ -377,8 +377,8 @@ TEST(SkinnedAudit, what_a_joint_makes_vanish_is_not_judged) {
   EXPECT_EQ(error.faint, 0U);
   EXPECT_EQ(error.no_normal, 3U * 21);
   EXPECT_EQ(result.subjects[0].skinning->judged, 0U);
-  // A joint that is flat in z keeps only the x of the true normals at the edge, and nothing of the rendered normal (0,
-  // 0, 1).
+  // A joint that scales z by 0 keeps only the x of normals. True normals at the edge then point along x, and nothing
+  // remains of the rendered normal (0, 0, 1).
   const Audit flat = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0}}}), {.samples = 2});
   EXPECT_EQ(flat.subjects[0].error.unlit, 3U);
   EXPECT_EQ(flat.subjects[0].error.no_normal, 3U);
@@ -411,7 +411,7 @@ TEST(SkinnedAudit, nodes_of_one_mesh_are_judged_each_through_its_own_skin) {
   GltfBuilder builder = with_one_joint(mesh, {{"scale", {1, 1, 0.4}}});
   builder.add("skins", {{"joints", {0}}});
   builder.add_node(0);                 // node 2 has no skin
-  builder.add_node(0, {{"skin", 1}});  // node 3 has a rigid skin
+  builder.add_node(0, {{"skin", 1}});  // the skin of node 3 is rigid
   const std::size_t animation = builder.add_animation("");
   builder.add_track(animation, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   for (const std::size_t node : {2U, 3U}) {

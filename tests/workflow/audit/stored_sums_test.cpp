@@ -1,5 +1,5 @@
-// Checks that sums of stored normals for several sets of weights equal, bit for bit, the sums that a viewer computes
-// vertex by vertex.
+// Checks that the sums of stored normals for several sets of weights equal, bit for bit, the sums that a viewer
+// computes vertex by vertex.
 #include "workflow/audit/stored_sums.h"
 
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ struct Fixture {
   std::vector<JudgedOutput> outputs;
 };
 
-// Every third vertex has a zero normal. Target 0 turns all vertices, target 1 none, target 2 the last one, target 3
-// some in the middle, and target 5 every second vertex. Target 4 has no normals.
+// Makes stored normals. Every third vertex has a zero normal. Target 0 turns all vertices, target 1 none, target 2 the
+// last vertex, target 3 some in the middle, and target 5 every second vertex. Target 4 has no normals.
 Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   Fixture result;
@@ -50,7 +50,7 @@ Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   return result;
 }
 
-// Computes N + sum w D of one component, target after target.
+// Returns one component of N + sum w D, added up in float32 target by target.
 float plain_sum(const GltfShading& shading, std::size_t i, const std::vector<double>& weights) {
   float sum = shading.normals[i];
   for (std::size_t k = 0; k < weights.size(); ++k) {

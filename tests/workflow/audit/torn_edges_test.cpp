@@ -1,5 +1,5 @@
-// Tests which edges count as torn, that is, over which edges errors jump. Compares with a count edge by edge, with
-// angles in long double.
+// Tests which edges count as torn. At a torn edge, the errors of its two vertices differ much. Compares the audit with
+// a count edge by edge, in which angles are computed in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ Vector scaled_to_one(const Vector& a) {
   return {a[0] / size, a[1] / size, a[2] / size};
 }
 
-// Returns the area-weighted normals of a field of hills, with one target at this weight.
+// Returns the area-weighted normals of hills, with one target at this weight.
 std::vector<Vector> right_normals(const test::Hills& hills, const std::vector<float>& deltas, long double weight) {
   std::vector<Vector> result(hills.vertices(), Vector{});
   for (std::size_t f = 0; f < hills.corners.size(); f += 3) {

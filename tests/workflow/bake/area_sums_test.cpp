@@ -1,4 +1,5 @@
-// Compares sums of areas with plain loops over faces and elements, on every instruction set and number of threads.
+// Compares sums of areas with plain loops over faces and elements, on every instruction set and for every number of
+// threads.
 
 #include "workflow/bake/sequence/area_sums.h"
 
@@ -26,13 +27,13 @@ using Vector = std::array<double, 3>;
 PointRows rows_of(const Motion::Keyframe& keyframe) {
   PointRows rows(keyframe.positions.size() / 3 * 4);
   for (std::size_t i = 0; i < keyframe.positions.size(); ++i)
-    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // with digits beyond float32
+    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // has digits beyond float32
   for (std::size_t v = 0; v < rows.size() / 4; ++v) rows[4 * v + 3] = std::nan("");
   return rows;
 }
 
-// A sum of some terms, and the sum of their absolute values. If the sum is below the rounding error of so many terms,
-// it counts as 0.
+// A sum of terms, together with the sum of their absolute values. If the sum is below the rounding error of so many
+// terms, it counts as 0.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;
@@ -76,7 +77,7 @@ std::vector<Vector> sums_of(const Topology& topology, const NormalGroups& groups
   return result;
 }
 
-// Describes the first element whose sums differ by a bit, or returns "".
+// Compares the sums of all elements with the expected bits. Describes the first element that differs, or returns "".
 std::string difference(const Motion& motion, const NormalGroups& groups) {
   const PointRows a = rows_of(motion.keyframes[0]), b = rows_of(motion.keyframes[1]);
   const std::vector<Vector> of_a = sums_of(motion.topology, groups, a), of_b = sums_of(motion.topology, groups, b);

@@ -1,6 +1,6 @@
-// Checks the errors that the smallest candidate leaves on the captured face. The test looks at instants between the
-// keys that the bake used neither for fitting nor for judging. The environment variable CHRONORMAL_DATA names the
-// folder of the face; with CHRONORMAL_FULL, all of its keys are tested instead of the first few.
+// Checks the errors that the smallest candidate of a bake has on the captured face. The test uses instants between keys
+// that the bake used neither for fitting nor for judging. It is skipped unless the environment variable CHRONORMAL_DATA
+// names the folder of the face. If CHRONORMAL_FULL is set, all keys of the face are tested instead of the first few.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ constexpr std::size_t kTargets = 57, kMostTargets = 112, kMostTargetsAlone = 80,
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
-// Returns the GLB with only its first `keys` keys, in which target i has the weights of target from[i].
+// Returns the GLB file with only its first `keys` keys. In these, target i has the weights of target from[i].
 std::string with_track(const GltfPlayer& player, const std::string& glb, const std::vector<std::size_t>& from,
                        std::size_t keys) {
   auto json = player.json;
@@ -74,7 +74,7 @@ struct Errors {
     for (const float error : degrees) sum += static_cast<double>(error);
     return sum / static_cast<double>(degrees.size());
   }
-  // Returns the error at a quantile.
+  // Returns the quantile `part` of the errors, in degrees.
   [[nodiscard]] float at(double part) {
     const auto place = degrees.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(degrees.size() - 1));
     std::nth_element(degrees.begin(), place, degrees.end());
@@ -82,7 +82,7 @@ struct Errors {
   }
 };
 
-// Returns the errors of all vertices in some poses, given as weights before and after the bake. Leaves out samples
+// Returns the errors of all vertices in some poses. A pose has the weights before and after the bake. Skips samples
 // whose normal is shorter than a thousandth of the normal in the base.
 Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<double>, std::vector<float>>>& poses) {
   const test::GltfTruth truth(*baked.before, 0);
@@ -104,7 +104,7 @@ Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<dou
   return errors;
 }
 
-// Returns the errors at random instants between two keys.
+// Returns the errors at random instants between two neighbouring keys.
 Errors errors_between_keys(const Baked& baked, std::size_t gaps_apart) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> part(0, 1);
@@ -136,7 +136,7 @@ class BakeCapture : public testing::Test {
     is_full_ = std::getenv("CHRONORMAL_FULL") != nullptr;
   }
 
-  // Bakes the face so that target i has the track of target from[i].
+  // Bakes the face with tracks exchanged: target i has the weights of target from[i].
   [[nodiscard]] Baked baked(const std::vector<std::size_t>& from, const BakeOptions& options) const {
     const GltfPlayer player(glb_);
     const std::size_t keys = player.accessor(player.json["animations"][0]["samplers"][0]["input"]).size();

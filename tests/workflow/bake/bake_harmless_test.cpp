@@ -1,4 +1,4 @@
-// Tests deltas that all kinds of viewers render in the same way, and the guarantee that a bake makes nothing worse.
+// Tests deltas that viewers of all kinds render in the same way, and the guarantee that a bake makes no viewer worse.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,8 @@ Vector unit_of(const Vector& v) {
   return size == 0 ? v : Vector{v[0] / size, v[1] / size, v[2] / size};
 }
 
-// Computes the normal that a viewer renders at a vertex: the weighted sum of its stored values for the base normal and
-// each delta.
+// Returns the normal that a viewer renders at a vertex: the weighted sum of the base normal and the deltas, in the form
+// in which the viewer stores them.
 Vector shown(const test::GltfPlayer& player, const Json& primitive, std::size_t v, const std::vector<double>& weights,
              Rule rule) {
   const auto vector_of = [&](const Json& accessor) {
@@ -57,7 +57,7 @@ struct Weights {
 
 std::vector<double> doubles(const std::vector<float>& values) { return {values.begin(), values.end()}; }
 
-// Samples the track of a file at instants that are neither keys nor simple fractions between keys.
+// Returns the weights at instants of a track that are neither keys nor simple fractions of the intervals between keys.
 std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   const Json& sampler = baked.before->json["animations"][0]["samplers"][0];
   const std::vector<float> times = baked.before->accessor(sampler["input"].get<std::size_t>());
@@ -70,7 +70,7 @@ std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   return result;
 }
 
-// Returns the weights for each target alone, with correction targets by the rule of docs/formats.md.
+// Returns the weights for each target alone. The weights of correction targets follow from the rule of docs/formats.md.
 std::vector<Weights> alone(const Baked& baked) {
   std::vector<Weights> result;
   const Json& mesh = baked.mesh();
@@ -96,7 +96,7 @@ std::vector<Weights> alone(const Baked& baked) {
 }
 
 struct Change {
-  double before = 0, after = 0;  // sums of errors in degrees
+  double before = 0, after = 0;  // sums of errors, in degrees
   double worst_before = 0, worst = 0;
   std::size_t judged = 0;
 
@@ -126,7 +126,7 @@ Change change(const Baked& baked, const std::vector<Weights>& poses, Rule rule) 
   return result;
 }
 
-// Makes hills with two or three targets that are activated one after the other and overlap.
+// Makes hills with two or three targets, which are activated one after the other and overlap in time.
 GltfBuilder moving(std::size_t targets, unsigned seed, double size = 0.4, const char* interpolation = "LINEAR") {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -249,7 +249,7 @@ TEST(BakeHarmless, steps_and_splines_keep_their_keys) {
   }
 }
 
-// Gives the targets of the hills the normal deltas of a bake, with noise added.
+// Gives the targets of the hills the normal deltas that a bake writes, with added noise.
 GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned seed, double noise) {
   BakeOptions options;
   options.encoding = encoding;
@@ -263,8 +263,8 @@ GltfBuilder with_deltas(GltfBuilder builder, BakeEncoding encoding, unsigned see
   return builder;
 }
 
-// Over a whole surface, neither the average nor the worst error may grow beyond the tolerance, even if single normals
-// become worse.
+// Over a whole surface, neither the average error nor the worst error may grow by more than the tolerance, even if
+// single normals become worse.
 TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_gave) {
   std::size_t changed = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
@@ -274,7 +274,7 @@ TEST(BakeHarmless, no_surface_is_worse_than_before_whatever_normals_the_author_g
         GltfBuilder builder = test::hills_document(2, seed);
         builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3}, std::vector<float>{0, 0, 1, 0.25F, 0.5F, 1, 0, 0.5F});
         builder = with_deltas(std::move(builder), BakeEncoding::kEndpoint, seed, noise);
-        BakeOptions geometric;  // the true normals of this test follow from areas alone, not from the author's normals
+        BakeOptions geometric;  // the true normals of this test follow from areas alone
         geometric.weighting = Weighting::kArea;
         geometric.encoding = encoding;
         const Baked result = baked(builder, geometric);
@@ -303,8 +303,8 @@ TEST(BakeHarmless, extra_targets_stay_within_the_room_of_the_viewers) {
   EXPECT_EQ(three.report.meshes[0].left_out, 0U);
 }
 
-// A bake prefers short correction targets with long weights. It does not use them if viewers that keep unit normals
-// would become worse.
+// A bake prefers short deltas of correction targets with large weights. It must not use them if viewers that store unit
+// normals would become worse.
 TEST(BakeHarmless, a_plain_bake_is_nearly_right_where_deltas_add_up_and_no_worse_where_they_do_not) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     BakeOptions plain;
@@ -337,7 +337,7 @@ TEST(BakeHarmless, the_report_says_what_each_viewer_shows) {
 }
 
 TEST(BakeHarmless, the_mean_of_the_report_is_over_all_vertices) {
-  // All vertices have similar errors, so the average is not much smaller than the worst error.
+  // All vertices have similar errors, so the average over all vertices is not much smaller than the worst error.
   const Baked result = test::bake_document(test::with_misleading_normals(test::still_hills_document(2)));
   ASSERT_EQ(result.error, "");
   const ViewerChange& viewer = result.report.meshes[0].viewers.at(0);
@@ -361,7 +361,8 @@ TEST(BakeHarmless, exact_is_right_at_weight_1_without_its_extra_targets) {
   }
 }
 
-// A correction of a single target must give true normals halfway, where the weight of the correction is largest.
+// A correction target for a single target must give true normals halfway between the keys, where the weight of the
+// correction target is largest.
 TEST(BakeHarmless, what_a_target_corrects_of_itself_makes_it_right_half_way) {
   for (const Lengths lengths : {Lengths::kUnit, Lengths::kShort, Lengths::kFree}) {
     GltfBuilder builder = test::hills_document(1, 5);

@@ -1,4 +1,4 @@
-// Checks that bakes with the fewest keys of a sequence follow the input motion in a viewer that interpolates linearly.
+// Checks that bakes of a sequence with the fewest keys follow the motion in a viewer that interpolates linearly.
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ std::vector<VectorD> positions_at(const Motion& motion, double time) {
 }
 
 // The largest angle in degrees between the normals of the file and the vertex normals of the motion, and the largest
-// distance of a vertex in the file from the motion. The mesh has a size of about 1.
+// distance between a vertex of the file and its place in the motion. The size of the mesh is about 1.
 struct Off {
   double degrees = 0, distance = 0;
 };
@@ -79,7 +79,7 @@ Off off(const Motion& motion, const ShownGlb& glb, int times) {
   return worst;
 }
 
-// Samples a motion of one segment at equal steps, like a program that exports frames.
+// Samples a motion of one segment at equal intervals, as a program that exports frames does.
 Motion sampled(const Motion& motion, std::size_t frames) {
   Motion result = motion;
   result.keyframes.clear();
@@ -144,7 +144,7 @@ TEST(BakeKeys, keyframes_that_lie_on_lines_are_left_out) {
   const Off worst = off(motion, ShownGlb(keys.glb), 200);
   EXPECT_LE(worst.degrees, 1 + 1e-3);
   EXPECT_LT(worst.distance, 1e-5);
-  // A keyframe beside the line must be kept.
+  // A keyframe that is not on the straight line between its neighbours must be kept.
   Motion bumped = frames;
   bumped.keyframes[7].positions[30] += 0.01F;
   const ShownGlb glb(keys_of(bumped, 1).glb);
@@ -157,7 +157,8 @@ TEST(BakeKeys, no_key_could_be_spared) {
   const double tolerance = 0.5;
   const Keys keys = keys_of(motion, tolerance);
   ShownGlb glb(keys.glb);
-  // Every key is needed: without it, one line over both of its intervals exceeds the tolerance at some normal.
+  // Every key must be needed. If it were omitted, a straight line over both of its intervals would exceed the tolerance
+  // at some normal.
   const std::vector<float> times = glb.times;
   ASSERT_GT(times.size(), 3U);
   for (std::size_t k = 1; k + 2 < times.size(); ++k) {
@@ -201,7 +202,7 @@ TEST(BakeKeys, other_weights_and_no_tolerance_at_all_are_refused) {
 TEST(BakeKeys, there_must_be_times_for_them_in_float32) {
   Motion motion = fixtures::smooth_morph(4);
   motion.keyframes[0].time = 1000000;
-  motion.keyframes[1].time = 1000000.0625;  // the next float
+  motion.keyframes[1].time = 1000000.0625;  // the next float after 1000000
   motion.connect_as_sequence();
   BakeOptions options;
   options.encoding = BakeEncoding::kKeys;

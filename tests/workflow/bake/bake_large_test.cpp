@@ -1,4 +1,4 @@
-// Checks that the memory for baking and auditing a large file is limited by the file's size.
+// Checks that the memory for baking and auditing a large file has a limit that follows from the size of the file.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -23,8 +23,8 @@ void append_word(std::string& text, std::uint32_t value) {
 }
 void append_float(std::string& text, float value) { append_word(text, std::bit_cast<std::uint32_t>(value)); }
 
-// A GLB of a bumpy grid with normals, in which all vertices morph. Each of four targets lifts a quarter of the grid,
-// and an animation drives all four.
+// A GLB file of a bumpy grid with normals. Each of four targets lifts a quarter of the grid, so all vertices move, and
+// an animation drives all four targets.
 class MorphingGrid {
  public:
   explicit MorphingGrid(std::uint32_t side) : side_(side), count_(side * side) {
@@ -81,7 +81,7 @@ class MorphingGrid {
     ++next_;
   }
 
-  // Writes positions and normals. Returns the accessor of the normals.
+  // Writes the positions and the normals of the base. Returns the accessor of the normals.
   std::size_t write_base() {
     const std::string vec3 = R"("componentType":5126,"type":"VEC3")", last = std::to_string(side_ - 1);
     for (std::uint32_t v = 0; v < count_; ++v) {
@@ -127,8 +127,8 @@ std::string write_grid(const TemporaryFolder& folder, std::uint32_t side) {
   return path;
 }
 
-constexpr unsigned kLimit = 600;      // seconds, on a busy machine too
-constexpr std::uint32_t kSide = 600;  // 34.5 MB, which is large compared with the program
+constexpr unsigned kLimit = 600;      // in seconds, enough on a busy machine
+constexpr std::uint32_t kSide = 600;  // 34.5 MB, much more than the program itself
 
 TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) {
   if (test::is_sanitized()) GTEST_SKIP() << "sanitizers take memory of their own";
@@ -146,11 +146,11 @@ TEST(BakeLarge, memory_of_exact_is_below_twice_the_file_where_all_of_it_morphs) 
     if (const Status written = edit.write(output, true); !written) return written.error().text();
     return std::to_string(baked.value().added_targets) + " targets";
   };
-  // A small file is baked first, so that the program's own memory does not count for the large one.
+  // Bakes a small file first, so that memory that every bake needs does not count for the large file.
   const test::ChildRun run = test::run_in_child(
       kLimit, [&] { return bake_file(path); }, [&] { (void)bake_file(small); });
   ASSERT_TRUE(run.finished) << run.text;
-  EXPECT_EQ(run.text, "7 targets");  // four squares, and three products where quarters overlap
+  EXPECT_EQ(run.text, "7 targets");  // four squares, and three products of quarters that overlap
   const std::size_t size = std::filesystem::file_size(path);
   EXPECT_GT(std::filesystem::file_size(output), size);
   EXPECT_LT(run.peak_growth, 2 * size);

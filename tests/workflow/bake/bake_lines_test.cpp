@@ -1,4 +1,4 @@
-// Tests endpoint deltas of targets that are active at the same time.
+// Tests the deltas of the encoding endpoint (one delta per target) for targets that are active at the same time.
 
 #include <gtest/gtest.h>
 
@@ -22,12 +22,12 @@ BakeOptions endpoint(Weighting weighting = Weighting::kArea) {
   return options;
 }
 
-// Bakes a file with such misleading normals that the bake replaces all of them.
+// Gives a file normals that are so misleading that a bake replaces all of them, and bakes the file.
 Baked bake_misled(const GltfBuilder& builder, const BakeOptions& options) {
   return test::bake_document(test::with_misleading_normals(builder), options);
 }
 
-// Adds an animation of three targets, first one after the other, then together.
+// Adds an animation that activates three targets, first one after the other and then together.
 void add_dance(GltfBuilder& builder) {
   builder.add_track(0, 0, std::vector<float>{0, 1, 2, 3, 4},
                     std::vector<float>{0, 0, 0, 1, 0, 0.5F, 1, 1, 0, 0.3F, 1, 1, 0, 0, 0.7F});
@@ -42,7 +42,7 @@ void expect_same_deltas(const Baked& a, const Baked& b) {
     EXPECT_EQ(deltas_of(a, k), deltas_of(b, k));
 }
 
-// Returns poses with one of three targets alone, from 0 to 1.
+// Returns poses in which only one of the three targets is active, with weights from 0 to 1.
 std::vector<test::Pose> poses_alone(std::size_t target) {
   std::vector<test::Pose> poses;
   for (int i = 0; i <= 20; ++i) {
@@ -55,7 +55,7 @@ std::vector<test::Pose> poses_alone(std::size_t target) {
   return poses;
 }
 
-// Returns the error of the deltas of one file over the track of another file with the same targets.
+// Returns the errors that the deltas of one file have over the track of another file with the same targets.
 ShownError error_on_track(const Baked& track, const Baked& deltas, bool uniform = false) {
   test::GltfTruth truth(*track.before, 0);
   truth.uniform = uniform;
@@ -79,8 +79,8 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
     EXPECT_EQ(alone.report.meshes[0].fitted_elements, 0U);
     const ShownError error = error_on_track(fitted, fitted), of_alone = error_on_track(fitted, alone);
     EXPECT_LT(error.mean(), of_alone.mean());
-    EXPECT_LE(error.worst, of_alone.worst + 0.1);  // at other instants than those used for fitting
-    // The bake measures its error at more instants than these poses.
+    EXPECT_LE(error.worst, of_alone.worst + 0.1);  // the poses are not at the instants that the fit used
+    // The bake measures its error at more instants, so its error may be slightly larger.
     EXPECT_LE(error.worst, 1.02 * fitted.report.meshes[0].largest_error);
     EXPECT_GE(error.worst, 0.9 * fitted.report.meshes[0].largest_error);
     fitted_mean += error.mean();
@@ -90,7 +90,7 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
   RecordProperty("alone", std::to_string(alone_mean / static_cast<double>(seeds)));
   EXPECT_GE(seeds, 7U);
   EXPECT_LT(fitted_mean, 0.6 * alone_mean);
-  // Both averages are in docs/theory.md.
+  // docs/theory.md states these two averages.
   EXPECT_NEAR(alone_mean / static_cast<double>(seeds), 4.42, 0.01);
   EXPECT_NEAR(fitted_mean / static_cast<double>(seeds), 1.14, 0.01);
 }
@@ -104,7 +104,8 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
   const test::GltfTruth truth(*baked.before, 0);
   std::vector<std::vector<float>> deltas;
   for (const auto& target : baked.mesh()["primitives"][0]["targets"]) deltas.push_back(baked.numbers(target["NORMAL"]));
-  // The fit minimises the component of the rendered normal that is perpendicular to the true normal.
+  // Returns what the fit minimises: the squares of the components of rendered normals that are perpendicular to the
+  // true normals.
   const auto across = [&](std::size_t vertex) {
     double sum = 0;
     for (const test::Pose& pose : poses) {
@@ -129,7 +130,7 @@ TEST(BakeLines, no_small_change_of_a_delta_is_better) {
           float& number = deltas[k][3 * vertex + c];
           const float kept = number;
           number += change;
-          // The fit uses other samples than these poses, so a slightly better fit may exist.
+          // The fit used other samples, so for these poses slightly better deltas may exist.
           EXPECT_GT(across(vertex), 0.99 * best);
           number = kept;
         }
@@ -186,7 +187,7 @@ TEST(BakeLines, without_area_in_the_base_are_right_where_targets_are_active) {
 }
 
 TEST(BakeLines, other_weightings_are_fitted_to_their_own_normals) {
-  for (const float scale : {1.0F, 400.0F, 0.01F}) {  // the lengths of normals do not matter
+  for (const float scale : {1.0F, 400.0F, 0.01F}) {  // the lengths of normals must not matter
     SCOPED_TRACE(scale);
     test::Hills hills(2);
     std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas(), hills.deltas()};
@@ -217,7 +218,7 @@ TEST(BakeLines, without_an_animation_each_target_is_for_itself) {
 }
 
 TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
-  // In one file, the weights are about a billionth. In the other, two targets have the same weights up to a
+  // In one file, the weights are about a billionth. In the other file, two targets have the same weights, except for a
   // ten-thousandth.
   GltfBuilder tiny = test::hills_document(3, 6), alike = test::hills_document(3, 6);
   tiny.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{1e-9F, 2e-9F, 0, 0, 1e-9F, 1e-9F});
@@ -235,7 +236,7 @@ TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
 }
 
 TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
-  // The animation has more samples than the fit uses: 16 for each of 300 pieces.
+  // With 16 samples for each of 300 pieces, the animation has more samples than the fit uses.
   GltfBuilder builder = test::hills_document(3, 8);
   test::Hills random(9);
   std::vector<float> times, values;
@@ -252,7 +253,7 @@ TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
 }
 
 TEST(BakeLines, what_is_right_already_is_not_fitted_to_rounding) {
-  // Targets that only change heights over a grid have only linear terms.
+  // If targets only change the heights over a grid, the normals have only linear terms.
   test::Hills hills(7);
   std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
   for (std::vector<float>& of_target : deltas) {
@@ -285,7 +286,7 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
   std::vector<float> times, values;
   for (int key = 0; key < 8000; ++key) {
     times.push_back(static_cast<float>(key));
-    const bool wink = key == 4323;  // this key is not among the 2,000 samples of the fit
+    const bool wink = key == 4323;  // the fit does not use this key as one of its 2,000 samples
     values.push_back(wink ? 1.0F : 0.01F);
     values.push_back(wink ? 1.0F : 0.01F);
   }
@@ -300,7 +301,7 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
 
 TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_error_is_stated) {
   GltfBuilder builder = test::hills_document(3, 5);
-  // The third target moves so little that it may have the largest error.
+  // The third target moves so little in the animation that its error may be the largest.
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0.01F, 0.01F, 0});
   const Baked baked = bake_misled(builder, endpoint());
   const Baked alone = bake_misled(test::still_hills_document(3, 5), endpoint());

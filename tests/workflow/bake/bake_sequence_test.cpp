@@ -1,4 +1,4 @@
-// Tests animated GLB files that were baked from sequences, with an independent reader.
+// Tests animated GLB files that bakes of sequences write, with an independent reader.
 
 #include <gtest/gtest.h>
 
@@ -39,16 +39,17 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-const std::vector<Viewer> kAddingUp = {kViewers[0]};  // without this option, a bake warns about other viewers
+// selects a viewer that adds up deltas; otherwise, bakes warn about other viewers
+const std::vector<Viewer> kAddingUp = {kViewers[0]};
 
-// The vertices of each face of a file, and for each vertex the group that shares its normal.
+// The vertices of each face of a file, and for each vertex the group of vertices that share its normal.
 struct Surface {
   std::vector<std::vector<std::uint32_t>> faces;
   std::vector<std::size_t> group;
 };
 
-// Treats all edges as smooth: takes the faces of the motion, and one normal for vertices that coincide in all
-// keyframes.
+// Returns the surface if all edges are smooth: it has the faces of the motion, and vertices that coincide in all
+// keyframes share a normal.
 Surface smooth_surface(const Motion& motion) {
   Surface surface;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
@@ -66,7 +67,7 @@ Surface smooth_surface(const Motion& motion) {
   return surface;
 }
 
-// Treats every vertex of the file separately, over its triangles.
+// Returns the surface if every vertex of the file has a separate normal, over the triangles of the file.
 Surface split_surface(const ShownGlb& glb) {
   Surface surface;
   for (std::size_t i = 0; i < glb.corners.size(); i += 3)
@@ -75,7 +76,7 @@ Surface split_surface(const ShownGlb& glb) {
   return surface;
 }
 
-// Returns n of every group at a time, by cross products of the positions in the file.
+// Returns n(t) of every group as a sum of cross products of the positions in the file.
 std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, double time) {
   const std::vector<double> weights = glb.weights(time);
   std::vector<VectorD> positions, groups(surface.group.size(), VectorD{});
@@ -91,8 +92,9 @@ std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, 
 }
 
 struct Judged {
-  double mean = 0, max = 0;           // degrees
-  std::size_t count = 0, nearly = 0;  // number of samples, and of samples that are not judged because n is nearly zero
+  double mean = 0, max = 0;  // in degrees
+  // numbers of all samples, and of those that are not judged because n is nearly zero
+  std::size_t count = 0, nearly = 0;
 };
 
 Judged judge(const ShownGlb& glb, const Surface& surface, int times = 101) {
@@ -142,7 +144,7 @@ std::string bake(const Motion& motion, const BakeOptions& options, SequenceBake*
   return glb;
 }
 
-// Makes a closed mesh whose vertices move independently, with keys at uneven times.
+// Makes a motion of a closed mesh whose vertices move independently of each other. The keys are at uneven times.
 Motion wandering(const fixtures::ClosedMesh& mesh, std::size_t keys, double distance, std::uint64_t seed) {
   Motion motion;
   motion.topology = mesh.topology;
@@ -203,7 +205,7 @@ TEST(BakeSequence, weights_are_hats_and_bubbles_between_the_times_in_the_file) {
   }
 }
 
-// Returns the normal in a viewer that keeps only the directions of the normals N + D: N + sum w (unit(N + D) - N).
+// Returns the normal in a viewer that stores only the directions of N and of N + D: N + sum w (unit(N + D) - N).
 VectorD unit_rule(const ShownGlb& glb, std::size_t v, const std::vector<double>& weights) {
   VectorD base{}, sum{};
   for (std::size_t c = 0; c < 3; ++c) base[c] = sum[c] = glb.normals[3 * v + c];
@@ -321,7 +323,7 @@ TEST(BakeSequence, normals_are_those_of_polygons_and_not_of_their_triangles) {
     EXPECT_TRUE(std::equal(fan.begin(), fan.end(), glb.corners.begin() + static_cast<std::ptrdiff_t>(6 * f)));
   }
   expect_exact(glb, smooth_surface(motion));
-  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // by triangles alone, normals differ
+  EXPECT_GT(judge(glb, split_surface(glb)).max, 1);  // the normals of triangles alone are different
 }
 
 TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
@@ -340,8 +342,8 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 }
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
-  // The halves of a roof are two quads with separate vertices at the ridge: vertex 4 is at the place of 3, and 5 at the
-  // place of 2.
+  // A roof of two quads with separate vertices at the ridge: vertex 4 is at the position of vertex 3, and vertex 5 at
+  // that of vertex 2.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);
@@ -358,8 +360,8 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // The two halves separate at the crease if its edge is hard. No vertices are added, since each half already has its
-  // own.
+  // If the edge at the ridge is hard, the two halves have separate normals. No vertices are added, since each half
+  // already has its own vertices.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
   EXPECT_EQ(hard.vertices(), 8U);
@@ -371,10 +373,10 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   SequenceBake baked;
   const std::string file = bake(motion, {.crease_angle = 45}, &baked);
   const ShownGlb glb(file);
-  // A cube with 4 x 4 quads per side has 6 x 25 vertices if each side has its own.
+  // A cube with 4 x 4 quads per side has 6 x 25 vertices if the vertices of each side are separate.
   EXPECT_EQ(glb.vertices(), 150U);
   EXPECT_EQ(baked.vertices, 150U);
-  // The vertices of the motion come first.
+  // In the file, the vertices of the motion precede the added ones.
   for (std::size_t i = 0; i < motion.keyframes[0].positions.size(); ++i)
     EXPECT_EQ(glb.positions[i], motion.keyframes[0].positions[i]);
   Surface surface = split_surface(glb);
@@ -384,7 +386,7 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   expect_exact(glb, surface);
 }
 
-// Makes a sheet that is a point or a line in its first keyframe.
+// Makes a sheet that is a point in its first keyframe or, if keep_half, a line.
 Motion unfolding(bool keep_half) {
   Motion motion = fixtures::smooth_morph(6);
   motion.keyframes.push_back(motion.keyframes[1]);
@@ -421,24 +423,24 @@ TEST(BakeSequence, a_first_keyframe_without_area_gets_a_target_of_its_own) {
 TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   Motion motion = wandering(fixtures::icosphere(1), 4, 0.2, 8);
   for (std::size_t k = 1; k < 3; ++k) {
-    for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // reduces areas by a factor of 2^-24
+    for (float& c : motion.keyframes[k + 1].positions) c *= 0x1p-12F;  // divides areas by 2^24
   }
   SequenceBake baked;
   const std::string file = bake(motion, {.viewers = kAddingUp}, &baked);
   const ShownGlb glb(file);
   EXPECT_EQ(baked.warnings.size(), 1U);
-  // The stored positions are base + delta. The sphere has shrunk to half a millionth of its size, so the rounding of
-  // the positions is part of the surface.
+  // The file stores positions as base + delta. The sphere has shrunk to half a millionth of its size, so rounding the
+  // positions changes the surface. The normals must fit the rounded positions.
   expect_exact(glb, smooth_surface(motion));
 }
 
-// In the last keyframe, elements shrink or appear about which the first segment tells nothing.
+// In the last segment, elements shrink or appear. The first segment gives no hint of this.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {
     Motion motion = wandering(fixtures::icosphere(1), 6, 0.2, 9);
     if (appears) {
-      // All faces are a point until the last segment.
+      // All vertices are at one point until the last segment.
       for (std::size_t k = 0; k < 5; ++k) {
         std::vector<float>& positions = motion.keyframes[k].positions;
         std::fill(positions.begin(), positions.end(), 1.0F);
@@ -477,7 +479,7 @@ TEST(BakeSequence, elements_without_area_show_something_and_are_counted) {
   SequenceBake baked;
   const std::string file = bake(motion, {}, &baked);
   const ShownGlb glb(file);
-  EXPECT_EQ(baked.without_normals, 1U);  // all vertices coincide
+  EXPECT_EQ(baked.without_normals, 1U);  // all vertices are at one point
   EXPECT_EQ(baked.extra_targets, 0U);
   for (std::size_t v = 0; v < glb.vertices(); ++v)
     EXPECT_EQ(glb.normal(v, glb.weights(0.5)), (ShownGlb::Point{0, 0, 1}));
@@ -511,7 +513,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // The bends must make the error smaller than unit normals at the keys alone.
+  // The correction targets must make the error smaller than unit normals at the keys alone do.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);
@@ -534,7 +536,7 @@ TEST(BakeSequence, other_weightings_are_fitted_and_their_error_is_stated) {
     const ShownGlb glb(file);
     EXPECT_GT(baked.largest_error, 0);
     EXPECT_LT(baked.largest_error, 5);
-    // At the keys the normals follow the weighting: sums of unit normals times angles.
+    // At the keys, the normals follow the weighting: they are sums of unit normals, weighted by angles.
     for (std::size_t k = 0; k < 3; ++k) {
       std::vector<VectorD> expected(glb.vertices(), VectorD{});
       const auto position = [&](std::uint32_t v) { return glb.position(v, glb.weights(glb.times[k])); };
@@ -695,7 +697,8 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// Formats a figure like the documents. If a number rounds to zero, the documents print "below" and the last digit.
+// Formats a number with so many digits as the documents do. If it rounds to zero, the text is "below" and a one in the
+// last digit.
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
@@ -712,15 +715,15 @@ TEST(BakeSequence, real_sequences_are_exact) {
       {(folder / "sequences/md2_faerie/faerie.md2").string()},
       {(folder / "caches/max_cache_box/max_cache_box_44.obj").string(),
        (folder / "caches/max_cache_box/max_cache_box.pc2").string()}};
-  // Every segment is sampled at several times, including both ends. The results in section 15 of docs/theory.md are for
-  // 16 times.
+  // Takes samples at several times of every segment, including both ends. The results in section 15 of docs/theory.md
+  // are for 16 times per segment.
   const bool is_full = std::getenv("CHRONORMAL_FULL") != nullptr;
   const int times = is_full ? 16 : 5;
   const std::string theory = test::read_whole(std::string(kSourceFolder) + "/docs/theory.md");
   for (const auto& input : inputs) {
     InputOptions options = test::files(input, 24);
     constexpr std::size_t kLastOfFirstClip = 39;
-    if (input[0].ends_with(".md2")) options.to = kLastOfFirstClip;  // between clips the mesh rests
+    if (input[0].ends_with(".md2")) options.to = kLastOfFirstClip;  // the mesh rests between clips
     const Result<Motion> motion = test::read_motion(options);
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     SequenceBake baked;

@@ -1,6 +1,6 @@
-// Checks that the smallest candidate is judged by the normals behind the skin. The tolerance must hold with joints that
-// squash, and in viewers with different rules for skinned normals. Joints that rotate and scale uniformly must change
-// nothing.
+// Checks that the smallest candidate of a bake is judged by the normals after skinning. The tolerance must be kept with
+// joints that squash the mesh, and in viewers with different rules for skinned normals. Joints that only rotate and
+// scale uniformly must change nothing.
 
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ using Json = GltfBuilder::Json;
 
 constexpr std::size_t kSide = 5, kVertices = kSide * kSide, kTargets = 2;
 constexpr double kTolerance = 1;
-// Three.js transforms normals by the blended matrix, Bevy by its inverse transpose.
+// Three.js transforms normals by the blended matrix, and Bevy by the inverse transpose of the blended matrix.
 const Viewer kThree = find_viewers("three").value()[0], kBevy = find_viewers("bevy").value()[0];
 
 BakeOptions smallest(double tolerance = kTolerance, std::vector<Viewer> viewers = {kThree}) {
@@ -47,7 +47,7 @@ const BakedCandidate& chosen(const Baked& baked) {
   return baked.report.meshes.at(0).candidates.at(0);
 }
 
-// Makes hills with a track of poses that are one second apart. In each pose, all targets have the same weight.
+// Makes hills with a track of poses, one second apart. In each pose, all targets have the same weight.
 GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(kTargets, seed);
   std::vector<float> times, values;
@@ -59,7 +59,7 @@ GltfBuilder played_hills(unsigned seed, const std::vector<float>& weights, const
   return builder;
 }
 
-// Makes a skin in which all vertices follow joint 0; if `bent`, vertices with larger x follow joint 1 more.
+// Makes a skin in which all vertices follow joint 0. If `bent`, vertices follow joint 1 more, the larger their x is.
 Skin skin_of(bool bent) {
   Skin skin;
   skin.joints.emplace_back();
@@ -72,14 +72,14 @@ Skin skin_of(bool bent) {
   return skin;
 }
 
-// Adds two joints as nodes 1 and 2.
+// Adds the skin with two joints, which are nodes 1 and 2.
 void add_skin(GltfBuilder& builder, const Skin& skin, const Trs& one, const Trs& two = {}) {
   builder.add("nodes", one.json());
   builder.add("nodes", two.json());
   skin.add_to(builder, {1, 2});
 }
 
-// Adds a channel that rotates joint 1.
+// Adds a channel that rotates joint 1. `turns` has a quaternion for each time.
 void add_turns(GltfBuilder& builder, const std::vector<float>& times, const std::vector<float>& turns,
                const char* interpolation = "LINEAR") {
   const std::size_t input = builder.add_accessor("SCALAR", times), output = builder.add_accessor("VEC4", turns);
@@ -95,13 +95,13 @@ Trs scaled(Real x, Real y, Real z) {
   return place;
 }
 
-// Returns the matrices of the joints at a time.
+// A function that returns the matrices of the joints at a time.
 using World = std::function<std::vector<Rows>(double time)>;
 World standing(const Trs& one, const Trs& two = {}) {
   return [one, two](double) { return std::vector<Rows>{one.rows(), two.rows()}; };
 }
 
-// Returns the error behind the skin at 101 times of the track of node 0.
+// Returns the errors after skinning, at 101 times of the track of node 0.
 test::ShownError seen_error(const Baked& baked, const Skin& skin, const World& world, Carry rule = Carry::kBlended) {
   const test::GltfTruth truth(*baked.before, 0);
   const std::vector<test::Pose> poses = test::poses_of(*baked.before, *baked.after, 0, 0);
@@ -129,7 +129,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     double tolerance, height;
   };
   std::size_t would_not_do = 0;  // number of choices without the skin that exceed the tolerance
-  // In the last four cases, every candidate that is within the tolerance before skinning exceeds it behind the joint.
+  // In the last four cases, every candidate that keeps the tolerance before skinning exceeds it after skinning.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},
                         {5, 0.2F, 1, 0.25},
@@ -156,7 +156,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
 }
 
 TEST(BakeSkin, tolerance_holds_where_the_joints_bend_while_the_weights_rest) {
-  // Joint 1 rotates about y by 165 degrees and back within 40 milliseconds.
+  // Joint 1 rotates by 165 degrees about y and back again, within 40 milliseconds.
   constexpr double kMost = 165 / 180.0 * std::numbers::pi;
   const auto turned = [](double angle) {
     Trs place;
@@ -201,7 +201,7 @@ TEST(BakeSkin, figures_of_forms_are_those_of_the_oracle_behind_the_skin) {
     ASSERT_TRUE(baked.ok()) << baked.error;
     const BakedCandidate& before = baked.report.meshes[0].candidates.front();
     ASSERT_EQ(before.name, "as it is");
-    // The poses are the three keys and the weights of the mesh, which are zero.
+    // The judged poses are the three keys and the pose of the mesh's own weights, which are zero.
     double mean = 0, worst = 0;
     for (const Viewer& viewer : viewers) {
       const Carry rule = viewer == kThree ? Carry::kBlended : Carry::kInverseTranspose;
@@ -267,7 +267,7 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // This joint flattens normals for viewers of one kind, and stretches them for viewers of the other kind.
+  // This joint flattens the normals of one kind of viewers, and stretches those of the other kind.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -279,7 +279,8 @@ TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
 }
 
 TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
-  // If the blended matrix lowers the mesh, its inverse transpose treats normals like a matrix that raises the mesh.
+  // If the blended matrix flattens the mesh, its inverse transpose changes normals as a matrix does that stretches the
+  // mesh.
   const auto viewers_of = [](Real height, const std::vector<Viewer>& viewers) {
     GltfBuilder builder = played_hills(3, {0, 0.4F});
     add_skin(builder, skin_of(false), scaled(1, 1, height));
@@ -300,7 +301,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// Returns text with the candidates that were considered, and the deltas of the result.
+// Returns a text with the candidates that a bake considered, and the deltas that it wrote.
 std::string choices_of(const Baked& baked) {
   std::string text;
   for (const BakedCandidate& c : baked.report.meshes.at(0).candidates)
@@ -325,7 +326,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   add_skin(builder, two, even);
   add_turns(builder, {0, 0.3F, 1}, {0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
   EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
-  // A skin that cannot be read also changes nothing.
+  // A skin that cannot be read must change nothing, too.
   builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
   EXPECT_NE(choices_of(test::bake_document(builder, smallest())), choices_of(without));
   builder.json["skins"][0]["joints"] = {1, 17};
@@ -333,7 +334,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
 }
 
 TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
-  // Node 0 has no skin, and node 3 has a skin that flattens. The tolerance must hold for both.
+  // Node 0 has no skin, and the skin of node 3 flattens the mesh. The tolerance must be kept for both nodes.
   const Trs flat = scaled(1, 1, 0.25);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), flat);
@@ -347,7 +348,7 @@ TEST(BakeSkin, each_node_that_a_track_drives_is_seen_through_its_own_skin) {
   EXPECT_LT(seen_error(baked, skin_of(false), standing(flat)).worst, 1.02 * kTolerance);
   EXPECT_LT(seen_error(baked, skin_of(false), standing({})).worst, 1.02 * kTolerance);
   EXPECT_TRUE(chosen(baked).within);
-  // If the joint stretches, the node without a skin has larger errors than the node with the skin.
+  // If the joint stretches the mesh, the node without a skin has larger errors than the node with the skin.
   builder.json["nodes"][1]["scale"] = {1, 1, 8};
   const Baked raised = test::bake_document(builder, smallest());
   EXPECT_LT(seen_error(raised, skin_of(false), standing({})).worst, 1.02 * kTolerance);
@@ -379,8 +380,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
-  // The deltas of the file are exact plus noise. Therefore some vertices have deltas that are better before skinning
-  // and worse after it.
+  // The deltas of the file are exact deltas plus noise. For some vertices, they are better than those of the bake
+  // before skinning, but worse after skinning.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

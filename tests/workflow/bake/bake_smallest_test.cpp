@@ -1,5 +1,5 @@
-// Tests the smallest candidate of a bake, whose correction targets are driven only by the animations of the file,
-// within a tolerance and a limit. Also tests its guarantees for long files, for files that were baked before, and for
+// Tests the smallest candidate of a bake, whose correction targets only the animations of the file drive. It must keep
+// a tolerance and a limit of bytes. Also tests its guarantees for long files, for files that were baked before, and for
 // primitives that share arrays.
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ BakeOptions smallest(double tolerance) {
   return options;
 }
 
-// Draws weights of all targets at the given number of keys; for cubic splines also tangents.
+// Draws `numbers` random weights for the keys of a track. If the track is a cubic spline, they include tangents.
 std::vector<float> random_weights(std::size_t numbers, unsigned seed) {
   test::Hills random(seed);
   std::vector<float> weights;
@@ -124,7 +124,7 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   EXPECT_EQ(chosen(baked).name, "as it is");
 }
 
-// Moves two targets only once, between two of very many keys.
+// Returns weights of two targets at very many keys. The targets are active only at the key `at`.
 std::vector<float> wink(std::size_t keys, std::size_t at) {
   std::vector<float> weights(2 * keys, 0.0F);
   weights[2 * at] = weights[2 * at + 1] = 1;
@@ -190,9 +190,10 @@ TEST(BakeSmallest, the_tracks_that_tell_most_are_those_where_weights_and_product
     track.keys.values = {0, 0.001 * static_cast<double>(t % 7), 0.001 * static_cast<double>(t % 11), 0, 0, 0};
   }
   tracks[77].keys.values[2] = 0.3;   // the largest weight of the first target
-  tracks[78].keys.values[5] = -0.2;  // the largest absolute weight of the other target
-  // In the middle of track 311, both targets are active at once, but neither is at its maximum. In track 402, they are
-  // active one after the other, so their product never reaches the product of their maxima.
+  tracks[78].keys.values[5] = -0.2;  // the largest absolute weight of the second target
+  // In track 311, both targets are active at the same time, but neither has its largest weight. In track 402, the
+  // targets are active one after the other, so the product of their weights never reaches the product of their largest
+  // weights.
   tracks[311].keys.values[2] = tracks[311].keys.values[3] = 0.1;
   tracks[402].keys.values = {0.15, 0, 0, 0, 0, 0.15};
   EXPECT_EQ(telling_tracks(tracks, 500).size(), 500U);
@@ -220,7 +221,7 @@ TEST(BakeSmallest, is_not_beaten_by_exact_in_bytes_and_error_at_once_whatever_th
       exact.encoding = BakeEncoding::kExact;
       const Baked ours = test::bake_document(builder, smallest(0.5)), theirs = test::bake_document(builder, exact);
       ASSERT_TRUE(ours.ok() && theirs.ok()) << ours.error << theirs.error;
-      constexpr std::size_t kNames = 8;  // bytes by which the name "smallest" makes the file longer than "exact" does
+      constexpr std::size_t kNames = 8;  // bytes by which the name "smallest" lengthens the file, compared with "exact"
       const bool is_smaller = theirs.bytes.size() + kNames < ours.bytes.size();
       const double error = test::track_error(ours).worst, of_exact = test::track_error(theirs).worst;
       EXPECT_FALSE(is_smaller && 1.01 * of_exact < error)

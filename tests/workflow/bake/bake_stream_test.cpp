@@ -1,5 +1,5 @@
-// Checks that a sequence whose keyframes stay in files is baked into the same bytes as in memory, that memory does not
-// grow with the number of keyframes, and that a failure leaves no files.
+// Checks bakes of a sequence whose keyframes stay in files. They must have the same bytes as in memory, their memory
+// must not grow with the number of keyframes, and a failure must leave no files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,14 +25,14 @@ namespace {
 
 using test::TemporaryFolder;
 
-// The keyframes in which a sheet has no area.
+// The keyframes in which a sheet has no area: none, only the first, or some in the middle.
 enum class Flat { kNever, kFirst, kForAWhile };
 
 bool is_flat(Flat flat, std::size_t k) {
   return (flat == Flat::kFirst && k == 0) || (flat == Flat::kForAWhile && 2 <= k && k <= 7);
 }
 
-// Makes a keyframe of a waving sheet of side x side vertices. The first column rests.
+// Returns the positions of keyframe k of a waving sheet with side x side vertices. The first column rests.
 std::vector<float> wave(std::uint32_t side, std::size_t k, Flat flat = Flat::kNever) {
   std::vector<float> positions;
   for (std::uint32_t v = 0; v < side * side; ++v) {
@@ -188,10 +188,11 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
       RecordProperty(std::string(name_of(encoding)) + std::to_string(keyframes), std::to_string(run.peak_growth));
     }
     EXPECT_GT(bytes[1], 5 * bytes[0]);
-    // Linux counts the pages of a thread in batches of 64. Each of the two peaks may therefore be wrong by one batch.
+    // Linux counts the pages of a thread in batches of 64, so each of the two peaks may be wrong by one batch.
     constexpr std::size_t kBatches = 2 * 64 * 4096;
     EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
-    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // the peak would show if all output were kept in memory
+    // shows that the test would notice if all output were kept in memory
+    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);
   }
 }
 
@@ -207,9 +208,9 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   options.kept_bytes = 0;
   const std::size_t before = folder.entry_count();
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint, BakeEncoding::kHarmless}) {
-    // The callback of progress shortens the input file, before or after some arrays are written.
+    // The callback for progress shortens the input file, before or after the bake has written some arrays.
     for (const std::size_t step : {0U, 2U, 4U, 12U}) {
-      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // by then, these encodings have read everything
+      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // these encodings have read everything before
       folder.write("walk.pc2", whole);
       Result<Input> input = open_input(options);
       ASSERT_TRUE(input.ok());
@@ -249,7 +250,7 @@ TEST(BakeStream, a_keyframe_that_cannot_be_read_ends_it_in_whatever_pass) {
           },
           0);
       const Result<SequenceBake> baked = bake_sequence(stream, way.options, folder / "out.glb", false);
-      if (baked.ok()) {  // the damaged part had been read in advance, or was not needed
+      if (baked.ok()) {  // the bake had read the missing part before, or did not need it
         EXPECT_TRUE(test::read_whole(folder / "out.glb") == glb) << way.name << failing;
         std::filesystem::remove(folder / "out.glb");
         continue;

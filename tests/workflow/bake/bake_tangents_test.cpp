@@ -1,6 +1,6 @@
-// Tests tangents of normal-mapped morphs for viewers that add up tangents. Where a target has weight 1, a tangent must
-// have length 1, be perpendicular to the true normal, and follow the texture. The oracle transports texture coordinates
-// in long double.
+// Tests the tangents of morphs with normal maps, for viewers that add up tangents. If a target has weight 1, a tangent
+// must have length 1, be perpendicular to the true normal, and follow the texture. The oracle follows the texture
+// coordinates in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,8 @@ using test::Baked;
 using test::ShadedMesh;
 using test::Vector;
 
-// Makes a bumpy sheet whose texture has u along x. Its tangents are unit vectors perpendicular to the stored normals.
+// Makes a bumpy sheet with texture coordinates whose u runs along x. Its tangents have length 1 and are perpendicular
+// to the stored normals.
 ShadedMesh sheet(std::uint64_t seed, double tilt) {
   ShadedMesh mesh = test::random_sheet(seed, 6, 2, tilt);
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
@@ -36,8 +37,8 @@ Vector tangent_of(const ShadedMesh& mesh, std::size_t v) {
   return {mesh.tangents[4 * v], mesh.tangents[4 * v + 1], mesh.tangents[4 * v + 2]};
 }
 
-// Returns the true normal of a vertex at weight 1. It is the normal of the geometry, turned by the rotation that takes
-// the geometry's normal of the base to the stored normal.
+// Returns the true normal of a vertex at weight 1: the normal of the geometry, turned by the rotation that takes the
+// geometry's normal in the base to the stored normal.
 Vector right_normal(const ShadedMesh& mesh, std::size_t v, std::size_t target) {
   std::vector<double> none(mesh.targets.size()), one = none;
   one[target] = 1;
@@ -71,7 +72,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
             << "seed " << seed << ", vertex " << v;
       }
     }
-    // An audit, which computes normals independently, finds no errors.
+    // An audit, which computes normals independently, must find no errors.
     const test::GltfFixture after(baked.bytes);
     const Result<Audit> audit = chronormal::audit(*after, {});
     ASSERT_TRUE(audit.ok());
@@ -80,7 +81,7 @@ TEST(BakeTangents, are_unit_and_perpendicular_to_the_right_normal_at_weight_1) {
   }
 }
 
-// An affine map of a flat sheet also maps the texture, so its matrix gives the tangent.
+// A linear map of a flat sheet also maps the directions of the texture, so its matrix gives the tangents.
 TEST(BakeTangents, follow_the_texture_through_shears_and_turns) {
   ShadedMesh mesh = sheet(3, 0);
   const auto map = [](const Vector& p) {
@@ -138,12 +139,12 @@ TEST(BakeTangents, count_against_a_limit_of_bytes_and_stay_where_it_has_no_room)
   }
 }
 
-// If the normals are already right, it may be enough to write tangents.
+// If the normals are right already, a bake may need to write only tangents.
 TEST(BakeTangents, are_written_alone_where_the_normals_are_right) {
   ShadedMesh mesh = test::hinge();
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
   mesh.tangents = {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1};
-  // The target turns the square about y by 90 degrees, and its normal deltas are exact at the ends and halfway.
+  // The target turns the square by 90 degrees about y. Its normal deltas are exact at weights 0, 1/2 and 1.
   mesh.targets = {{{0, 0, 0, -1, 0, -1, 0, 0, 0, -1, 0, -1}, {1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1}, {}}};
   BakeOptions options = by_area();
   options.tolerance = 180;

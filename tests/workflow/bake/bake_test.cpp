@@ -27,7 +27,8 @@ BakeOptions with(BakeEncoding encoding) {
   return options;
 }
 
-// Plays one target alone at weights from 0 to 1, and sets correction targets by their formulas.
+// Returns poses in which one target alone is active, with weights from 0 to 1. The weights of correction targets follow
+// from their formulas.
 std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::size_t target) {
   const Json& targets = baked.before->json["meshes"][mesh]["primitives"][0]["targets"];
   const Json& after = baked.json()["meshes"][mesh];
@@ -38,7 +39,7 @@ std::vector<Pose> poses_of_target(const Baked& baked, std::size_t mesh, std::siz
     pose.before[target] = i / 100.0;
     pose.after.assign(after["primitives"][0]["targets"].size(), 0.0F);
     pose.after[target] = static_cast<float>(i / 100.0);
-    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // the mesh stays flat-shaded
+    if (!after.contains("extras") || !after["extras"].contains("chronormal")) {  // the mesh remains flat-shaded
       poses.push_back(std::move(pose));
       continue;
     }
@@ -59,8 +60,8 @@ ShownError target_error(const Baked& baked, std::size_t target, std::size_t mesh
                            poses_of_target(baked, mesh, target));
 }
 
-// Makes a random document: one to four targets that move random parts, and a track with random interpolation and
-// weights in [-1, 2].
+// Makes a random document: one to four targets, each of which moves a random part of the hills, and a track with random
+// interpolation and weights in [-1, 2].
 GltfBuilder random_document(unsigned seed) {
   GltfBuilder builder;
   test::Hills hills(seed);
@@ -94,7 +95,7 @@ TEST(Bake, exact_is_exact_for_random_targets_and_tracks) {
 }
 
 TEST(Bake, what_is_not_baked_is_wrong) {
-  // Tests the measurement itself: without correction targets, the same file must have errors.
+  // Tests the measurement itself: if correction targets are ignored, the same file must have errors.
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   Baked baked = test::bake_document(builder);
@@ -174,7 +175,7 @@ TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
     return warning.find("extras of node 1 is not an object") != std::string::npos;
   };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
-  // One delta for each target needs no drivers.
+  // The encoding endpoint writes one delta for each target, so the file needs no drivers.
   const Baked endpoint = test::bake_document(builder, with(BakeEncoding::kEndpoint));
   EXPECT_FALSE(endpoint.json()["nodes"][0]["extras"].contains("chronormal"));
 }
@@ -197,7 +198,7 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
-  // A bake of another file rescales nothing and keeps the base normals.
+  // In another file, the same bake must rescale no normals and keep the base normals.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
   EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
@@ -250,7 +251,7 @@ TEST(Bake, targets_that_nothing_drives_get_the_best_single_delta) {
 
 TEST(Bake, a_baked_file_is_left_as_it_is) {
   for (const auto& [encoding, name] : kBakeEncodings) {
-    if (encoding == BakeEncoding::kKeys) continue;  // this encoding is only for sequences
+    if (encoding == BakeEncoding::kKeys) continue;  // the encoding keys is only for sequences
     SCOPED_TRACE(name);
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
@@ -265,8 +266,8 @@ TEST(Bake, a_baked_file_is_left_as_it_is) {
   }
 }
 
-// Blender 3.4 exports an imported file in this form: with its own normals for each target, and numbers instead of
-// booleans.
+// Blender 3.4 exports a baked file in this form: every target has its own normals, and booleans in the extras have
+// become numbers.
 TEST(Bake, extra_targets_that_another_program_emptied_are_left_and_new_ones_written_beside_them) {
   GltfBuilder builder = test::still_hills_document(1);
   Json& mesh = builder.json["meshes"][0];
@@ -316,11 +317,11 @@ TEST(Bake, base_without_area_is_right_but_near_weight_0) {
   GltfBuilder builder;
   test::Hills hills(5);
   const std::vector<float> spread = hills.positions;
-  hills.positions.assign(spread.size(), 0);  // all vertices coincide
+  hills.positions.assign(spread.size(), 0);  // all vertices are at one point in the base
   builder.add_node(builder.add_mesh(hills.primitive(builder, {spread})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0.01F, 1});
-  // With split normals each vertex is a separate element, and no element has an area in the base.
+  // If every vertex has its own normal, each vertex is a separate element, and no element has an area in the base.
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
   ASSERT_EQ(baked.error, "");
   EXPECT_EQ(baked.report.meshes[0].without_base, 25U);
@@ -341,7 +342,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
   EXPECT_EQ(flat.bytes, builder.glb());
   Baked smooth = test::bake_document(builder, {.encoding = BakeEncoding::kExact, .smooth = true});
   ASSERT_EQ(smooth.error, "");
-  // The oracle reads base normals from the file, so it needs those of the bake.
+  // The oracle takes base normals from the file. The source has none, so the oracle reads the baked file.
   smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
   const test::GltfTruth truth(*smooth.before, 0);
   std::vector<Pose> poses;
@@ -391,8 +392,8 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
 }
 
 TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
-  // There are more keys than poses that the bake measures, so it bounds the loss of the terms that it leaves out by a
-  // sum.
+  // The animation has more keys than the bake measures poses. The bake therefore bounds the error of all omitted terms
+  // by a sum.
   GltfBuilder builder;
   test::Hills hills(9);
   std::vector<std::vector<float>> deltas;
@@ -421,7 +422,8 @@ TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_toleran
 TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
   GltfBuilder builder;
   test::Hills hills(8);
-  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // the target doubles the size
+  // the target doubles the size of the mesh
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
@@ -430,8 +432,8 @@ TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
 }
 
 TEST(Bake, terms_along_the_normal_are_not_left_out_where_together_they_turn_it_over) {
-  // n = (1 + w0 + w1 + w2)^2 n(0), which is 0.16 n(0) if all weights are -0.2. No single square or product changes the
-  // length as much as all together.
+  // n(w) = (1 + w0 + w1 + w2)^2 n(0), which is 0.16 n(0) if all weights are -0.2. No single square or product changes
+  // the length as much as all of them together.
   GltfBuilder builder;
   test::Hills hills(8);
   const std::vector<float>& grow = hills.positions;
@@ -493,8 +495,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // In between, and when three targets are active, the result is only a fit. It must be closer to the requested
-  // weighting than area-weighted normals are.
+  // At other weights, and if three targets are active, the deltas only approximate the requested weighting. They must
+  // be closer to it than area-weighted normals are.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {
@@ -530,7 +532,7 @@ TEST(Bake, errors_say_what_and_where) {
 }
 
 TEST(Bake, more_pairs_of_targets_than_a_file_can_carry_are_refused) {
-  constexpr std::size_t kTargets = 141;  // this gives 10,011 products
+  constexpr std::size_t kTargets = 141;  // 141 targets have 10,011 products
   GltfBuilder builder = test::hills_document(kTargets);
   std::vector<float> weights(2 * kTargets);
   for (std::size_t k = 0; k < kTargets; ++k) weights[kTargets + k] = 1;
@@ -557,7 +559,7 @@ TEST(Bake, tiny_and_huge_meshes_are_as_exact) {
   }
 }
 
-// Bakes every moving glTF of the real data, and tests its animations, and each target alone.
+// Bakes every moving glTF file of the real data. Tests its animations, and each target alone.
 TEST(BakeRealData, exact_is_exact_in_every_file) {
   const char* data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";
@@ -571,7 +573,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
     const Result<std::string> glb = GltfEdit(document.value()).bytes("a.glb");
     ASSERT_TRUE(glb.ok()) << glb.error().text();
     BakeOptions options = with(BakeEncoding::kExact);
-    options.weighting = Weighting::kArea;  // with other weightings normals are only fitted
+    options.weighting = Weighting::kArea;  // by other weightings, normals are only approximated
     const Baked baked = test::bake_bytes(glb.value(), options);
     ASSERT_EQ(baked.error, "");
     if (baked.report.meshes.empty()) continue;
@@ -598,7 +600,7 @@ TEST(BakeRealData, exact_is_exact_in_every_file) {
   EXPECT_GE(files, 9U);
 }
 
-// Choosing a candidate takes a large part of the time of a bake, and progress must be reported during it.
+// Choosing a candidate takes a large part of the time of a bake, so the bake must report progress meanwhile.
 TEST(Bake, progress_goes_forward_while_a_form_is_chosen_and_ends_with_everything_done) {
   GltfBuilder builder = test::hills_document(3);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1, 0.5F, 1, 0, 1});

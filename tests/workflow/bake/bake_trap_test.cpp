@@ -1,4 +1,4 @@
-// Tests, besides true normals, every demand that viewers and the specification make on correction targets.
+// Tests, besides true normals, everything that viewers and the specification demand of correction targets.
 
 #include <gtest/gtest.h>
 
@@ -21,9 +21,9 @@ using Json = nlohmann::json;
 using test::Baked;
 using test::GltfBuilder;
 
-const std::vector<float> kTimes = {0, 0.1F, 1};  // 0.1F differs from 0.1
+const std::vector<float> kTimes = {0, 0.1F, 1};  // 0.1F is not exactly 0.1
 
-// Makes hills with two targets, and a track that moves both at once.
+// Makes hills with two targets, and a track that moves both targets at the same time.
 GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   GltfBuilder builder = test::hills_document(2);
   if (interpolation == std::string("CUBICSPLINE"))
@@ -34,7 +34,7 @@ GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   return builder;
 }
 
-// Bakes with the encoding exact, unless another encoding is set.
+// Bakes a document and fails if the bake fails. The encoding is exact unless the options have another.
 Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
   if (!options.encoding) options.encoding = BakeEncoding::kExact;
   Baked result = test::bake_document(builder, options);
@@ -74,7 +74,8 @@ TEST(BakeTraps, all_primitives_of_a_mesh_have_the_same_number_of_targets) {
   test::Hills hills(3);
   const std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
   const std::size_t mesh = builder.add_mesh(hills.primitive(builder, deltas));
-  builder.add_primitive(mesh, hills.primitive(builder, deltas, false));  // a flat primitive, since it has no normals
+  // without normals, viewers shade this primitive flat
+  builder.add_primitive(mesh, hills.primitive(builder, deltas, false));
   Json points = hills.primitive(builder, deltas);
   points["mode"] = 0;
   points["targets"][1]["NORMAL"] = builder.add_positions(deltas[0]);
@@ -160,8 +161,8 @@ TEST(BakeTraps, linear_tracks_become_splines_with_the_slopes_of_products) {
   EXPECT_EQ(sampler["interpolation"], "CUBICSPLINE");
   EXPECT_EQ(sampler["input"], sampler_of(baked(moving_hills("STEP")))["input"]) << "no keys were added";
   EXPECT_EQ(result.report.converted_tracks, 1U);
-  // The keys are 0, 0.1F and 1 with the weights (0, 0), (1, 0.25), (0, 1). The slopes per second follow from the
-  // float32 times.
+  // The keys are at 0 s, 0.1F s and 1 s, with the weights (0, 0), (1, 0.25) and (0, 1). The expected slopes per second
+  // follow from the times as float32.
   const double first = 0.1F, second = 1 - first, a = 1 / first, b = 0.25 / first, c = -1 / second, d = 0.75 / second;
   const std::vector<double> expected = {0,       0,    0,  0,
                                         0,  //
@@ -205,7 +206,7 @@ TEST(BakeTraps, steps_stay_steps_with_the_products_of_keys) {
   EXPECT_EQ(sampler_of(result)["interpolation"], "STEP");
   EXPECT_EQ(result.numbers(sampler_of(result)["output"]),
             (std::vector<float>{0, 0, 0, 0, 1, 0.25F, 0.25F, 0.1875F, 0, 1, 0, 0}));
-  // A target with only the weights 0 and 1 needs no correction target of its own.
+  // If a target has only the weights 0 and 1, it needs no correction target for its square.
   test::expect_exact(test::track_error(result));
 }
 
@@ -232,7 +233,7 @@ TEST(BakeTraps, cubic_splines_get_keys_and_a_stated_error) {
   const test::ShownError error = test::track_error(result);
   test::expect_exact(error);
   EXPECT_LE(error.worst, result.report.meshes[0].resampling_error + 1e-3) << "but for float32";
-  // The bake must not change the weights of the file's own targets.
+  // The bake must not change the weights of the author's targets.
   for (int i = 0; i <= 100; ++i) {
     const auto before = result.before->weights_at(0, 0, i / 100.0), after = result.after->weights_at(0, 0, i / 100.0);
     for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(before[k], after[k], 1e-6F);
@@ -258,8 +259,8 @@ TEST(BakeTraps, every_animation_is_extended) {
 TEST(BakeTraps, instances_get_what_any_of_their_tracks_needs) {
   GltfBuilder builder = test::hills_document(2);
   builder.add_node(0);
-  builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});             // moves target 0 alone
-  builder.add_track(0, 1, kTimes, std::vector<float>{0, 0, 0, 1, 0, 0.5F}, "STEP");  // moves target 1 alone
+  builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});             // target 0 moves alone
+  builder.add_track(0, 1, kTimes, std::vector<float>{0, 0, 0, 1, 0, 0.5F}, "STEP");  // target 1 moves alone
   const Baked result = baked(builder);
   ASSERT_EQ(result.report.meshes[0].extras.size(), 2U) << "never both at once";
   EXPECT_EQ(result.report.meshes[0].undriven, 0U);
@@ -271,7 +272,7 @@ TEST(BakeTraps, instances_get_what_any_of_their_tracks_needs) {
 TEST(BakeTraps, instances_that_stand_still_are_exact_too) {
   for (const bool of_node : {true, false}) {
     GltfBuilder builder = test::hills_document(2);
-    builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});  // moves target 0 alone
+    builder.add_track(0, 0, kTimes, std::vector<float>{0, 0, 1, 0, 0, 0});  // target 0 moves alone
     builder.add_node(0);
     (of_node ? builder.json["nodes"][1] : builder.json["meshes"][0])["weights"] = {0.5, 0.75};
     const Baked result = baked(builder);
@@ -297,7 +298,7 @@ TEST(BakeTraps, a_sampler_that_other_meshes_use_is_left_to_them) {
   test::Hills other(9);
   const std::vector<float> still(other.positions.size());
   builder.add_node(builder.add_mesh(other.primitive(builder, {still, still})));  // node 1 does not move
-  // Node 2 needs fewer correction targets than node 0.
+  // Node 2 needs fewer correction targets than node 0 does.
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas(), still})));
   for (const int node : {1, 2})
     builder.json["animations"][0]["channels"].push_back(
@@ -317,7 +318,7 @@ TEST(BakeTraps, of_meshes_that_share_a_sampler_each_gets_its_own) {
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
   test::Hills other(9);
-  // This mesh only grows, so it needs no correction target.
+  // This mesh only grows, so its normals need no correction target.
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.positions})));
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas()})));
   for (const int node : {1, 2})
@@ -352,7 +353,7 @@ TEST(BakeTraps, weights_of_normalised_integers_become_floats) {
   test::expect_exact(test::track_error(result));
 }
 
-// A triangle falls over to one side. Its base normal points to the other side, as in double-sided files.
+// A triangle falls over to one side. Its base normal points to the back, as in files with double-sided materials.
 TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
   for (const float tilt : {0.0F, 1e-3F}) {
     GltfBuilder builder;
@@ -365,7 +366,7 @@ TEST(BakeTraps, normals_of_the_inner_side_stay_on_that_side) {
     builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
     const Baked result = baked(builder);
     const std::vector<float> delta = result.numbers(result.mesh()["primitives"][0]["targets"][0]["NORMAL"]);
-    // n(1) = (0, -1, 1), so the normal to the other side is (0, 1, -1).
+    // n(1) = (0, -1, 1), so the normal on the back is (0, 1, -1).
     EXPECT_NEAR(delta[0], 0, 2e-3) << tilt;
     EXPECT_NEAR(delta[1], 1, 2e-3) << tilt;
     EXPECT_NEAR(delta[2], 0, 2e-3) << tilt;
@@ -411,7 +412,7 @@ TEST(BakeTraps, more_than_eight_morphed_attributes_are_a_warning) {
     }
     return false;
   };
-  EXPECT_TRUE(warns(baked(moving_hills())));  // 10 attributes: positions and normals of 5 targets
+  EXPECT_TRUE(warns(baked(moving_hills())));  // 10 attributes: the positions and normals of 5 targets
   GltfBuilder one = test::hills_document(1);
   one.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
   EXPECT_FALSE(warns(baked(one)));
@@ -457,7 +458,7 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
     EXPECT_EQ(result.mesh()["primitives"][0]["attributes"][key], value);
   for (const Json& accessor : result.before->json["meshes"][0]["primitives"][0]["attributes"])
     EXPECT_EQ(result.numbers(accessor), result.before->accessor(accessor.get<std::size_t>()));
-  // New items of the lists must come after the existing items.
+  // New entries of these lists must come after the existing entries.
   for (const Json::json_pointer& list : {Json::json_pointer("/accessors"), Json::json_pointer("/bufferViews"),
                                          Json::json_pointer("/meshes/0/primitives/0/targets")}) {
     Json& items = patched[list];
@@ -469,7 +470,7 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
   EXPECT_EQ(patched, result.before->json);
 }
 
-// Lets the first channel drive the value at a JSON pointer, by KHR_animation_pointer.
+// Changes the first channel so that it drives the value at a JSON pointer, by the extension KHR_animation_pointer.
 GltfBuilder driven_by_pointer(const std::string& pointer, GltfBuilder builder = moving_hills()) {
   builder.json["extensionsUsed"] = {"KHR_animation_pointer"};
   builder.json["animations"][0]["channels"][0]["target"] = {
@@ -542,7 +543,8 @@ TEST(BakeTraps, a_pointer_to_one_weight_keeps_only_its_own_mesh_from_extra_targe
 }
 
 TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
-  // The animation has only one target at a time, with weight 0 or 1, so only the expression needs correction targets.
+  // In the animation, only one target is active at a time, with weight 0 or 1. Only the expression therefore needs
+  // correction targets.
   for (const bool is_first_version : {true, false}) {
     GltfBuilder builder = test::hills_document(2);
     builder.add_track(0, 0, std::vector<float>{0, 1, 2}, std::vector<float>{1, 0, 0, 0, 0, 1}, "STEP");
@@ -566,7 +568,7 @@ TEST(BakeTraps, expressions_of_avatars_are_poses_that_a_bake_judges) {
   }
 }
 
-// Makes hills with a track that drives every target, and an expression of three targets.
+// Makes hills with a track that drives every target, and with an expression of an avatar that sets three targets.
 GltfBuilder avatar_of_hills(unsigned seed, double strength) {
   constexpr std::size_t kTargets = 7;
   GltfBuilder builder = test::with_misleading_normals(test::hills_document(kTargets, seed));
@@ -581,7 +583,7 @@ GltfBuilder avatar_of_hills(unsigned seed, double strength) {
   return builder;
 }
 
-// Returns the worst error of the expressions, or of the tracks, of a file.
+// Returns the worst error of the expressions or of the tracks of a file, in degrees.
 double worst_of(const GltfDocument& document, AuditSubject::Kind kind) {
   const Result<Audit> audited = audit(document, {.viewers = {}});
   EXPECT_TRUE(audited.ok());
@@ -607,7 +609,7 @@ TEST(BakeTraps, what_a_bake_says_of_expressions_is_what_an_audit_finds_in_the_fi
         forms.insert(choice.name);
         const double expression = worst_of(*after, AuditSubject::Kind::kExpression),
                      track = worst_of(*after, AuditSubject::Kind::kTrack);
-        // Audit and bake sample the track at different instants, but the expression in the same pose.
+        // Audit and bake take samples of a track at different instants, but judge the expression in the same pose.
         EXPECT_GE(choice.played.worst, expression - 1e-3) << choice.name;
         if (expression > 1.2 * track) {
           EXPECT_NEAR(choice.played.worst, expression, 1e-3) << choice.name;

@@ -1,5 +1,6 @@
-// Tests rigs that nothing drives. The weights of their correction targets are quadratics of the weights of the other
-// targets. Compares the file with cross products in random poses, and evaluates its formulas independently.
+// Tests bakes of rigs that nothing drives. The weights of their correction targets are quadratic formulas of the
+// weights of the other targets. The test evaluates the formulas in the file, and compares the result with cross
+// products in random poses.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +33,8 @@ GltfBuilder rig(unsigned seed, std::size_t targets = kTargets) {
   return test::with_misleading_normals(test::still_hills_document(targets, seed));
 }
 
-// Returns the weights of all targets, with correction targets by the formulas in the file.
+// Returns the weights of all targets. `own` has the author's targets, and those of correction targets follow from the
+// formulas in the file.
 std::vector<float> driven(const Baked& baked, const std::vector<double>& own) {
   std::vector<float> all(own.begin(), own.end());
   const auto& extras = baked.mesh()["extras"]["chronormal"]["extras"];
@@ -94,7 +96,7 @@ TEST(BakeUndriven, shows_the_deltas_of_its_own_targets_alone_where_nobody_drives
 
 TEST(BakeUndriven, quadratics_of_many_terms_bring_a_rig_of_many_pairs_nearer) {
   BakeOptions options = smallest();
-  options.most_targets = 10 + 32;  // room for 32 of 55 products
+  options.most_targets = 10 + 32;  // room for 32 of the 55 products
   const Baked baked = test::bake_document(rig(5, 10), options), without = without_extras(5, 10);
   ASSERT_TRUE(baked.ok() && without.ok()) << baked.error << without.error;
   ASSERT_GT(baked.report.added_targets, 0U);
@@ -106,7 +108,7 @@ TEST(BakeUndriven, quadratics_of_many_terms_bring_a_rig_of_many_pairs_nearer) {
 }
 
 TEST(BakeUndriven, no_extra_target_has_more_terms_than_are_stated) {
-  constexpr std::size_t kMany = 18;  // 189 products
+  constexpr std::size_t kMany = 18;  // 18 targets have 189 products
   BakeOptions options = smallest();
   options.most_targets = kMany + 64;
   const Baked baked = test::bake_document(rig(5, kMany), options);
@@ -132,7 +134,7 @@ TEST(BakeUndriven, a_plan_says_what_more_and_more_extra_targets_gain) {
 }
 
 TEST(BakeUndriven, poses_that_are_given_decide_what_is_corrected) {
-  // Only the targets 0 and 1 are ever active together.
+  // In these poses, only targets 0 and 1 are ever active together.
   const auto poses = parse_poses("[[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [1, 1, 0, 0, 0, 0]]", "poses.json");
   ASSERT_TRUE(poses.ok());
   BakeOptions options = smallest();
@@ -173,8 +175,8 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// A bake warns about a mesh that nothing drives. The warning must be true of this bake: either correction targets were
-// written, or they would gain nothing.
+// A bake warns if nothing drives a mesh. The warning must be true: either the bake wrote correction targets, or they
+// would improve nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {
     const auto& warnings = baked.report.warnings;

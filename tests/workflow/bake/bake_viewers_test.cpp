@@ -1,5 +1,5 @@
-// Reads a baked file with tinygltf and Assimp. The file stores zeros as bytes, which older readers need. tests/viewers
-// has other viewers.
+// Reads a baked file with tinygltf and Assimp. The bake stores arrays of zeros as bytes, as older readers need.
+// tests/viewers has tests with other viewers.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
@@ -26,7 +26,7 @@ Vector vector_at(const Numbers& numbers, std::size_t i) {
   return {numbers.at(3 * i), numbers.at(3 * i + 1), numbers.at(3 * i + 2)};
 }
 
-// Sums the cross products of the two triangles of test::kQuad around each vertex, at these positions.
+// Returns the sums of the cross products of the two triangles of test::kQuad around each vertex, at these positions.
 Numbers quad_normals(const Numbers& places) {
   Numbers sums(places.size(), 0.0);
   for (std::size_t f = 0; f < test::kQuadCorners.size(); f += 3) {
@@ -47,7 +47,8 @@ double degrees_between(const Vector& a, const Vector& b) {
   return std::atan2(std::hypot(cross[0], cross[1], cross[2]), dot) * 180 / 3.14159265358979323846;
 }
 
-// The quad with normals and one target, whose weight goes from 0 to 1, baked with zeros stored as bytes.
+// A quad with normals and one target, whose weight goes from 0 to 1. It is baked so that arrays of zeros are stored as
+// bytes.
 class BakedQuad : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -77,7 +78,7 @@ class BakedQuad : public ::testing::Test {
     path_ = folder_ / "baked.glb";
   }
 
-  // Checks that base + w deltas[0] + w (1 - w) deltas[1] has the direction of the true normals at w.
+  // Checks that base + w deltas[0] + w (1 - w) deltas[1] has the direction of the true normals at some weights w.
   static void expect_exact(const Numbers& base, const std::vector<Numbers>& deltas) {
     ASSERT_EQ(deltas.size(), 2U);
     for (const double w : {0.0, 0.25, 0.5, 1.0}) {
@@ -98,7 +99,7 @@ class BakedQuad : public ::testing::Test {
   std::string path_;
 };
 
-// Returns the floats of an accessor, which must be stored in the file.
+// Returns the floats of an accessor. Fails if the file does not store them.
 Numbers numbers_of(const tinygltf::Model& model, int index) {
   const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
   EXPECT_GE(accessor.bufferView, 0);

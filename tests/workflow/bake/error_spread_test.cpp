@@ -1,4 +1,4 @@
-// Compares the average, the worst and the quantile of a distribution of errors with a list of all errors.
+// Compares the average, the worst error and the quantile that ErrorSpread computes with those of a list of all errors.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kVertices = 400, kPoses = 50, kBatch = 20;
 
-// Draws (kVertices, kPoses) errors from 1e-4 to 100 degrees; some are unknown.
+// Draws kVertices x kPoses errors from 1e-4 to 100 degrees. Some of the errors are unknown.
 std::vector<float> errors_of_all(unsigned seed) {
   fixtures::Random random(seed);
   std::vector<float> errors;
@@ -24,7 +24,7 @@ std::vector<float> errors_of_all(unsigned seed) {
   return errors;
 }
 
-// Adds the errors vertex by vertex, in batches of poses.
+// Adds the errors in batches of poses, and in each batch one vertex after the other.
 void add_all(const std::vector<float>& errors, ErrorSpread& to) {
   for (std::size_t first = 0; first < kPoses; first += kBatch)
     for (std::size_t v = 0; v < kVertices; ++v)

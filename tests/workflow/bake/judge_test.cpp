@@ -1,5 +1,5 @@
 // Compares the results of a bake's judge with a list of all errors: the average, the worst error, the 99.9 % quantile
-// and the torn edges. Also checks that each target alone is judged at its end.
+// and the torn edges. Also checks that each target alone is judged at weight 1.
 #include "workflow/bake/judge/judge.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-// Returns the edges of triangles, and of chains of vertices that share a normal.
+// Returns the edges of triangles, and edges between vertices that share a normal, which form chains.
 std::set<Edge> edges_of(const GltfShading& shading) {
   std::set<Edge> edges;
   const Topology& topology = shading.set.topology;
@@ -58,7 +58,7 @@ TEST(Judge, finds_the_errors_and_tears_of_a_list_of_all_pairs) {
   for (std::vector<double>& pose : weights.poses)
     for (double& weight : pose) weight = part(random);
 
-  // The deltas are arbitrary.
+  // The deltas need not be good for this test, so they are random.
   const std::array<Viewer, 1> viewer = {kViewers[0]};
   const Judge judge(source, rights, weights, viewer, 1, true);
   Candidate candidate;

@@ -1,5 +1,5 @@
-// Tests the search for the largest angle, which evaluates only a few elements and poses. Compares the result with an
-// evaluation of all of them.
+// Tests the search for the largest angle by which a pair of targets turns a normal. The search evaluates only a few
+// elements and poses. The test compares its result with an evaluation of all of them.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kTargets = 4;
 
-// A morphing field of hills with all objects that a PairMeter refers to.
+// Hills that morph, with all objects that a PairMeter refers to.
 class Field {
  public:
   explicit Field(unsigned seed)
@@ -42,8 +42,8 @@ class Field {
   [[nodiscard]] std::vector<Vec3d> normals(const std::vector<double>& pose) const {
     return normals_from_positions(shading_, pose);
   }
-  // Returns how much the normals with both targets at weight 1 differ from the sum of the separate effects of the
-  // targets. For a target with itself, returns the quadratic part in its weight.
+  // Returns how much the normals with both targets at weight 1 differ from the sum of the effects of each target alone.
+  // If i equals j, returns the part that is quadratic in the weight of the target.
   [[nodiscard]] std::vector<Vec3d> term(std::size_t i, std::size_t j) const {
     std::vector<double> none(kTargets, 0.0), a = none, b = none, both = none;
     a[i] += 1;
@@ -68,7 +68,7 @@ class Field {
   std::vector<PairMeter::Pair> pairs_;
 };
 
-// Returns the weight of a pair's correction target. For a pair of a target with itself, this is w (1 - w).
+// Returns the weight of the correction target of a pair. If both targets of the pair are the same, it is w (w - 1).
 double weight_of(const PairMeter::Pair& pair, const std::vector<double>& pose) {
   const auto [i, j] = pair;
   return i == j ? pose[i] * (pose[i] - 1) : pose[i] * pose[j];
@@ -96,7 +96,7 @@ TEST(PairTurns, the_largest_turn_and_the_gain_are_those_of_a_look_at_all_element
       EXPECT_EQ(measured[k].extra.j, j);
       EXPECT_NEAR(measured[k].size, size, 1e-6 * size);
       EXPECT_NEAR(measured[k].extra.gain, 1.02 * aside + 1e-3 * size, 1e-6 * size);
-      // Angles of 90 degrees and more are not measured.
+      // The search returns pi for angles of 90 degrees and more.
       EXPECT_NEAR(measured[k].turn, turn < 1.57 ? turn : 3.141592653589793, 1e-6);
     }
   }

@@ -1,5 +1,5 @@
-// Checks that a memory of poses keeps the first poses that fit, and that normals do not depend on how often or in which
-// order poses are requested.
+// Checks that a PoseMemory keeps the first poses for which it has room, and that normals do not depend on how often or
+// in which order poses are requested.
 
 #include "workflow/bake/poses/pose_memory.h"
 
@@ -42,7 +42,7 @@ TEST(PoseMemory, takes_no_more_than_it_may) {
   PoseMemory memory(3 * kEach + 1);
   for (int i = 0; i < 10; ++i) {
     memory.keep(Pose{0, 1.0 * i}, vectors_of(i));
-    memory.keep(Pose{0, 0}, vectors_of(i));  // this pose is kept already, so it takes no additional memory
+    memory.keep(Pose{0, 0}, vectors_of(i));  // takes no additional memory, since this pose is kept already
   }
   for (int i = 0; i < 10; ++i) EXPECT_EQ(memory.find(Pose{0, 1.0 * i}) != nullptr, i < 3) << i;
   PoseMemory none(0);
@@ -75,7 +75,7 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
   std::vector<Pose> poses = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}, {1, 0.25, 0.5}};
   for (int round = 0; round < 3; ++round) {
     for (const Pose& pose : poses) {
-      // The expected normals come from an object that computed nothing before.
+      // Computes the expected normals by an object that has computed nothing before.
       const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, all);
       EXPECT_EQ(terms.weighted_at(pose, few), (std::vector<Vec3d>{right[3], right[4]}));
       EXPECT_EQ(terms.weighted_at(pose, all), right);

@@ -1,4 +1,4 @@
-// Checks the normals from which a bake of a sequence computes keys and bends, against integers of any size.
+// Compares the normals from which a bake of a sequence computes keys and correction targets with integers of any size.
 
 #include "workflow/bake/sequence/sequence_normals.h"
 
@@ -17,7 +17,7 @@
 namespace chronormal::sequence_normals_test {
 namespace {
 
-// Returns the areas of the faces at the points a + b, which are twice the midpoints of a and b.
+// Returns the vector areas of the faces at the points a + b, which are twice the midpoints of a and b.
 std::vector<test::IntegerVector> areas_of_sums(const Topology& topology, const std::vector<float>& a,
                                                const std::vector<float>& b) {
   const Segment segment{&topology, VectorView<const float>::packed(a.data(), a.size() / 3),

@@ -13,7 +13,7 @@
 namespace chronormal::tracks_test {
 namespace {
 
-// Makes a track of two keys and two targets, with in-tangents, values and out-tangents at each key.
+// Makes a spline track of two keys and two targets. Each key has in-tangents, values and out-tangents.
 WeightTrack bent_track() {
   return {GltfInterpolation::kCubicSpline, {{0, 1}, {0, 0, 0.1, 0.3, 1, -2, 2, 1, 0.9, 0.6, 0, 0}}, 2};
 }
@@ -23,7 +23,7 @@ double stated_error(const std::vector<ExtraWeight>& extras) {
 }
 
 TEST(Tracks, errors_of_extra_weights_add_up) {
-  // The worst case is that all corrections turn the same normal in the same direction.
+  // In the worst case, all correction targets turn the same normal in the same direction.
   const std::vector<ExtraWeight> extras = {{0, 0, 1, -1, 0.5}, {0, 1, 0, 1, 0.7}, {1, 1, 1, -1, 0.2}};
   double sum = 0;
   for (const ExtraWeight& extra : extras) {
@@ -45,7 +45,7 @@ TEST(Tracks, pieces_that_are_cut_stay_within_the_tolerance) {
   EXPECT_LE(cut.error, 1e-4);
 }
 
-// A weight of 4 w (1 - w) is 0 at both keys and 1 halfway, so a straight line omits it completely.
+// The weight 4 w (1 - w) is 0 at both keys and 1 halfway, so a straight line between the keys misses it completely.
 TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_a_gap) {
   const test::GltfFixture file(test::still_hills_document(1, 3));
   const GltfShading shading = read_gltf_shading(*file, 0).value();
@@ -72,7 +72,7 @@ TEST(Tracks, what_straight_pieces_leave_is_what_they_leave_out_in_the_middle_of_
   MeshWeights weights{
       {{GltfInterpolation::kLinear, {{0, 1}, {0, 1}}, 1}}, {{0, 0}}, {{}}, {}, 0, WeightUse(1), true, {}};
   for (const std::size_t pieces : {std::size_t{1}, std::size_t{2}, std::size_t{5}}) {
-    // The error falls with the square of the number of pieces, so this tolerance requires exactly so many pieces.
+    // The error decreases with the square of the number of pieces, so this tolerance requires exactly `pieces` pieces.
     const auto count = static_cast<double>(pieces);
     Candidate form;
     form.own = {columns[0]};

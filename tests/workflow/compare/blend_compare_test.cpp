@@ -1,4 +1,4 @@
-// Checks comparisons of the deltas of blend shapes against errors that this test computes.
+// Compares the errors that compare --blend finds in the deltas of blend shapes with errors that this test computes.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,8 @@ using test::Real;
 using test::ShadedMesh;
 using Json = GltfBuilder::Json;
 
-constexpr double kNoise = 1e-4;       // largest error in degrees by rounding normals and their deltas to float32
-constexpr double kExactLimit = 1e-6;  // radians
+constexpr double kNoise = 1e-4;       // largest error, in degrees, from rounding normals and their deltas to float32
+constexpr double kExactLimit = 1e-6;  // in radians
 
 Result<BlendComparison> try_comparing(const GltfBuilder& builder, const BlendCompareOptions& options) {
   const GltfFixture fixture(builder);
@@ -66,7 +66,8 @@ std::vector<std::size_t> counts_of(const BlendSubject& subject) {
   return result;
 }
 
-// Tells for each vertex of a sheet whether an active target moves a face around it or changes its stored normal.
+// Tells for each vertex of a sheet whether a target with a nonzero weight moves a face at the vertex or changes its
+// stored normal.
 std::vector<bool> moved_vertices(const ShadedMesh& mesh, const std::vector<double>& weights) {
   const auto moves = [](const std::vector<float>& deltas, std::size_t v) {
     return !deltas.empty() && test::vector_at(deltas, v) != test::Vector{0, 0, 0};
@@ -97,7 +98,8 @@ struct Expected {
   }
 };
 
-// Makes a star from a set of targets: the base, and the positions of each target alone at weight 1.
+// Makes a motion from a set of targets. Its keyframes are the base and, for each target, the positions with this target
+// alone at weight 1.
 Motion star_of(const BlendSet& set) {
   Motion motion;
   motion.topology = set.topology;
@@ -117,7 +119,8 @@ Motion star_of(const BlendSet& set) {
 TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     ShadedMesh mesh = random_sheet(seed, 7, 3, 0.4);
-    // The vertices that the target moves are not those whose normals it changes.
+    // The target moves some vertices whose normals it does not change, and changes normals of vertices that it does not
+    // move.
     for (std::size_t i = 0; i < 90; ++i) mesh.targets[1].positions[i] = 0;
     for (std::size_t i = 0; i < 60; ++i) mesh.targets[1].normals[i] = 0;
     const BlendComparison result = compared(mesh.file(), {.rows = 4, .seed = seed});
@@ -140,7 +143,7 @@ TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
       EXPECT_NEAR(degrees(file.max), expected.max, 1e-4);
       EXPECT_GT(expected.max, 1);
       EXPECT_LT(quality(errors, BlendDeltas::kExact).max, kExactLimit);
-      // The oracle finds the same error at the stated place.
+      // At the stated place, the oracle must find the same error.
       const BlendError& worst = errors.deltas[0];
       std::vector<double> weights(3);
       for (const BlendError::Weight& w : worst.worst_weights) weights[w.target] = w.weight;
@@ -255,12 +258,13 @@ TEST(BlendCompare, end_points_are_right_for_each_target_alone_at_weight_one_and_
   const BlendComparison together = compared(builder, {.animation = "1"});
   EXPECT_EQ(together.subjects[0].errors[0].active, 2U);
   EXPECT_GT(degrees(quality(together.subjects[0].errors[0], BlendDeltas::kEndPoint).max), 1);
-  // For a single pose, least squares give the optimum.
+  // For a single pose, least squares give nearly exact deltas.
   EXPECT_LT(degrees(quality(together.subjects[0].errors[0], BlendDeltas::kLeastSquares).max), 0.01);
 }
 
 TEST(BlendCompare, least_squares_are_over_other_random_weights_but_over_those_of_an_animation) {
-  // There are as many poses as targets, so a fit to the poses that are judged would have almost no error.
+  // There are as many poses as targets. If the deltas were fitted to the poses in which they are judged, they would
+  // have almost no error.
   const Motion star = star_of(test::random_blend_set(6, {.targets = 12, .reach = 0.7}));
   const BlendErrors random = compared(star, {.rows = 3, .active = 6}).subjects[0].errors[0];
   EXPECT_GT(degrees(quality(random, BlendDeltas::kLeastSquares).mean()), 0.2);
@@ -313,7 +317,7 @@ TEST(BlendCompare, an_animation_gives_no_more_poses_than_asked_for_and_each_curv
   EXPECT_EQ(once, 33U);
   EXPECT_EQ(compared(builder, {.rows = 7, .animation = "walk"}).subjects[0].errors[0].rows, 7U);
   Json channel = builder.json["animations"][animation]["channels"][0];
-  channel["target"]["node"] = 1;  // another node, driven by the same sampler
+  channel["target"]["node"] = 1;  // another node, which the same sampler drives
   builder.json["animations"][animation]["channels"].push_back(channel);
   EXPECT_EQ(compared(builder, {.rows = 1000, .animation = "walk"}).subjects[0].errors[0].rows, once);
 }
@@ -343,7 +347,8 @@ TEST(BlendCompare, meshes_without_normals_and_those_that_stand_still_are_counted
 }
 
 TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_lit_is_off_by_180_degrees) {
-  // The deltas cancel the base normal. At weight 1 the file renders a zero normal, although the geometry has a normal.
+  // The deltas are the negative base normals. At weight 1, the file renders a normal of length zero, although the
+  // surface has a normal.
   ShadedMesh mesh = random_sheet(5, 5, 1, 0.1);
   mesh.targets[0].normals.clear();
   for (const float c : mesh.normals) mesh.targets[0].normals.push_back(-c);
@@ -362,7 +367,7 @@ TEST(BlendCompare, every_method_is_judged_on_the_same_pairs_and_what_cannot_be_l
 }
 
 TEST(BlendCompare, normals_that_collapse_are_left_out) {
-  // The target folds a triangle onto a line, so only at weight 1 there is no normal.
+  // The target folds a triangle onto a line, so there is no normal at weight 1, and only there.
   GltfBuilder builder;
   ShadedMesh mesh;
   mesh.corners = {0, 1, 2};
@@ -475,7 +480,7 @@ TEST(BlendCompare, face_by_other_people_is_off_by_tens_of_degrees_with_end_point
   for (const BlendErrors& errors : face.errors) {
     const Quality& end_point = quality(errors, BlendDeltas::kEndPoint);
     EXPECT_GT(degrees(end_point.max), 30) << errors.active;
-    EXPECT_GT(end_point.mean(), last);  // errors grow with the number of targets
+    EXPECT_GT(end_point.mean(), last);  // errors grow with the number of active targets
     last = end_point.mean();
     EXPECT_LT(quality(errors, BlendDeltas::kExact).max, kExactLimit) << errors.active;
   }

@@ -36,8 +36,8 @@ const SchemeComparison& row(const Comparison& comparison, const std::string& sch
 }
 
 TEST(Compare, one_face_by_hand) {
-  // The normal turns by 90 degrees from +z to +x. Linear interpolation is compared with the exact cross product at t =
-  // 1/2.
+  // The normal turns by 90 degrees from +z to +x. At t = 1/2, linear interpolation is compared with the exact cross
+  // product.
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0}, 0, ""}, {{0, 0, 0, 0, 1, 0, 0, 0, 1}, 1, ""}};
@@ -45,7 +45,8 @@ TEST(Compare, one_face_by_hand) {
   CompareOptions options{{"linear", "polynomial"}, 3, Access::kRandom, {}};
   const auto comparison = compare(motion, options);
   ASSERT_TRUE(comparison.ok());
-  // At 1/2 the vertices are (1,1,0)/2 and (0,1,1)/2, so n = (1, -1, 1) / 4, but linear gives (1, 0, 1).
+  // At t = 1/2, the vertices are (1,1,0)/2 and (0,1,1)/2, so n = (1, -1, 1) / 4. Linear interpolation gives the
+  // direction (1, 0, 1).
   const double expected = std::acos(2 / std::sqrt(2.0) / std::sqrt(3.0));
   EXPECT_NEAR(row(comparison.value(), "linear").quality.sum, expected, 1e-7);
   EXPECT_EQ(row(comparison.value(), "linear").quality.count, 3u);
@@ -55,7 +56,8 @@ TEST(Compare, one_face_by_hand) {
 }
 
 TEST(Compare, vertices_may_be_more_than_faces) {
-  // There are 4 vertices and 1 face: schemes that search must not confuse a vertex with the face of the same number.
+  // The mesh has 4 vertices and 1 face. Schemes that search must not confuse a vertex with the face that has the same
+  // index.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0.5}});
@@ -73,7 +75,7 @@ TEST(Compare, vertices_may_be_more_than_faces) {
   }
 }
 
-// Compares the whole table with an independent implementation: average angles over faces and samples.
+// Compares the whole table of results with an independent implementation, which averages angles over faces and samples.
 TEST(Compare, agrees_with_the_oracle_to_the_printed_digits) {
   constexpr const char* kSchemes[] = {
       "recompute",         "polynomial",      "rational",         "linear",
@@ -194,7 +196,7 @@ TEST(Compare, refuses_what_makes_no_table) {
             "a run with --shard or --resume cannot keep single errors or samples");
 }
 
-// The elements of the oracle: the corners of each, and the first vertex or corner that belongs to it.
+// The elements of the oracle: the corners of each element, and the first vertex or corner that belongs to it.
 struct OracleElements {
   reference::Mesh mesh;
   std::vector<std::vector<reference::Corner>> corners;
@@ -220,7 +222,8 @@ OracleElements oracle_elements(const Motion& motion, const ElementOptions& optio
   return elements;
 }
 
-// Evaluates a scheme for an element at t, from exact unit normals at the times that the scheme requests.
+// Returns the normal of an element at t by a scheme. exact(t) returns the exact unit normals from which the scheme
+// interpolates.
 std::optional<reference::Vector> oracle_normal(const std::string& scheme,
                                                const std::function<reference::Vector(reference::Real)>& exact,
                                                reference::Real t) {
@@ -276,7 +279,7 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
       EXPECT_NEAR(static_cast<double>(quality.sum / static_cast<double>(quality.count)),
                   static_cast<double>(sum) / static_cast<double>(quality.count), 1e-7)
           << scheme;
-      if (scheme == "polynomial") continue;  // its error is only rounding
+      if (scheme == "polynomial") continue;  // the error of this scheme is only rounding
       EXPECT_NEAR(quality.sum, static_cast<double>(sum), 1e-6 * static_cast<double>(sum)) << scheme;
       EXPECT_EQ(quality.max_at.element, oracle.first_output[worst_element]) << scheme << ": a vertex, or a corner";
       EXPECT_NEAR(quality.max_at.t, static_cast<double>(worst_sample) / (kSamples - 1), 1e-12) << scheme;
@@ -284,7 +287,7 @@ TEST(Compare, vertices_and_corners_agree_with_the_oracle) {
   }
 }
 
-// Tests schemes with weighted normals; only area-weighted normals are exact quadratics.
+// Tests schemes on weighted normals. Only area-weighted normals are exact quadratics in t.
 TEST(Compare, every_weighting_agrees_with_the_oracle) {
   fixtures::Random random(20261127);
   const Motion motion = fixtures::shaken(fixtures::box_grid(2), 0.3, random.below(1000));
@@ -304,8 +307,8 @@ TEST(Compare, every_weighting_agrees_with_the_oracle) {
         for (std::size_t i = 0; i < kSamples; ++i) {
           const Real t = static_cast<Real>(i) / (kSamples - 1);
           const auto exact = reference::exact_unit_normal(element, t);
-          // For weightings other than area, `polynomial` is a quadratic through three normals. Only the library knows
-          // the lengths of these normals, so the oracle takes the exact normal.
+          // For weightings other than area, `polynomial` is a quadratic curve through three normals. Only the library
+          // knows the lengths of these normals, so the test uses the exact normal here.
           const auto found = scheme == "polynomial" ? exact : reference::unit_normal(scheme, element, t);
           sum += reference::angle(exact.value(), found.value());
         }
@@ -337,8 +340,8 @@ TEST(Compare, weightings_are_of_vertices_and_have_no_certificates) {
 }
 
 TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
-  // The 240 corners are in 42 points. Each corner is a separate vertex, and the largest error must be reported for a
-  // vertex, not for a point.
+  // The 240 corners are separate vertices at 42 points. The largest error must be reported for a vertex, and not for a
+  // point.
   Motion motion = test::torn(fixtures::shaken(fixtures::icosphere(1), 0.01, 22));
   for (std::size_t v = 0; v < 240; ++v) {  // only the point of vertex 239 moves far
     bool same = true;
@@ -352,7 +355,7 @@ TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
   const std::size_t apart = compare(motion, options).value().schemes[0].quality.max_at.element;
   EXPECT_LT(welded, 240U);
   EXPECT_LT(apart, 240U);
-  // With welding, the reported vertex is the first of its copies.
+  // If vertices are welded, the reported vertex is the first one at its point.
   for (std::size_t v = 0; v < welded; ++v) {
     EXPECT_FALSE(std::equal(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                             motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),
@@ -402,7 +405,7 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// Where the normals of faces cancel, a vertex is judged only if its normal exists. Integers tell where it does not.
+// Where the normals of faces cancel, a vertex is judged only if it has a normal. Integers decide whether it has.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;
@@ -492,7 +495,7 @@ TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {
 }
 
 TEST(BuiltinMorphs, eversion_turns_inside_out) {
-  // The volume, by the divergence theorem, changes its sign.
+  // The volume, which the divergence theorem gives, changes its sign.
   const Motion motion = make_builtin_morph("eversion").value();
   const auto volume = [&motion](VectorView<const float> p) {
     double sum = 0;
@@ -506,7 +509,7 @@ TEST(BuiltinMorphs, eversion_turns_inside_out) {
   EXPECT_LT(volume(motion.segment(0).to), -1);
 }
 
-// Makes a polygon that bends, on straight or curved paths.
+// Makes a motion of one polygon that bends.
 Motion polygon(std::uint32_t corners) {
   Motion motion;
   std::vector<std::uint32_t> around(corners);
@@ -525,8 +528,8 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// A vertex with a single polygon must have the normal of the polygon, for small polygons, whose normals are computed at
-// each corner, and for larger ones.
+// A vertex with a single polygon must have the normal of the polygon. In small polygons, normals are computed at each
+// corner; larger polygons are treated differently.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
     for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {

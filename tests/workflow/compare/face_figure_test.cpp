@@ -1,4 +1,4 @@
-// Compares the figures of one face with the textbook definitions of tests/support/reference.h.
+// Compares the figures about one face, which reports show, with the textbook definitions in tests/support/reference.h.
 #include "workflow/compare/face_figure.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 using reference::Real;
 using reference::Vector;
 
-constexpr Real kNear = 1e-6L;  // radians, or shares of a length
+constexpr Real kNear = 1e-6L;  // in radians, or as a share of a length
 
 Vector real(const Vec3d& v) { return {Real(v.x), Real(v.y), Real(v.z)}; }
 
@@ -36,7 +36,7 @@ reference::Triangle triangle_of(const FaceFigure& figure) {
   return triangle;
 }
 
-// Returns the length of the vector of a Lagrange scheme before it is normalised, by products of differences.
+// Returns the length of the vector that a Lagrange scheme normalises. Computes the weights as products of differences.
 std::optional<Real> lagrange_length(const reference::Triangle& triangle, std::size_t degree, Real t) {
   const auto nodes = reference::exact_nodes(triangle, degree + 1);
   if (!nodes) return std::nullopt;
@@ -55,8 +55,8 @@ void expect_near(const Vec3d& found, const Vector& expected, const std::string& 
   EXPECT_LT(reference::length(reference::subtract(real(found), expected)), kNear) << what;
 }
 
-// Checks by the literal recursion that every point of de Casteljau's levels is on the arc between two points of the
-// level before.
+// Checks de Casteljau's levels by the recursion itself: every point of a level must be on the arc between two points of
+// the level before.
 void expect_levels(const SchemeFigure& scheme, const reference::Triangle& triangle, std::size_t sample, Real t) {
   const auto nodes = reference::exact_nodes(triangle, scheme.nodes.size());
   if (!nodes) return;
@@ -130,10 +130,11 @@ TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
           const auto expected =
               reference::unit_normal(scheme.scheme, triangle, t, {face, 0}, real(scheme.normals[middle]));
           const auto name = reference::parse_scheme(scheme.scheme);
-          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 has too few digits there
+          // float32 has too few digits for such short vectors
+          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;
           if (!expected || is_tiny || name->kind == "quaternion:optimal") continue;
           const Vector normal = real(scheme.normals[i]);
-          // The scheme has taken another branch than the oracle. oracle_test.cpp tests this choice.
+          // Here, the scheme has chosen another branch than the oracle. oracle_test.cpp tests this choice.
           if (reference::angle(normal, *expected) > 5 * kNear) continue;
           ++held[scheme.scheme];
           EXPECT_NEAR(scheme.angles[i], double(reference::angle(normal, *exact)), 1e-6) << scheme.scheme;
@@ -185,7 +186,7 @@ TEST(FaceFigure, q_is_that_of_the_comparison) {
 TEST(FaceFigure, a_face_that_collapses_or_has_more_corners_is_shown_as_far_as_it_is_one) {
   const Motion collapsing =
       fixtures::make_motion(fixtures::make_triangles(3, {0, 1, 2}), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                            {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}});  // no area at t = 1/2, then the other side up
+                            {{0, 0, 0}, {1, 0, 0}, {0, -1, 0}});  // no area at t = 1/2, then its back is up
   const FaceFigure figure = face_figure(collapsing, {0, 0, {"linear", "quaternion:matrix"}, 3}).value();
   EXPECT_EQ(figure.lengths[1], 0);
   EXPECT_TRUE(std::isnan(figure.schemes[0].angles[1]));

@@ -1,5 +1,5 @@
-// Compares normals between keyframes with keyframes that were left out, for motions whose true normals are known.
-// Figures are computed here from positions alone. Also tests refused requests.
+// Compares normals between keyframes with those of keyframes that were left out, for motions whose true normals are
+// known. The test computes the expected figures from positions alone. Also tests requests that are refused.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-// Makes a round body at some times. Bumps make all normals different, and there is more than one block of elements.
+// Makes a round body at these times. Because of bumps, all normals are different. The body has more than one block of
+// elements.
 Motion body_at(const std::vector<double>& times, const std::function<Vec3d(const Vec3d&, double)>& moved) {
   constexpr std::size_t kAround = 48, kUp = 24;
   std::vector<Vec3d> places;
@@ -78,8 +79,8 @@ const Quality& row(const TruthComparison& comparison, const std::string& scheme)
   return comparison.rows.front().quality;
 }
 
-// The errors of faces by independent code: the normals of nlerp between the ends, and the cross products of the blended
-// positions, are compared with the face of the frame that was left out.
+// The average errors of the faces, computed independently. The normals by nlerp between two keyframes, and the cross
+// products of interpolated positions, are compared with the normals of the keyframe that was left out.
 struct Means {
   double linear = 0, polynomial = 0;
 };

@@ -1,4 +1,5 @@
-// Tests the single errors of an audit or a comparison, whose sums must equal the totals, and their files.
+// Tests the errors of single samples of an audit or a comparison, and their files. The sums of these errors must equal
+// the totals.
 
 #include "chronormal/workflow/errors.h"
 
@@ -41,7 +42,7 @@ Input twist() {
   return open_input(options).value();
 }
 
-// Audits two triangles that fold, by a target and by an animation of two seconds.
+// Audits two triangles that fold: by a target alone, and in an animation of two seconds.
 Audit hinge_audit(bool keep_errors) {
   test::GltfBuilder builder = test::hinge().file();
   builder.add_track(builder.add_animation("swing"), 0, std::vector<float>{0, 2}, std::vector<float>{0, 1});
@@ -106,7 +107,7 @@ TEST(ErrorTables, of_a_comparison_add_up_to_its_sums_for_every_kind_of_element) 
       const Sums sums = sums_of(table.degrees);
       const Quality& quality = found.schemes[s].quality;
       EXPECT_FLOAT_EQ(static_cast<float>(sums.worst), static_cast<float>(quality.max * kDegreesPerRadian));
-      // A vertex normal belongs to as many corners as there are faces around the vertex.
+      // The normal of a vertex belongs to as many corners as the vertex has faces, so the numbers differ.
       if (kind == ElementKind::kCorners) continue;
       EXPECT_EQ(sums.judged, quality.count);
       EXPECT_NEAR(sums.sum, quality.sum * kDegreesPerRadian, 1e-5 * sums.sum);

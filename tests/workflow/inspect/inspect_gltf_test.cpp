@@ -40,8 +40,8 @@ TEST(InspectGltf, targets_with_and_without_normals_are_counted) {
 }
 
 TEST(InspectGltf, normals_that_differ_at_one_place_are_split_and_wrong_lengths_are_counted) {
-  // Vertices 2, 3 and 4 are at the position of vertex 0. Vertex 2 has the same normal, vertex 3 another normal, and
-  // vertex 4 a normal that differs only by rounding.
+  // Vertices 2, 3 and 4 are at the position of vertex 0. Vertex 2 has the same normal as vertex 0, vertex 3 has a
+  // different normal, and the normal of vertex 4 differs only by rounding.
   GltfBuilder builder;
   const std::vector<float> places = {0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, -0.0F, 0, 0, 1, 0};
   const std::vector<float> normals = {0, 0, 1, 0, 0, 1.2F, 0, 0, 1, 0, 1, 0, 0, 1e-4F, 1, 0, 0, 0};
@@ -61,7 +61,7 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
   const std::size_t animation = builder.add_animation("a");
   builder.add_track(animation, 0, {0.5F, 2}, std::vector<float>{0, 0.25F, 1.5F, -0.5F});
   const std::size_t spline = builder.add_animation("b");
-  // The tangents before the first key and after the last one are not used.
+  // The tangent before the first key and the tangent after the last key have no effect.
   builder.add_track(spline, 0, {1, 3}, std::vector<float>{9, 9, 0, 1, 0, 0, 0, 0, 0.5F, 0.75F, 9, 9}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
   ASSERT_EQ(found.tracks.size(), 2U);
@@ -77,8 +77,9 @@ TEST(InspectGltf, tracks_tell_their_time_and_their_weights) {
 TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
   GltfBuilder builder = test::quad_document();
   const std::size_t animation = builder.add_animation("a");
-  // The first weight is 20 t (1 - t), with 5 in the middle; the second is -9 t (1 - t)^2 / 2, with -2/3 at t = 1/3,
-  // over the two seconds from the first key to the second. Nothing moves from there to the third key.
+  // Between the first and the second key, which are two seconds apart, the first weight is 20 t (1 - t), with the
+  // maximum 5 in the middle. The second weight is -9 t (1 - t)^2 / 2, with the minimum -2/3 at t = 1/3. Both weights
+  // are zero from the second to the third key.
   builder.add_track(animation, 0, {1, 3, 4},
                     std::vector<float>{0, 0, 0, 0, 10, -2.25F, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 7, 7}, "CUBICSPLINE");
   const GltfInspection found = inspect_document(builder);
@@ -87,8 +88,8 @@ TEST(InspectGltf, range_of_a_spline_is_what_it_reaches_between_its_keys) {
 }
 
 TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) {
-  // Vertices 3 and 4 are at the positions of 0 and 1 with other normals; 3 separates from 0. The second primitive
-  // coincides with the first.
+  // Vertices 3 and 4 are at the positions of vertices 0 and 1, with different normals. In the target, vertex 3
+  // separates from vertex 0. The second primitive coincides with the first.
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0});
   const std::size_t target = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
@@ -107,7 +108,7 @@ TEST(InspectGltf, split_normals_of_a_motion_are_at_vertices_that_stay_together) 
   EXPECT_EQ(split_of(builder), 1U);
   builder.add_primitive(mesh, with_normals({1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 0}));
   EXPECT_EQ(split_of(builder), 2U);
-  // A third primitive is elsewhere, so it shares no normals.
+  // The third primitive is at another place, so it shares no normals with the others.
   const std::size_t elsewhere = builder.add_positions({5, 0, 0, 6, 0, 0, 5, 1, 0, 5, 0, 1, 6, 0, 1, 5, -1, 0});
   auto third = with_normals({0, 0, -1, 0, 0, -1, 0, 0, -1, 0, -1, 0, 0, -1, 0, 0, -1, 0});
   third["attributes"]["POSITION"] = elsewhere;

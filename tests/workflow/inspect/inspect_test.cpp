@@ -22,7 +22,7 @@ constexpr double kDegree = 1 / kDegreesPerRadian;
 
 using Positions = std::vector<float>;
 
-// Makes a triangle, and a fourth vertex in no face, with a keyframe for each list of positions.
+// Makes a motion of a triangle and a fourth vertex that no face uses. Each list of positions is a keyframe.
 Motion triangle_motion(const std::vector<Positions>& keyframes) {
   Motion motion;
   motion.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -102,14 +102,14 @@ TEST(Inspect, face_on_a_line_throughout_has_no_normal_and_one_between_two_lines_
 }
 
 TEST(Inspect, sliver_may_be_as_long_as_the_mesh) {
-  // |n| is 2 h, and the bound is 4 sqrt(3) 2^-24 times 2, so h = 2^-22 is below the bound, and 2^-21 is above.
+  // n| is 2 h, and the bound for slivers is 4 sqrt(3) 2^-24 times 2. A height of 2^-22 is below the bound, and 2^-21 is above.
   const Positions sliver = {-1, 0, 0, 1, 0, 0, 0, 0x1p-22F, 0}, narrow = {-1, 0, 0, 1, 0, 0, 0, 0x1p-21F, 0};
   EXPECT_EQ(inspect(triangle_motion({sliver, kTriangle})).slivers.pairs, 1U);
   EXPECT_EQ(inspect(triangle_motion({narrow, kTriangle})).slivers.pairs, 0U);
 }
 
 TEST(Inspect, sliver_is_what_rounding_can_turn) {
-  // At a distance of 1000, neighbouring floats differ by 6e-5.
+  // At coordinates of about 1000, neighbouring floats differ by 6e-5.
   Positions sliver = {1000, 0, 0, 1001, 0, 0, 1002, 0, 0}, narrow = sliver;
   sliver[7] = 0x1p-14F;
   narrow[7] = 0x1p-9F;
@@ -119,7 +119,7 @@ TEST(Inspect, sliver_is_what_rounding_can_turn) {
   EXPECT_EQ(found.no_area.pairs, 0U);
 }
 
-// Applies the definition in inspect.h to triangles, in long double.
+// Tells by the definition in inspect.h whether a triangle is a sliver in a keyframe. Computes in long double.
 bool is_sliver(const Motion& motion, std::size_t keyframe, std::size_t face) {
   const float* const p = motion.keyframes[keyframe].positions.data() + 9 * face;
   long double e[3], f[3], coordinate = 0, edge = 0, size = 0;
@@ -137,7 +137,8 @@ bool is_sliver(const Motion& motion, std::size_t keyframe, std::size_t face) {
 }
 
 TEST(Inspect, slivers_are_those_of_their_own_keyframe_and_the_box_is_that_of_all) {
-  // The needles are about as wide as rounding allows, and their distance from the origin varies by keyframe and face.
+  // The needles are about as wide as the bound for slivers. Their distance from the origin depends on keyframe and
+  // face.
   constexpr std::size_t kFaces = 10000;
   Motion motion = fixtures::soup({.face_count = kFaces, .seed = 77, .motion = 1e-3, .needle = 4e-7});
   motion.keyframes.push_back(motion.keyframes[0]);
@@ -176,7 +177,7 @@ TEST(Inspect, slivers_are_those_of_their_own_keyframe_and_the_box_is_that_of_all
 TEST(Inspect, largest_motion_is_that_of_the_first_vertex_that_goes_so_far) {
   Motion motion = fixtures::moderate_soup(9000);
   std::vector<float>&from = motion.keyframes[0].positions, &to = motion.keyframes[1].positions;
-  // Each vertex moves slightly farther than the one before it, except that the last two move equally far.
+  // Each vertex moves slightly farther than the vertex before it, except that the last two move equally far.
   for (std::size_t v = 0; v < from.size() / 3; ++v) to[3 * v] = from[3 * v] + 1 + static_cast<float>(v) * 0x1p-13F;
   std::copy_n(from.end() - 3, 3, from.end() - 6);
   std::copy_n(to.end() - 3, 3, to.end() - 6);
@@ -212,7 +213,7 @@ TEST(Inspect, mesh_without_motion_and_keyframe_without_segment_are_inspected_too
 TEST(Inspect, vertices_that_part_later_are_doubled_at_the_start_only) {
   Motion motion;
   motion.topology = fixtures::make_triangles(7, {0, 1, 2, 3, 4, 5});
-  // Vertex 3 stays at the position of 0, vertex 4 separates from 1, and 6 is in no face.
+  // Vertex 3 remains at the position of vertex 0, vertex 4 separates from vertex 1, and no face uses vertex 6.
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -1, 0, 9, 9, 9}, 0, ""},
                       {{0, 0, 1, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 0, 0, -1, 0, 9, 9, 9}, 1, ""}};
   motion.connect_as_sequence();
@@ -223,7 +224,7 @@ TEST(Inspect, vertices_that_part_later_are_doubled_at_the_start_only) {
   EXPECT_EQ(found.surface.pieces, 1U);
   EXPECT_EQ(found.surface.edges, 6U);
 
-  // If the bodies are separate, the coinciding vertices belong to two triangles that share nothing.
+  // If the two triangles are separate bodies, coinciding vertices do not share a point.
   motion.body_of_vertex = {0, 0, 0, 1, 1, 1, 1};
   const Inspection apart = inspect(motion);
   EXPECT_EQ(apart.doubled.count, 0U);

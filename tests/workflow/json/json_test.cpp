@@ -1,4 +1,4 @@
-// Tests the JSON that the library makes of results. It must equal the text that the program prints.
+// Tests the JSON that the library makes of results, which must equal the text that the program prints.
 
 #include "workflow/json/json.h"
 
@@ -43,7 +43,7 @@ TEST(ResultJson, passes_only_within_the_tolerance) {
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {2}))["passed"], true);
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);
   EXPECT_TRUE(nlohmann::json::parse(audit_json("a", found, {}))["passed"].is_null());
-  found.viewers.resize(2);  // from here on, the errors of the viewers decide
+  found.viewers.resize(2);  // from here on, the errors in the two viewers decide
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], true);
   found.viewers[1].beyond = 1;
   EXPECT_EQ(nlohmann::json::parse(audit_json("a", found, {1}))["passed"], false);

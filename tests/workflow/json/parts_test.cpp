@@ -1,5 +1,5 @@
-// Tests parts of comparisons and audits. Merged parts must have the text of a single run, and parts that do not fit
-// together must be refused.
+// Tests the parts of comparisons and audits that shards write. Merged parts must have the text of a single run. Parts
+// that do not belong together must be refused.
 #include "workflow/json/parts.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ Motion bending() {
 }
 
 std::string merged(std::vector<Part> parts) {
-  std::reverse(parts.begin(), parts.end());  // in any order
+  std::reverse(parts.begin(), parts.end());  // parts may be in any order
   const Result<MergedParts> all = merge_parts(parts);
   return all ? all.value().json : all.error().text();
 }
@@ -91,7 +91,7 @@ std::vector<Part> audit_parts(const Motion& motion, const StoredNormals& normals
   return parts;
 }
 
-// Writes the samples of one shard.
+// Writes the samples of one shard to a file.
 Result<SampleSummary> write_share(MotionStream& stream, const SampleOptions& options, const Moments& moments,
                                   const SampleOutput& output, const Shard& shard) {
   SegmentRun run;
@@ -105,7 +105,7 @@ Result<SampleSummary> write_share(const Motion& motion, const SampleOptions& opt
   return write_share(stream, options, moments, output, shard);
 }
 
-// Returns the text of a part with one replacement, and with a checksum that fits the new text.
+// Replaces `from` by `to` in the text of a part, and replaces the checksum by that of the new text.
 std::string edited(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;
@@ -146,7 +146,7 @@ TEST(MergeParts, shards_of_a_comparison_give_the_bytes_of_one_run) {
 
 TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   const Motion motion = bending();
-  StoredNormals normals;  // the stored normals of every keyframe point up, which is wrong from the first keyframe on
+  StoredNormals normals;  // the stored normals of all keyframes point up, which is wrong from the first keyframe on
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     normals.of_keyframes.emplace_back();
     for (std::size_t c = 0; c < motion.topology.corner_count(); ++c)
@@ -164,7 +164,7 @@ TEST(MergeParts, shards_of_an_audit_give_the_bytes_of_one_run) {
   }
 }
 
-// Ends a run after some segments. Another run gets its results and goes on.
+// Ends a run after some segments. Another run takes over its results and continues.
 TEST(KnownSegments, a_comparison_that_goes_on_gives_the_bytes_of_one_run) {
   const Motion motion = bending();
   MotionStream stream(motion);
@@ -350,7 +350,7 @@ TEST(MergeArrays, shards_of_samples_give_the_bytes_of_one_run) {
       parts.push_back(folder / ("part_" + std::to_string(i) + ".npy"));
       ASSERT_TRUE(write_share(motion, options, moments, {parts.back(), SampleFormat::kNpy, true}, {i, count}).ok());
     }
-    std::reverse(parts.begin(), parts.end());  // in any order
+    std::reverse(parts.begin(), parts.end());  // parts may be in any order
     ASSERT_TRUE(merge_arrays(parts, folder / "merged.npy", true).ok());
     EXPECT_TRUE(test::read_whole(folder / "merged.npy") == test::read_whole(folder / "all.npy")) << count;
   }
@@ -390,8 +390,8 @@ TEST(MergeArrays, refuses_shards_that_do_not_make_a_whole) {
   EXPECT_EQ(merge_arrays(std::vector{folder / "gone.npy"}, folder / "x.npy", true).error().code, ErrorCode::kFailed);
 }
 
-// A way to divide a task: `write` writes the part of a shard of a motion to a file; `merge` returns the merged text of
-// files, or an error.
+// A task that can be divided: `write` writes the part of a shard of a motion to a file. `merge` returns the text of
+// merged files, or an error.
 struct Task {
   std::string name;
   std::function<void(MotionStream& stream, const Shard& shard, const std::string& path)> write;
@@ -463,7 +463,8 @@ std::vector<Task> tasks(const std::string& merged_path) {
            }}};
 }
 
-// Writes the part of a shard, of a motion in memory or of a stream that keeps nothing.
+// Writes the part of a shard. The motion is in memory if is_kept, and otherwise a stream that keeps only keyframes in
+// use.
 void write_part(const Task& task, const Motion& motion, bool is_kept, const Shard& shard, const std::string& path) {
   MotionStream whole(motion);
   if (is_kept) return task.write(whole, shard, path);
@@ -491,7 +492,8 @@ TEST(Parts, no_damage_gives_other_bytes) {
       const Result<std::string> merged = task.merge(paths);
       EXPECT_FALSE(merged.ok()) << what;
     };
-    // Changes every byte near the ends of the file, which describe the part, and some other bytes.
+    // Changes every byte near the start and the end of the file, where the part describes itself, and some of the other
+    // bytes.
     for (std::size_t at = 0; at < part.size(); at += at < 128 || at + 128 > part.size() ? 1 : 1 + random() % 97) {
       std::string damaged = part;
       damaged[at] = static_cast<char>(random());
@@ -510,7 +512,7 @@ TEST(Parts, no_damage_gives_other_bytes) {
 }
 
 // A random keyframe changes between two shards. The number of shards is random, too. If the motion is in memory, every
-// shard sees all of it. Otherwise, only keyframes that two shards read can be compared.
+// shard sees all keyframes. Otherwise, a change can be noticed only in keyframes that two shards read.
 TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together) {
   constexpr unsigned kSeed = 20261126;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -522,7 +524,7 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       const std::size_t count = 2 + random() % 3, later = 1 + random() % (count - 1);
       const Motion before = bending();
       Motion after = before;
-      // If streams keep nothing, the changed keyframe is the first of the later shard, or 0, or the last one.
+      // If the streams keep nothing, changes the first keyframe of the later shard, keyframe 0, or the last keyframe.
       const std::size_t boundary = Shard{later, count}.of(8).first;
       const std::size_t changed = is_kept ? random() % 9 : std::vector<std::size_t>{0, boundary, 8}[random() % 3];
       std::vector<float>& positions = after.keyframes[changed].positions;
@@ -569,7 +571,7 @@ TEST(Parts, of_two_sequences_with_the_same_faces_and_times_do_not_belong_togethe
   }
 }
 
-// An audit reads keyframes in two passes. One keyframe changes between the passes.
+// An audit reads keyframes in two passes. In this test, one keyframe changes between the passes.
 TEST(Parts, are_not_written_of_a_keyframe_that_changes_while_it_is_read) {
   const Motion motion = bending();
   std::vector<int> reads(9);

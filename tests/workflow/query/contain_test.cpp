@@ -1,4 +1,4 @@
-// Checks sums of crossings over all segments of whole motions.
+// Checks that the crossings of points add up over all segments of whole motions.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ const std::vector<T>& column(const QueryAnswer& answer, const std::string& table
   throw std::runtime_error("no column " + name);
 }
 
-// Makes points that move on straight lines through a box around the motion.
+// Makes points that move on straight lines through the bounding box of the motion.
 PointPaths some_paths(const Motion& motion, std::size_t count) {
   std::vector<double> low(3, 1e30), high(3, -1e30);
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
@@ -45,8 +45,8 @@ PointPaths some_paths(const Motion& motion, std::size_t count) {
   return paths;
 }
 
-// Checks that the points inside at the start, changed by the crossings, are the points inside at the end. A query about
-// the last instants returns the latter.
+// Checks that the crossings lead from the points that are inside at the start to the points that are inside at the end.
+// A query about the last instants finds the latter.
 void expect_sums(const Motion& motion, const PointPaths& paths) {
   const QueryAnswer answer = query_contain(motion, paths).value();
   const auto& points = column<std::int64_t>(answer, "crossing", "point");
@@ -55,7 +55,7 @@ void expect_sums(const Motion& motion, const PointPaths& paths) {
   const auto& inside = column<std::uint8_t>(answer, "", "inside");
   ASSERT_EQ(inside.size(), paths.count());
   EXPECT_GT(points.size(), paths.count() / 10);
-  std::vector<int> winding(inside.begin(), inside.end());  // the meshes do not intersect themselves at the start
+  std::vector<int> winding(inside.begin(), inside.end());  // at the start, the meshes do not intersect themselves
   for (std::size_t i = 0; i < points.size(); ++i) {
     winding[static_cast<std::size_t>(points[i])] += inward[i] != 0 ? 1 : -1;
     if (i > 0 && points[i] == points[i - 1]) {
@@ -70,7 +70,7 @@ void expect_sums(const Motion& motion, const PointPaths& paths) {
   for (std::size_t p = 0; p < winding.size(); ++p) ASSERT_EQ(winding[p], expected[p]) << p;
 }
 
-// Makes a double pyramid that tumbles through seven keyframes.
+// Makes a double pyramid that tumbles over seven keyframes.
 Motion tumbling() {
   Motion motion;
   motion.topology =
@@ -109,7 +109,7 @@ TEST(QueryContain, each_target_is_a_motion_of_its_own_by_weight) {
   EXPECT_EQ(column<std::int64_t>(both, "crossing", "point").size(), count);
 }
 
-// The cache has its vertices in another order than its mesh.
+// In the cache, the vertices are in another order than in its mesh.
 TEST(QueryContain, a_cache_by_other_people_keeps_the_sum_over_all_of_its_segments) {
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";

@@ -1,5 +1,5 @@
-// Checks that results of queries, whose size is unknown in advance, respect the limit on expansion while they grow, and
-// not only when all rows are in memory.
+// Checks the limit on the results of queries, whose size is not known in advance. A query must stop while its results
+// grow beyond the limit, and not only when all rows are in memory.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ using fixtures::Point;
 
 constexpr std::size_t kSegments = 400;
 
-// Makes a motion that alternates between two shapes many times.
+// Makes a motion that goes back and forth between two shapes many times.
 Motion to_and_fro(Topology topology, const std::vector<Point>& from, const std::vector<Point>& to) {
   Motion motion = fixtures::make_motion(std::move(topology), from, to);
   for (std::size_t k = 2; k <= kSegments; ++k) {
@@ -31,8 +31,8 @@ Motion to_and_fro(Topology topology, const std::vector<Point>& from, const std::
   return motion;
 }
 
-// Makes a strip of random triangles in a plane. Each triangle turns over, and on the way collapses to a line. So there
-// is a collapse and a change of side in every segment.
+// Makes a strip of random triangles in a plane. Each triangle turns over in every segment, and collapses to a line on
+// the way. Every segment therefore has a collapse and a change of side for every triangle.
 Motion turning_triangles() {
   constexpr std::size_t kFaces = 4'000;
   fixtures::Random random(20261125);
@@ -47,7 +47,7 @@ Motion turning_triangles() {
   return to_and_fro(fixtures::make_triangles(from.size(), std::move(corners)), from, to);
 }
 
-// Makes a tetrahedron that moves across the unit cube.
+// Makes a tetrahedron that moves through the unit cube.
 Motion sweeping_tetrahedron() {
   const std::vector<Point> from{{-2, -9, -9}, {-2, 20, -9}, {-2, -9, 20}, {-1, 0.5, 0.5}};
   std::vector<Point> to = from;
@@ -56,7 +56,7 @@ Motion sweeping_tetrahedron() {
 }
 
 // Calls ask(span, progress) with the usual limit and without a limit. With the limit, the query must end with the error
-// of Expansion long before the last segment. Without a limit, it must find more rows than the limit allows.
+// of Expansion long before the last segment. Without a limit, it must find more rows than the limit permits.
 template <class Ask>
 void expect_bounded(const Ask& ask) {
   QuerySpan span;
@@ -72,7 +72,7 @@ void expect_bounded(const Ask& ask) {
   EXPECT_GT(last, 0);
   EXPECT_LT(last, kSegments / 2);
 
-  // The results of the segments before the limit fit, so nothing is refused too early.
+  // The results up to the segment before must be within the limit, so the query did not stop too early.
   span.to = static_cast<double>(last);
   const Result<QueryAnswer> within = ask(span, {});
   ASSERT_TRUE(within) << within.error().text();

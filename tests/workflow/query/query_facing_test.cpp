@@ -1,4 +1,4 @@
-// Checks when faces of a whole motion show their front, in rational numbers.
+// Computes in rational numbers when the faces of a whole motion show their front, and compares queries with the result.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ namespace {
 
 using exact::Rational;
 
-// Returns n . w of a face at a t of a segment, for an eye that moves from the first to the last time of the motion.
+// Returns n . w of a face at local time t of segment s, where w points to the eye. The eye moves from the first to the
+// last time of the motion.
 Rational front_at(const Motion& motion, std::size_t s, std::size_t face, const View& view, double t) {
   const Segment segment = motion.segment(s);
   exact::Triangle triangle;
@@ -46,7 +47,7 @@ TEST(QueryFacing, every_change_lies_in_its_bracket_for_the_eye_that_was_asked_fo
   fixtures::Random random(kSeed);
   std::size_t changes = 0;
   for (int i = 0; i < 40; ++i) {
-    // Every second motion is slow, so that n . w changes little in a segment and brackets must be narrowed.
+    // Every second motion is slow, so n . w changes little in a segment and the brackets of zeros must be narrowed.
     const bool is_slow = i % 2 == 0;
     const std::size_t face_count = is_slow ? 3000 : 40;
     Motion motion = fixtures::large_soup(face_count, static_cast<std::uint64_t>(i));

@@ -1,4 +1,4 @@
-// Tests which parts of segments belong to an interval of time.
+// Tests which parts of which segments belong to an interval of time.
 #include "chronormal/workflow/query.h"
 
 #include <gmpxx.h>
@@ -15,7 +15,8 @@
 namespace chronormal::query_test {
 namespace {
 
-// Checks in rational numbers that no instant of the interval is left out, and that at most a rounding of t is added.
+// Checks in rational numbers that the parts include every instant of the interval, and that they exceed the interval by
+// at most one rounding of t.
 TEST(SegmentParts, hold_the_whole_span) {
   constexpr std::uint64_t kSeed = 20261128;
   std::cout << "  from seed " << kSeed << '\n';

@@ -1,4 +1,4 @@
-// Compares queries about the normals of vertices and corners with integers of any size and with dense sums.
+// Compares queries about the normals of vertices and corners with integers of any size, and with sums over many times.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,10 +23,11 @@ using test::WholePolynomial;
 using test::WholeVector;
 
 constexpr std::uint64_t kSeed = 20261127;
-constexpr std::uint32_t kSide = 4;  // vertices per side
+constexpr std::uint32_t kSide = 4;  // number of vertices along a side
 
-// A sheet of quads and triangles with three keyframes. Small integer coordinates cause all exact coincidences: sums of
-// faces that cancel, normals that are seen edge-on at a keyframe, vertices at the eye. Two vertices coincide.
+// Makes a sheet of quads and triangles with three keyframes. Its coordinates are small integers, so all exact
+// coincidences occur: normals of faces that cancel, normals that are seen edge-on at a keyframe, and vertices at the
+// eye. Two vertices coincide.
 Motion small_sheet(fixtures::Random& random, int reach) {
   Motion motion;
   std::vector<std::uint32_t> offsets = {0}, corners;
@@ -44,7 +45,7 @@ Motion small_sheet(fixtures::Random& random, int reach) {
       }
     }
   }
-  motion.topology = Topology::polygons(kSide * kSide + 1, offsets, corners).value();  // the last vertex is in no face
+  motion.topology = Topology::polygons(kSide * kSide + 1, offsets, corners).value();  // no face uses the last vertex
   for (int k = 0; k < 3; ++k) {
     Motion::Keyframe keyframe;
     keyframe.time = k;
@@ -78,9 +79,9 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
   return {};
 }
 
-// A vertex or a corner, and the faces whose sum is its normal, found by coordinates alone. For vertices, these are all
-// faces with a vertex at the same point in all keyframes. For corners, only faces at the same vertex count, since two
-// fans of corners that merely touch in a point must stay separate.
+// A vertex or a corner, together with the faces whose normals add up to its normal. The faces are found from
+// coordinates alone. For a vertex, they are all faces with a vertex at the same point in all keyframes. For a corner,
+// they are only faces at the same vertex, since fans of corners that touch in a point are separate.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
@@ -107,8 +108,8 @@ std::vector<Output> outputs_of(const Motion& motion, ElementKind kind) {
   return outputs;
 }
 
-// Returns n . w of a vertex in a segment, times a positive number; the eye is at integer positions and moves over both
-// segments.
+// Returns n . w of a vertex or corner in a segment as a polynomial, times a positive number. The eye is at integer
+// positions and moves over both segments.
 WholePolynomial facing_polynomial(const Segment& segment, const Output& output, const View& view) {
   std::array<Whole, 4> values;
   for (long t = -1; t <= 2; ++t) {
@@ -179,7 +180,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
             EXPECT_LE(high - low, kWidestBracket);
             if (low > 0) instants.push_back(std::nextafter(low, 0));
             if (high < 1) instants.push_back(std::nextafter(high, 1));
-            const bool is_inside = 0 < high && low < 1;  // the bracket is not at an end of the segment
+            const bool is_inside = 0 < high && low < 1;  // the bracket is inside the segment
             if (is_inside && low < high) {
               EXPECT_GE(f.count_roots(low, high), 1U);
             }
@@ -209,7 +210,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
   EXPECT_GT(touching, 100U);
 }
 
-// Returns n(t) of an output in long double, from positions.
+// Returns n(t) of a vertex or corner, from positions in long double.
 std::array<long double, 3> normal_at(const Segment& segment, const Output& output, long double t) {
   std::array<long double, 3> sum{};
   for (const std::uint32_t face : output.faces) {
@@ -251,8 +252,8 @@ TEST(QueryVertices, means_over_a_shutter_are_those_of_dense_sums) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       EXPECT_EQ(segments[r], 0);
       const Output& output = outputs[std::size_t(rows[r])];
-      // Simpson's rule is exact for the mean of n. For the mean of the unit normal it is accurate only if n(t) stays
-      // away from zero.
+      // Simpson's rule is exact for the mean of n(t). For the mean of the unit normal, it is accurate only if n(t) does
+      // not come close to zero.
       constexpr int kParts = 4000;
       std::array<long double, 3> sum{}, unit_sum{};
       long double shortest = 1e30L, longest = 0;

@@ -1,5 +1,5 @@
-// Compares a mesh near the origin with the same mesh at a place far away. There float32 cannot represent its
-// coordinates, so keyframes have residuals. All results must be equal.
+// Compares the results for a mesh near the origin with those for the same mesh far away. Far away, float32 cannot
+// represent the coordinates, so keyframes also store the rounding errors (residuals). All results must be equal.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,9 +34,11 @@ using fixtures::Random;
 constexpr std::uint64_t kSeed = 4902;
 constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
-constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;  // unit and size of coordinates near the origin, which have 22 bits
+// unit and size of the coordinates near the origin, which have 22 bits
+constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;
 
-// A mesh at two places, in one segment: a closed surface, or a soup with collapses, slivers and planes.
+// A mesh near the origin and the same mesh far away, in one segment. The mesh is a closed surface, or separate
+// triangles with collapses, slivers and planes.
 struct Twins {
   Motion near, far;
 };
@@ -48,8 +50,8 @@ Twins random_twins(Random& random, bool is_soup) {
   const bool is_lattice = random.below(3) == 0;
   for (Motion::Keyframe& keyframe : twins.near.keyframes) {
     for (float& x : keyframe.positions) {
-      // On a coarse lattice, many faces have no area, and many corners are on a line.
-      constexpr double kOdd = 349525;  // far away, no point of the lattice is a float
+      // Rounds the coordinates to a coarse lattice, so that many faces have no area and many corners are on a line.
+      constexpr double kOdd = 349525;  // far from the origin, no point of the lattice is a float
       const double units = is_lattice ? kOdd * std::round(2 * double{x}) : std::round(double{x} / 4 * (kSize / kUnit));
       x = static_cast<float>(kUnit * units);
     }
@@ -165,7 +167,7 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // Rounds the eye to multiples of kUnit, so that its position near the far mesh is exact in double, too.
+    // Rounds the position of the eye to multiples of kUnit. It is then exact in double, also beside the mesh far away.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;
@@ -213,7 +215,7 @@ TEST_F(Residuals, leave_points_inside_or_outside_as_they_are_at_the_origin) {
     const Result<Containment> in_near = make(twins.near), in_far = make(twins.far);
     ASSERT_TRUE(in_near.ok()) << in_near.error().text();
     ASSERT_TRUE(in_far.ok());
-    // The points are multiples of 2^-23, which are representable at both places.
+    // The points are multiples of 2^-23, which float32 represents near the origin and far away.
     constexpr double kGrid = 0x1p-23;
     std::vector<float> from, to, far_from, far_to;
     for (int i = 0; i < 3 * 300; ++i) {
@@ -247,8 +249,8 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
   std::cout << "seed " << kSeed << '\n';
   for (int i = 0; i < kMeshes; ++i) {
     Random random(kSeed + static_cast<std::uint64_t>(i));
-    // The surfaces have only ordinary faces, since collapses are judged relative to the size of the coordinates, which
-    // differs between the two places.
+    // The surfaces have only ordinary faces. Whether a face collapses is decided relative to the size of the
+    // coordinates, which differs between the two places.
     Twins twins;
     for (const int k : {0, 1, 2}) {
       const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);
@@ -269,7 +271,7 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
     twins.far.topology = twins.near.topology;
     twins.near.connect_as_sequence();
     twins.far.connect_as_sequence();
-    // All weightings here are computed in blocks, and vertex by vertex.
+    // Audits with these weightings measure blocks of faces as well as single vertices.
     for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {
       AuditOptions options;
       options.weighting = weighting;

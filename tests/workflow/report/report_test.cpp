@@ -31,9 +31,9 @@ namespace {
 
 using test::ReportFile;
 
-constexpr double kAgree = 1e-3;  // degrees
+constexpr double kAgree = 1e-3;  // in degrees
 
-// Makes the report of an input.
+// Opens an input and makes its report.
 Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) {
   input.shading = KeepShading::kAll;
   Result<Input> opened = open_input(input);
@@ -41,7 +41,7 @@ Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) 
   return report(opened.value(), options);
 }
 
-// Makes an input from the bytes of a GLB. The bytes must outlive the input.
+// Returns the options for an input that is a GLB file in memory. The bytes must outlive the options.
 InputOptions input_of_glb(const std::string& glb) {
   InputOptions input;
   input.files = {"a.glb"};
@@ -59,8 +59,8 @@ ReportOptions without_plan() {
   return options;
 }
 
-// Checks that the errors at the worst places follow from the container, and that the first one is the worst error of
-// the audit.
+// Checks that the container gives the errors at the worst places, and that the first of these errors is the worst error
+// of the audit. Returns the parsed container.
 ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWorstPlaces) {
   ReportFile file(found.container);
   EXPECT_FALSE(file.json.is_null());
@@ -78,7 +78,7 @@ ReportFile expect_numbers(const Report& found, std::size_t most_places = kMostWo
   return file;
 }
 
-// Makes a file of a mesh with three targets and an animation that plays them together.
+// Makes a file of a mesh with three targets and an animation that activates them together.
 test::GltfBuilder talking(const test::ShadedMesh& mesh) {
   test::GltfBuilder builder = mesh.file();
   const std::size_t animation = builder.add_animation("talk");
@@ -89,8 +89,8 @@ test::GltfBuilder talking(const test::ShadedMesh& mesh) {
 
 test::GltfBuilder sheet_file(std::uint64_t seed, double tilt) { return talking(test::random_sheet(seed, 9, 3, tilt)); }
 
-// Makes a box whose six sides are quads with their own normals, so that each point has three vertices. Its upper side
-// turns, and one of its corners rises, so that all vertices move differently.
+// Makes an OBJ file of a box. Its six sides are quads with separate normals, so each point has three vertices. The
+// upper side turns, and one of its corners rises, so all vertices move differently.
 std::string box(double twist, bool with_normals) {
   std::string text;
   for (int i = 0; i < 8; ++i) {
@@ -192,7 +192,7 @@ TEST(Report, numbers_of_a_file_with_an_author_follow_from_the_report_alone) {
     EXPECT_TRUE(part["faces"].is_null());
     ASSERT_TRUE(part.contains("truth"));
     const nlohmann::json &truth = part["truth"], &offsets = truth["offsets"];
-    std::map<std::size_t, std::size_t> polygons;  // keyed by their first corner
+    std::map<std::size_t, std::size_t> polygons;  // the polygons, by the index of their first corner
     const std::vector<std::uint32_t> first = file.numbers<std::uint32_t>(truth["polygons"]["first"]);
     for (std::size_t p = 0; p + 1 < first.size(); ++p) ++polygons[first[p + 1] - first[p]];
     EXPECT_EQ(polygons.size(), 2U);
@@ -233,7 +233,7 @@ TEST(Report, numbers_of_a_baked_file_follow_from_its_extra_targets) {
   how.encoding = BakeEncoding::kExact;
   const test::Baked baked = test::bake_bytes(sheet_file(13, 0.2).glb(), how);
   ASSERT_TRUE(baked.ok()) << baked.error;
-  // With the weighting of the bake, there is no error.
+  // An audit with the weighting of the bake must find no error.
   ReportOptions by_angle = without_plan();
   by_angle.weighting = Weighting::kAngle;
   const Result<Report> found = report_of_glb(baked.bytes, by_angle);
@@ -294,13 +294,13 @@ TEST(Report, numbers_of_targets_over_a_base_follow_from_the_report_alone) {
   ASSERT_EQ(file.part(0)["motions"].size(), 2U);
   EXPECT_EQ(file.part(0)["motions"][1]["target"], 1);
   EXPECT_EQ(file.part(0)["motions"][1]["seconds"], false);
-  // Half of the vertices do not move.
+  // Half of the vertices do not move, so the container stores only the others.
   EXPECT_EQ(file.part(0)["keyframes"]["positions"][1]["indices"]["count"], 12);
 }
 
 TEST(Report, what_viewers_show_is_what_they_keep) {
   ReportOptions options = without_plan();
-  options.viewers = {kViewers[3], kViewers[6]};  // godot, gltfpack
+  options.viewers = {kViewers[3], kViewers[6]};  // godot and gltfpack
   const test::GltfBuilder builder = sheet_file(14, 0.2);
   const Result<Report> found = report_of_glb(builder.glb(), options);
   ASSERT_TRUE(found) << found.error().text();
@@ -311,7 +311,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_EQ(shown[1]["viewers"], nlohmann::json({"godot"}));
   EXPECT_EQ(shown[1]["least_weight"], 1e-4);
   EXPECT_EQ(shown[2]["viewers"], nlohmann::json({"gltfpack"}));
-  // With 8 bits, every component is an integer multiple of 1/127.
+  // gltfpack rounds to 8 bits, so every component is an integer multiple of 1/127.
   for (const float component : file.numbers<float>(shown[2]["targets"][0]["deltas"]))
     EXPECT_NEAR(component * 127, std::round(component * 127), 1e-4);
   ASSERT_EQ(weights.size(), 2U);
@@ -319,7 +319,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_NE(file.numbers<float>(weights[1]["values"]), file.numbers<float>(weights[0]["values"]));
 }
 
-// Each target is a motion in which the other targets rest.
+// Each target is a separate motion, in which the other targets rest.
 TEST(Report, bytes_are_linear_in_targets) {
   const auto peak = [](std::size_t targets) {
     test::GltfBuilder builder;
@@ -380,7 +380,7 @@ TEST(Report, plan_is_that_of_bake_or_says_why_there_is_none) {
   EXPECT_EQ(file.json["plan"]["command"], "bake");
   EXPECT_TRUE(file.json["plan_message"].is_null());
 
-  // If extras is not an object, a bake cannot be recorded.
+  // If the extras of a mesh are not an object, a bake cannot leave its mark there.
   test::GltfBuilder builder = sheet_file(15, 0);
   builder.json["meshes"][0]["extras"] = "mine";
   const Result<Report> refused = report_of_glb(builder.glb());
@@ -434,7 +434,7 @@ TEST(Report, names_in_files_cannot_leave_the_script_element) {
   EXPECT_EQ(page.value().find("</script>"), page.value().rfind("</script>"));
 }
 
-// Checks the page of a mesh that exceeds the limit. Returns the report.
+// Checks the page for a mesh that exceeds the limit of bytes. Returns the report.
 Report expect_thinned(const InputOptions& input, ReportOptions options) {
   options.plan = false;
   const Result<Report> found = report_of(input, options);
@@ -448,7 +448,8 @@ Report expect_thinned(const InputOptions& input, ReportOptions options) {
   return found.value();
 }
 
-// Returns two reports of a file that exceeds most_bytes: one within the limit, and one of the whole file.
+// Returns two reports of a file. In the first, vertices are left out to keep the limit most_bytes. The second has the
+// whole file.
 std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t most_bytes) {
   ReportOptions options;
   options.template_bytes = kTemplate.size();
@@ -462,7 +463,7 @@ std::pair<Report, Report> thinned_and_whole(const std::string& glb, std::size_t 
   return {thinned, whole.value()};
 }
 
-// Counts the judged triangles around each vertex of part 0.
+// Returns the number of judged triangles around each vertex of part 0.
 std::vector<std::size_t> corners_of_vertices(const ReportFile& file) {
   std::vector<std::size_t> result(file.part(0)["vertices"].get<std::size_t>());
   for (const std::uint32_t v : file.numbers<std::uint32_t>(file.part(0)["triangles"])) ++result[v];
@@ -477,16 +478,15 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   const nlohmann::json& part = file.part(0);
   EXPECT_GT(part["coarse"]["count"], 0);
   EXPECT_LT(part["vertices"], 80 * 80);
-  // Labels name the same vertices as in the file, although vertices were left out.
+  // Labels must give the vertices the same numbers as the file does, although vertices were left out.
   for (std::size_t i = 0; i < found.worst.size(); ++i)
     EXPECT_EQ("mesh 0, primitive 0, vertex " + std::to_string(file.label(part, found.worst[i].vertex)),
               found.worst[i].label);
-  // A complete report of the same file has the same places with the same errors.
+  // The report of the whole file must have the same worst places with the same errors.
   EXPECT_TRUE(whole.thinned.empty());
   ASSERT_EQ(whole.worst.size(), found.worst.size());
   for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
-  // If a vertex is still judged, all of its triangles are still there. (Each vertex of the sheet is a separate
-  // element.)
+  // Every vertex that is still judged must have all of its triangles. In this sheet, each vertex is a separate element.
   const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);
@@ -500,8 +500,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_GT(judged, 200U);
 }
 
-// Returns the vertices on which the true normal of each judged vertex of part 0 depends, by their numbers in the file:
-// the vertices of the polygons around it, and the ends of its edges. Throws if one of them is missing.
+// Returns, for each judged vertex of part 0, the vertices on which its true normal depends: the vertices of the
+// polygons around it, and the ends of its edges. All are numbered as in the file. Throws if one of them is missing.
 std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile& file) {
   const nlohmann::json &part = file.part(0), &truth = part["truth"], &offsets = truth["offsets"];
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]),
@@ -567,13 +567,13 @@ TEST(Report, worst_segments_of_a_long_sequence_stay_with_their_neighbours) {
   const std::vector<std::size_t> numbers = keys["numbers"];
   const std::vector<std::uint32_t> segments = file.numbers<std::uint32_t>(keys["segments"]),
                                    of_sample = file.numbers<std::uint32_t>(track["segment"]);
-  std::set<std::size_t> known;  // the segments that the file contains
+  std::set<std::size_t> known;  // the segments that the container includes
   for (std::size_t s = 0; 2 * s < segments.size(); ++s) {
     EXPECT_EQ(numbers[segments[2 * s]] + 1, numbers[segments[2 * s + 1]]);
     known.insert(numbers[segments[2 * s]]);
   }
   EXPECT_LT(known.size(), 199U);
-  EXPECT_EQ(of_sample.size(), 199U * 5);  // the plot has the errors of all samples
+  EXPECT_EQ(of_sample.size(), 199U * 5);  // the plot shows the errors of all samples
   for (const ReportPlace& place : found.worst) {
     const std::size_t segment = place.sample / 5;
     for (const std::size_t s : {segment == 0 ? 0 : segment - 1, segment, std::min<std::size_t>(segment + 1, 198)})

@@ -1,5 +1,5 @@
-// Tests samples that continue after the rows of an earlier run; tests/cli/resume_cli_test.cpp and
-// tests/faults/killed_test.cpp test the program as a whole.
+// Tests samples that continue after the rows that an earlier run has written. tests/cli/resume_cli_test.cpp and
+// tests/faults/killed_test.cpp test how the program continues.
 #include "workflow/sample/continued_samples.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kRun = "a run";
 const Moments kMoments{{0, 0.25, 0.5, 1}, {}};
 
-// Writes at most `most` samples and then stops.
+// Writes at most `most` samples to an output, and then stops as if interrupted.
 Result<SampleSummary> sampled(const test::TemporaryFolder& folder, std::size_t most, SampleOutput output) {
   const Motion motion = make_builtin_morph("twist").value();
   MotionStream stream(motion);
@@ -43,7 +43,7 @@ TEST(ContinuedSamples, count_the_normals_of_all_rows) {
   EXPECT_EQ(all.value().normals, whole.normals);
   EXPECT_EQ(all.value().zeros, whole.zeros);
   EXPECT_TRUE(test::read_whole(folder / "out.npy") == test::read_whole(folder / "whole.npy"));
-  // The output is complete now, and its journal is still there.
+  // The output is complete, but its journal still exists.
   const Result<SampleSummary> again = sampled(folder, 1, output);
   ASSERT_TRUE(again.ok()) << again.error().text();
   EXPECT_EQ(again.value().normals, whole.normals);

@@ -1,5 +1,5 @@
-// Compares normals of glTF files with rational numbers computed from the numbers in the file: base, deltas, weights and
-// times.
+// Compares the normals of glTF files with rational numbers, which are computed from the base, the deltas, the weights
+// and the times in the file.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,10 +37,10 @@ constexpr double kMillionth = 1e-6;
 
 double decade(Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// The numbers of a file with animated meshes, each on one of several nodes.
+// The numbers in a file with animated meshes on several nodes.
 struct File {
   struct Track {
-    std::vector<float> times, values;  // LINEAR keys; a row of weights for each time
+    std::vector<float> times, values;  // the LINEAR keys; each time has a row of weights
   };
   std::vector<float> base;
   std::vector<std::uint32_t> corners;
@@ -62,7 +62,7 @@ struct File {
     return builder;
   }
 
-  // Returns the weights of the mesh of a node at a time, linear between keys.
+  // Returns the weights of the mesh on a node at a time. They are linear between keys.
   [[nodiscard]] std::vector<Rational> weights_at(std::size_t node, const Rational& time) const {
     const auto& [times, values] = tracks[node];
     std::vector<Rational> weights(targets.size());
@@ -79,7 +79,8 @@ struct File {
     return weights;
   }
 
-  // Returns the area-weighted normals of all faces, followed by the normals of all vertices.
+  // Returns the normals of all faces, followed by the area-weighted normals of all vertices. If `matrix` is not
+  // nullptr, the matrix transforms the mesh first.
   [[nodiscard]] std::vector<exact::Vector> normals(const std::vector<Rational>& weights,
                                                    const std::array<double, 16>* matrix) const {
     std::vector<exact::Vector> places(vertices()), normals(corners.size() / 3 + vertices());
@@ -107,13 +108,14 @@ struct File {
   }
 };
 
-// Makes fans of triangles with edges down to a thousandth, and slivers, all over the unit cube. Targets move each fan
-// as a whole, and also its vertices slightly against each other. The vertices of a sliver move along its line.
+// Makes fans of triangles with edges of a thousandth or more, and slivers, all over the unit cube. Targets move each
+// fan as a whole, and its vertices slightly against each other. The vertices of a sliver move along the line on which
+// they are.
 File random_file(Random& random, std::size_t nodes) {
   File file;
   std::vector<std::size_t> fan_of_vertex;
   std::vector<double> sizes;
-  std::vector<fixtures::Point> lines;  // directions of slivers
+  std::vector<fixtures::Point> lines;  // directions of the slivers
   const auto number = [](double x) { return static_cast<float>(x); };
   for (std::size_t fan = 0; fan < 8; ++fan) {
     const auto first = static_cast<std::uint32_t>(file.vertices());
@@ -127,7 +129,7 @@ File random_file(Random& random, std::size_t nodes) {
       const double angle = 6.283 * static_cast<double>(i) / 5;
       const fixtures::Point off = random.in_cube(0.2 * sizes.back());
       const fixtures::Point flat = {sizes.back() * std::cos(angle), sizes.back() * std::sin(angle), 0};
-      // Without rounding, the corners of a sliver would be on a line.
+      // Except for rounding, the corners of a sliver are on a line.
       const double way = random.uniform(0.2, 1) * static_cast<double>(i);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const double from_centre = is_sliver ? way * along[axis] : i == 0 ? off[axis] : flat[axis] + off[axis];
@@ -177,7 +179,7 @@ GltfMotion motion_of(const File& file, const std::string& animation, bool world)
   return std::move(motion).value();
 }
 
-// Compares unit normals of faces or vertices with the exact ones, and keeps the largest error.
+// Compares the unit normals of faces or vertices with exact normals, and keeps the largest error.
 class Judge {
  public:
   void add(const std::string& way, std::span<const float> found, std::span<const exact::Vector> exact,

@@ -1,4 +1,5 @@
-// Tests files of samples: their names, their bytes, and requests that are refused before the first file is written.
+// Tests the files to which samples are written: their names and their bytes. Also tests requests that must be refused
+// before the first file is written.
 #include "chronormal/workflow/sample.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,8 @@ SampleOptions options_of(ElementKind kind, double crease_angle = 180) {
   return options;
 }
 
-// Returns the expected normals of the files at a time, which is one of `evaluations` times in a segment.
+// Returns the normals that a file of samples must have at a time. `evaluations` is the number of times that are
+// evaluated in a segment.
 std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time, double evaluations = 1) {
   NormalSampler sampler = NormalSampler::make(motion, options).value();
   return sampler.normals_of_outputs(sampler.at_time(time, evaluations).value());
@@ -44,7 +46,7 @@ SampleSummary write_good(const Motion& motion, const SampleOptions& options, con
   return summary.value();
 }
 
-// The words of an OBJ file: positions, normals, and the normal of each corner.
+// The numbers in an OBJ file: positions and normals, and the indices of both for each corner.
 struct ObjWords {
   std::vector<float> positions, normals;
   std::vector<std::size_t> vertex_of_corner, normal_of_corner;
@@ -161,7 +163,7 @@ TEST(WriteSamples, ply_has_normals_of_vertices_or_of_faces) {
     ASSERT_NE(at, std::string::npos);
     EXPECT_EQ(at > list, faces) << "after the properties of its element";
     EXPECT_EQ(bytes.find(properties, at + 1), std::string::npos);
-    // The x, y and z of a vertex are 12 bytes; a quad is one byte and four indices of 4 bytes.
+    // A vertex has 12 bytes for x, y and z. A quad has a byte and four indices of 4 bytes.
     const std::size_t first = end + 11 + (faces ? 8 * 12 + 17 : 12), stride = faces ? 17 + 12 : 24;
     const auto expected = normals_at(motion, options_of(kind), 0.5);
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -205,7 +207,7 @@ TEST(WriteSamples, nothing_is_written_where_one_moment_or_one_file_is_refused) {
 }
 
 TEST(WriteSamples, arrays_of_more_than_4_GiB_for_a_stream_are_refused_before_they_are_made) {
-  const Motion motion = fixtures::smooth_morph(20);  // 441 vertices
+  const Motion motion = fixtures::smooth_morph(20);  // the mesh has 441 vertices
   const auto too_much = write_samples(motion, options_of(ElementKind::kVertices),
                                       {std::vector<double>(1000000, 0.5), {}}, {"-", SampleFormat::kNpz});
   ASSERT_FALSE(too_much.ok());

@@ -24,7 +24,7 @@ namespace {
 using reference::Real;
 using reference::Vector;
 
-constexpr double kTolerance = 2e-6;  // radians: the error of curves, plus rounding to three floats
+constexpr double kTolerance = 2e-6;  // in radians: the error of curves, plus rounding to three floats
 
 SampleOptions options_of(ElementKind kind, Weighting weighting = Weighting::kArea, double crease_angle = 180) {
   SampleOptions options;
@@ -50,7 +50,7 @@ Vector vector_at(const std::vector<float>& values, std::size_t i) {
   return {values.at(3 * i), values.at(3 * i + 1), values.at(3 * i + 2)};
 }
 
-// Returns for each output the corners whose contributions the oracle sums. Vertices that coincide in both keyframes are
+// Returns for each output the corners whose normals the oracle adds up. Vertices that coincide in both keyframes are
 // one point.
 std::vector<std::vector<reference::Corner>> corners_of_outputs(const reference::Mesh& mesh, ElementKind kind, bool weld,
                                                                Real crease_angle) {
@@ -80,8 +80,8 @@ std::vector<std::vector<reference::Corner>> corners_of_outputs(const reference::
   return outputs;
 }
 
-// Returns the largest angle between the normals and those of the oracle. Where the oracle has no normal, there must be
-// no normal.
+// Returns the largest angle, in radians, between the normals and those of the oracle. If the oracle has no normal, the
+// normal must be zero.
 double largest_error(const reference::Mesh& mesh, const std::vector<std::vector<reference::Corner>>& outputs,
                      const std::vector<float>& normals, const std::string& weighting, Real t) {
   EXPECT_EQ(normals.size(), 3 * outputs.size());
@@ -123,7 +123,7 @@ TEST(NormalSampler, faces_vertices_and_corners_are_exact_at_every_time) {
   }
 }
 
-// Compares normals of moving meshes, and of the same meshes at rest, with integers.
+// Compares the normals of moving meshes, and of the same meshes at rest, with integers.
 TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   constexpr double kTime = 0.375;
   fixtures::Random random(71);
@@ -157,7 +157,7 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
                   EXPECT_EQ(v, Vec3d{}) << family.name;
                 }
               } else if (length == NormalLength::kUnit || (1e-30 < max_abs(v) && max_abs(v) < 3e38)) {
-                // The unnormalised n may exceed the range of float32.
+                // The length of n may exceed the range of float32, so its direction is compared in double.
                 EXPECT_LE(test::angle_between(to_float(unit(v)), test::direction_of(n)), 1e-6) << family.name;
               }
             }
@@ -168,7 +168,7 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   }
 }
 
-// The number of times decides how normals are computed. It must not change the results.
+// The number of times in a request decides how normals are computed, but it must not change the results.
 TEST(NormalSampler, normals_at_a_time_are_right_whatever_is_asked_beside_it) {
   fixtures::Random random(4949);
   for (const auto& family : test::hard_motions()) {
@@ -235,7 +235,7 @@ TEST(NormalSampler, length_area_is_n_itself) {
   }
 }
 
-// Makes a base and two targets far from the origin. The size of the faces is a thousandth of the distance.
+// Makes a base and two targets. The size of the faces is a thousandth of their distance from the origin.
 Motion star(double offset) {
   Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.2, 11);
   const Motion other = fixtures::shaken(fixtures::icosphere(1), 0.3, 12);
@@ -277,7 +277,7 @@ TEST(NormalSampler, poses_of_weights_are_those_of_the_positions_in_double) {
   }
 }
 
-// Draws weights of three targets: integers, weights that remove the base, and others.
+// Draws weights of three targets: integers, weights in which the base cancels, and others.
 std::vector<double> weights_of_three(test::Random& random) {
   const double w = std::ldexp(static_cast<double>(random.below(65)), -6), any = random.uniform(-2, 2);
   switch (random.below(5)) {
@@ -294,7 +294,7 @@ std::vector<double> weights_of_three(test::Random& random) {
   }
 }
 
-// Compares with the normals of base + sum of w (target - base) in rational numbers.
+// Compares the normals of poses with those of base + sum of w (target - base), in rational numbers.
 TEST(NormalSampler, poses_lose_nothing_of_a_base_that_is_far_from_its_targets) {
   constexpr std::uint64_t kSeed = 20261127;
   std::cout << "  from seed " << kSeed << '\n';
@@ -352,7 +352,7 @@ TEST(NormalSampler, copies_along_a_seam_have_the_same_bits) {
     options.elements.weld = weld;
     NormalSampler sampler = sampler_of(motion, options);
     const auto normals = sampler.normals_of_outputs(good(sampler.at_time(0.37)));
-    std::set<std::vector<float>> at_points;  // position followed by normal
+    std::set<std::vector<float>> at_points;  // each position, followed by its normal
     for (std::size_t v = 0; v < motion.topology.vertex_count(); ++v) {
       std::vector<float> both(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                               motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3));
@@ -368,7 +368,7 @@ TEST(NormalSampler, copies_along_a_seam_have_the_same_bits) {
   }
 }
 
-// Makes a cube of quads whose top moves.
+// Makes a cube of quads for tests of hard edges.
 Motion cube() { return fixtures::shaken(fixtures::box_grid(1), 0, 1); }
 
 TEST(NormalSampler, hard_edges_come_from_smoothing_groups_or_split_normals) {
@@ -408,7 +408,7 @@ TEST(NormalSampler, hard_edges_come_from_smoothing_groups_or_split_normals) {
 }
 
 TEST(NormalSampler, elements_without_area_are_zero_and_limits_are_kept) {
-  // Vertex 4 has no face, and the second face has no area; the first face has no area at t = 1.
+  // Vertex 4 has no face. The first face has no area at t = 1, and the second face never has an area.
   Motion motion;
   motion.topology = Topology::triangles(5, {0, 1, 2, 0, 3, 3}).value();
   motion.keyframes = {{{0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5, 9, 9, 9}, 0, ""},
@@ -422,8 +422,7 @@ TEST(NormalSampler, elements_without_area_are_zero_and_limits_are_kept) {
 }
 
 Motion three_keyframes() {
-  // A face turns by 90 degrees and then turns the other way, so the normals on the two sides of the middle keyframe
-  // differ.
+  // A face turns by 90 degrees and then back another way, so its normals before and after the middle keyframe differ.
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
   motion.keyframes = {
@@ -475,7 +474,7 @@ TEST(NormalSampler, mesh_that_stands_still_has_normals) {
   }
 }
 
-// Tests a face whose three corners are on a line that moves as a whole.
+// The three corners of face 0 are always on a line, which moves as a whole.
 TEST(Sampler, a_face_that_never_has_area_has_no_normal) {
   Motion motion;
   motion.topology = Topology::triangles(4, std::vector<std::uint32_t>{0, 1, 2, 0, 1, 3}).value();
@@ -499,7 +498,8 @@ TEST(Sampler, a_face_that_never_has_area_has_no_normal) {
       EXPECT_NE(std::vector<float>(pose.normals.begin() + 3, pose.normals.end()), std::vector<float>(3)) << time;
     }
   }
-  // Vertex 2 belongs only to the face without area. The other vertices have the direction of the other face.
+  // Vertex 2 belongs only to the face without area. The normals of the other vertices have the direction of the other
+  // face.
   for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle, Weighting::kUniform}) {
     SampleOptions options = options_of(ElementKind::kVertices, weighting), of_faces = options_of(ElementKind::kFaces);
     NormalSampler sampler = sampler_of(motion, options), faces = sampler_of(motion, of_faces);

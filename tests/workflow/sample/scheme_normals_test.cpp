@@ -1,5 +1,5 @@
 // Tests the normals that `sample --scheme` writes. Compares every scheme with the oracle of tests/support/reference.h,
-// on faces and on vertices, and checks the drift when a scheme is played step by step.
+// on faces and on vertices. Also checks the drift of schemes that are played step by step.
 #include "workflow/sample/scheme_normals.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ reference::Triangle triangle_of(const reference::Mesh& mesh, std::size_t f) {
   return triangle;
 }
 
-// The errors of all outputs at a time, in radians.
+// The errors of all outputs at one time, in radians.
 struct Errors {
   double sum = 0, largest = 0;
   std::size_t judged = 0, all = 0;
@@ -182,11 +182,11 @@ TEST(SchemeNormals, steps_lead_through_all_segments_and_drift_as_far_as_is_said)
             largest =
                 std::max(largest, static_cast<double>(reference::angle(vector_of(expected, e), vector_of(found, e))));
         }
-        // The drift is measured at exact multiples of the step, while the times of this test are rounded.
+        // The program measures the drift at exact multiples of the step, while the times of this test are rounded.
         EXPECT_NEAR(stepped.drift().largest, largest, 3e-7) << name;
         EXPECT_GT(stepped.drift().largest, 0) << name;
         drifts[anchor_interval == 0 ? 0 : 1] = stepped.drift().largest;
-        // Playing from the middle gives the same bits.
+        // If the playback begins in the middle, the bits must be the same.
         NormalSampler later = NormalSampler::make(motion, by_scheme(name, kind, stepping)).value();
         for (const std::size_t i : {std::size_t{500}, std::size_t{17}, std::size_t{130}})
           EXPECT_EQ(normals_at(later, moments.times[i]), normals_at(stepped, moments.times[i])) << name << " " << i;

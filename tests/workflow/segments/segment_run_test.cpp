@@ -1,5 +1,6 @@
-// Checks that a run processes each segment of its share once and in order, with the keyframes of the segment in memory.
-// Tests every division of the motion, every end of an earlier run, and every number of segments at a time.
+// Checks that a run processes each segment of its share once and in order, while the keyframes of the segment are in
+// memory. Tests all divisions of the motion, all places at which an earlier run may have ended, and all numbers of
+// segments at a time.
 #include "workflow/segments/segment_run.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ struct Numbered {
   double value = 0;
 };
 
-// Makes a triangle with many keyframes, which are read on demand and then forgotten.
+// Makes a stream of a triangle with many keyframes. The keyframes are read on demand and then forgotten.
 MotionStream stream_of(std::size_t keyframes, std::vector<std::size_t>& reads) {
   Motion outline;
   outline.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -35,7 +36,7 @@ MotionStream stream_of(std::size_t keyframes, std::vector<std::size_t>& reads) {
   return MotionStream(std::move(outline), read, 0);
 }
 
-// Returns a value that depends on a segment in memory.
+// Returns a number that depends on a segment. Fails unless its keyframes are in memory.
 Numbered looked_at(const Motion& motion, std::size_t s) {
   const auto& [from, to] = motion.segments[s];
   if (motion.keyframes[from].positions.empty() || motion.keyframes[to].positions.empty()) {
@@ -67,7 +68,7 @@ TEST(SegmentRun, shares_that_were_interrupted_anywhere_find_together_what_one_ru
   for (int trial = 0; trial < 300; ++trial) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", trial " + std::to_string(trial));
     const std::size_t segments = draw(1, 12), shares = draw(1, 5);
-    std::vector<double> expected;  // computed by the definition of a segment, without a run
+    std::vector<double> expected;  // computed from the segments directly, without a run
     for (double s = 0; s < static_cast<double>(segments); ++s) expected.push_back(1 / (1 + s + 3 * (s + 1)));
     std::vector<ShardOf<int, Numbered>> all;
     for (std::size_t i = 0; i < shares; ++i) {
@@ -114,7 +115,7 @@ TEST(SegmentRun, every_keyframe_of_a_share_is_read_once_and_no_other) {
   std::vector<double> sum;
   ASSERT_TRUE(run_over(stream, 2, run, sum));
   for (const std::size_t k : {3U, 4U, 5U, 6U}) EXPECT_EQ(reads[k], 1U) << k;
-  // Keyframe 7 may be read in advance.
+  // The stream may read keyframe 7 in advance.
   for (const std::size_t k : {0U, 1U, 2U, 8U, 9U, 10U}) EXPECT_EQ(reads[k], 0U) << k;
 }
 

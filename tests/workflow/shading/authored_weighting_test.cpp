@@ -1,5 +1,5 @@
-// Checks that the weighting of an author is recognised in the stored normals, and that none is found if the normals do
-// not tell. Compares with an independent oracle for each weighting.
+// Checks that the library recognises an author's weighting in the stored normals, and that it finds none if the normals
+// fit no weighting. Compares the result with an independent oracle for each weighting.
 #include "workflow/shading/authored_weighting.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using test::GltfBuilder;
 using test::GltfFixture;
 using test::ShadedMesh;
 
-// Makes a mesh of faces, which may be polygons.
+// Makes the mesh for the oracle, with these faces, which may be polygons.
 reference::Mesh polygons(const ShadedMesh& mesh, const std::vector<std::vector<std::size_t>>& faces) {
   reference::Mesh result;
   result.faces = faces;
@@ -46,7 +46,7 @@ std::vector<std::vector<std::size_t>> triangles_of(const ShadedMesh& mesh) {
   return faces;
 }
 
-// Returns the quads of a sheet, each of which random_sheet() splits into two triangles.
+// Returns the quads of a sheet. random_sheet() has split each of them into two triangles.
 std::vector<std::vector<std::size_t>> quads_of(const ShadedMesh& mesh) {
   std::vector<std::vector<std::size_t>> faces;
   for (std::size_t c = 0; c < mesh.corners.size(); c += 6)
@@ -65,7 +65,7 @@ void store(const std::string& weighting, const std::vector<std::vector<std::size
   }
 }
 
-// Makes a bumpy sheet whose normals follow a weighting, with one target that lifts a corner.
+// Makes a bumpy sheet whose normals follow a weighting. It has one target, which lifts a corner.
 ShadedMesh sheet(const std::string& weighting, std::uint64_t seed = 1, std::size_t side = 8) {
   ShadedMesh mesh = test::random_sheet(seed, side, 0, 0);
   store(weighting, triangles_of(mesh), mesh);
@@ -82,13 +82,13 @@ std::string_view detected_in(const ShadedMesh& mesh) {
   return weighting_name(audit.offsets[0].weighting);
 }
 
-// Rounds each component of the normals to a number of bits.
+// Rounds each component of the stored normals to this number of bits.
 void quantise(int bits, ShadedMesh& mesh) {
   const float most = static_cast<float>((1 << (bits - 1)) - 1);
   for (float& c : mesh.normals) c = std::round(c * most) / most;
 }
 
-// Turns a share of the normals by some 20 degrees.
+// Turns a share of the stored normals by about 20 degrees.
 void bend(double share, ShadedMesh& mesh) {
   fixtures::Random random(7);
   for (std::size_t v = 0; v < mesh.vertices(); ++v) {
@@ -139,8 +139,8 @@ TEST(AuthoredWeighting, survives_eight_bits_and_normals_that_an_author_bent) {
 
 TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
   for (const std::string weighting : {"area", "angle"}) {
-    // A wave crosses columns of growing width, so that large quads are beside small quads. All of the quads are nearly
-    // flat.
+    // Columns of quads grow in width, and a wave runs across them. Large quads are therefore beside small quads, and
+    // all of them are nearly flat.
     ShadedMesh mesh = sheet(weighting);
     for (std::size_t v = 0; v < mesh.vertices(); ++v) {
       float* const p = mesh.positions.data() + 3 * v;
@@ -154,7 +154,7 @@ TEST(AuthoredWeighting, of_quads_is_found_after_they_were_cut_into_triangles) {
 }
 
 TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
-  // A plane has the same normal by every weighting.
+  // In a plane, every weighting gives the same normals.
   ShadedMesh plane = sheet("max");
   for (std::size_t v = 0; v < plane.vertices(); ++v) plane.positions[3 * v + 2] = 0;
   store("max", triangles_of(plane), plane);
@@ -162,7 +162,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   quantise(6, plane);
   bend(1, plane);
   EXPECT_EQ(detected_in(plane), "area");
-  // With hard edges, each face has its own normals.
+  // All edges are hard, so each face has its own normals.
   ShadedMesh flat = sheet("angle"), apart;
   for (const std::uint32_t v : flat.corners) {
     for (std::size_t c = 0; c < 3; ++c) apart.positions.push_back(flat.positions[3 * v + c]);
@@ -173,7 +173,7 @@ TEST(AuthoredWeighting, is_area_where_all_agree_or_none_comes_close) {
   apart.targets.emplace_back().positions.resize(apart.positions.size());
   apart.targets[0].positions.back() = 1;
   EXPECT_EQ(detected_in(apart), "area");
-  // The sheet has the normals of a sphere far below, which do not fit its faces.
+  // The stored normals are those of a sphere far below the sheet, so they follow none of the weightings.
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     ShadedMesh bent = sheet("angle", seed);
     for (std::size_t v = 0; v < bent.vertices(); ++v) {

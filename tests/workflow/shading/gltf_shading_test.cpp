@@ -36,8 +36,8 @@ std::string error_of(const GltfBuilder& builder, const GltfShadingOptions& optio
   return shading.ok() ? "" : shading.error().text();
 }
 
-// Returns one triangle of the hinge as a primitive with its own vertices: 0 1 2 or 3 4 5. The two triangles then have
-// separate vertices along their common edge.
+// Returns one of the two triangles of the hinge as a separate mesh. In a file of both halves, the vertices at their
+// common edge are separate.
 ShadedMesh half(std::size_t which) {
   const ShadedMesh whole = hinge();
   ShadedMesh part;
@@ -77,7 +77,7 @@ TEST(GltfShading, vertices_at_one_point_share_an_element_across_primitives) {
 
 TEST(GltfShading, other_base_normals_or_other_deltas_keep_vertices_apart) {
   ShadedMesh second = half(1);
-  second.normals = {1, 0, 0, 0, 0, 1, 0, 0, 1};  // vertex 3 is at the place of vertex 2
+  second.normals = {1, 0, 0, 0, 0, 1, 0, 0, 1};  // vertex 3 is at the position of vertex 2
   GltfShading shading = read(halves(half(0), second));
   EXPECT_NE(shading.element_of_vertex[2], shading.element_of_vertex[3]);
   EXPECT_EQ(shading.element_of_vertex[1], shading.element_of_vertex[4]);
@@ -126,7 +126,7 @@ TEST(GltfShading, faces_of_flat_primitives_count_for_no_element) {
   const std::vector<double> folded = {1};
   const std::vector<Vec3d> normals = normals_from_positions(shading, folded);
   for (std::size_t v = 0; v < 3; ++v) {
-    EXPECT_EQ(normals[shading.element_of_vertex[v]], (Vec3d{0, 0, 4})) << v;  // the normal of the resting face
+    EXPECT_EQ(normals[shading.element_of_vertex[v]], (Vec3d{0, 0, 4})) << v;  // the normal of the face at rest
     EXPECT_EQ(shading.groups.faces(shading.element_of_vertex[v]).size(), 1U);
   }
 }
@@ -144,14 +144,14 @@ TEST(GltfShading, smooth_primitives_share_among_themselves_by_the_crease_angle) 
   ShadedMesh first = half(0), second = half(1);
   first.normals.clear();
   second.normals.clear();
-  second.positions[8] = 2;  // folded by 45 degrees in the base
+  second.positions[8] = 2;  // the base is folded by 45 degrees
   GltfShading shading = read(halves(first, second), {.smooth = true, .crease_angle = 60});
   EXPECT_EQ(shading.element_of_vertex[1], shading.element_of_vertex[4]);
   EXPECT_EQ(shading.split_by_crease, 0U);
   shading = read(halves(first, second), {.smooth = true, .crease_angle = 30});
   EXPECT_NE(shading.element_of_vertex[1], shading.element_of_vertex[4]);
   EXPECT_NE(shading.element_of_vertex[4], kNone);
-  // If one side has stored normals, no normals are shared.
+  // If one half has stored normals and the other has none, the halves share no normals.
   shading = read(halves(half(0), second), {.smooth = true, .crease_angle = 180});
   EXPECT_NE(shading.element_of_vertex[1], shading.element_of_vertex[4]);
   EXPECT_EQ(shading.groups.faces(shading.element_of_vertex[1]).size(), 1U);
@@ -168,7 +168,7 @@ TEST(GltfShading, a_vertex_that_a_crease_would_split_stays_whole_and_is_counted)
 }
 
 TEST(GltfShading, parts_on_both_sides_of_such_a_vertex_are_joined_where_copies_show_them) {
-  // A third triangle continues the second one in its plane, with copies 4 and 5 of the vertices 2 and 3.
+  // A third triangle continues the second triangle in its plane. Its vertices 4 and 5 are copies of vertices 2 and 3.
   ShadedMesh mesh = hinge();
   mesh.normals.clear();
   mesh.positions[11] = 2;
@@ -217,7 +217,7 @@ TEST(GltfShading, stored_arrays_have_zeros_where_a_primitive_has_none) {
 TEST(GltfShading, shown_direction_keeps_the_turn_of_the_author) {
   const Vec3d stored = unit(Vec3d{1, 0, 1}), up{0, 0, 3};
   EXPECT_LT(length(shown_direction(stored, up, up) - stored), 1e-15);
-  // A rotation about y by 45 degrees keeps (0, 1, 0) and lowers (1, 0, 0).
+  // The rotation by 45 degrees about y keeps (0, 1, 0), and lowers (1, 0, 0).
   EXPECT_LT(length(shown_direction(stored, up, {0, 2, 0}) - Vec3d{0, 1, 0}), 1e-15);
   EXPECT_LT(length(shown_direction(stored, up, {5, 0, 0}) - unit(Vec3d{1, 0, -1})), 1e-15);
   EXPECT_EQ(shown_direction({}, up, {0, 2, 0}), (Vec3d{0, 1, 0}));
@@ -225,7 +225,7 @@ TEST(GltfShading, shown_direction_keeps_the_turn_of_the_author) {
   EXPECT_EQ(shown_direction(stored, up, {}), Vec3d{});
 }
 
-// Makes a hinge with its own target, another target, and two correction targets.
+// Makes a hinge with two targets of the author and two correction targets, and with a mark of a bake.
 GltfBuilder marked(const Json& mark) {
   ShadedMesh mesh = hinge();
   mesh.targets.push_back(mesh.targets[0]);
@@ -236,7 +236,7 @@ GltfBuilder marked(const Json& mark) {
   return builder;
 }
 
-// Returns a mark of version 1 with the same meaning as good_mark(), which has version 2.
+// Returns a mark of version 1 that means the same as good_mark(), which has version 2.
 Json mark_of_factors() {
   return {{"version", 1},
           {"encode", "exact"},
@@ -346,11 +346,11 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
   EXPECT_EQ(has(with("/extras/0/factors", {1}), at + "/extras/0/factors"), "");
   EXPECT_EQ(has(error_of(marked("none")), at), "");
   EXPECT_EQ(has(error_of(marked(Json::array())), at), "");
-  // In this mark, a correction target is a target that moves vertices.
+  // According to this mark, target 1 is a correction target, although it moves vertices.
   Json mark = good_mark();
   mark["extras"] = {{{"target", 1}, {"factors", {0, 0}}}};
   EXPECT_EQ(has(error_of(marked(mark)), at + "/extras/0/target"), "");
-  // Other extras may have any content.
+  // Extras that are not a mark may have any content.
   GltfBuilder builder = hinge().file();
   builder.json["meshes"][0]["extras"] = 17;
   EXPECT_EQ(error_of(builder), "");

@@ -1,4 +1,4 @@
-// Tests the poses for which a rig is baked: which targets are used together, and how many are active.
+// Tests the poses for which a rig is baked: which targets are used together, and how many targets are active.
 #include "workflow/shading/rig_poses.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Compares the author's intended normals with sums over polygons in long double, on random meshes.
+// Compares the normals that an author saw, as the library finds them, with sums over polygons in long double, on random
+// meshes.
 #include "workflow/truth/author_truth.h"
 
 #include <gtest/gtest.h>
@@ -40,12 +41,12 @@ double degrees_between(const Vector& a, const Vector& b) {
   return static_cast<double>(std::atan2(length(cross(a, b)), dot(a, b)) * 180 / kPi);
 }
 
-// Polygons with positions and two targets, and the file in which an author stores them.
+// Polygons with positions and two targets, together with the file in which the author stores them.
 struct Authored {
   std::vector<std::vector<std::size_t>> polygons;
   ShadedMesh file;
 
-  // Returns the polygons at some weights of the targets.
+  // Returns the polygons with positions at these weights of the targets.
   [[nodiscard]] reference::Mesh mesh(const std::vector<double>& weights) const {
     reference::Mesh result{polygons, {}, {}};
     for (std::size_t v = 0; v < file.vertices(); ++v) {
@@ -58,7 +59,7 @@ struct Authored {
     result.to = result.from;
     return result;
   }
-  // Returns the weighted sums of all vertices.
+  // Returns the sums of the face normals around all vertices, by a weighting and at these weights of the targets.
   [[nodiscard]] std::vector<Vector> sums(const std::string& weighting, const std::vector<double>& weights) const {
     const reference::Mesh at = mesh(weights);
     std::vector<Vector> result(file.vertices(), Vector{});
@@ -69,7 +70,7 @@ struct Authored {
     for (Vector& sum : result) sum = reference::normalised(sum);
     return result;
   }
-  // Stores the normals of the base and the deltas of the targets in the file.
+  // Stores normals in the file: those of the base, and the normals of each target as deltas.
   void store(const std::vector<Vector>& base, const std::vector<std::vector<Vector>>& keys) {
     file.normals.clear();
     for (const Vector& n : base)
@@ -87,7 +88,7 @@ struct Authored {
   }
 };
 
-// Makes a hilly sheet of quads, with targets that move every vertex.
+// Makes a hilly sheet of quads. Its targets move every vertex.
 Authored quads(std::mt19937& random, std::size_t side = 9) {
   Authored mesh;
   std::uniform_real_distribution<float> hill(-0.35F, 0.35F);
@@ -110,7 +111,7 @@ Authored quads(std::mt19937& random, std::size_t side = 9) {
   return mesh;
 }
 
-// Adds the points of a tube whose rings have n points, one after the other.
+// Adds the points of a tube: ring after ring, with n points in each ring.
 void add_rings(Authored& mesh, std::size_t rings, std::size_t n, const std::function<float()>& hill) {
   for (std::size_t ring = 0; ring < rings; ++ring) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -121,7 +122,7 @@ void add_rings(Authored& mesh, std::size_t rings, std::size_t n, const std::func
   }
 }
 
-// Adds a polygon, cut into triangles from its first corner.
+// Adds a polygon, and cuts it into triangles from its first corner.
 void add_fan(Authored& mesh, const std::vector<std::size_t>& polygon) {
   mesh.polygons.push_back(polygon);
   for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
@@ -196,7 +197,7 @@ TEST(AuthorTruth, a_mesh_of_plain_triangles_keeps_its_triangles) {
 TEST(AuthorTruth, larger_polygons_are_found_in_whatever_order_their_triangles_are) {
   std::mt19937 random(kSeed + 2);
   for (int draw = 0; draw < 6; ++draw) {
-    // A cylinder of quads has a cap of n corners, which is cut into triangles from a random corner.
+    // A cylinder of quads has a polygon of n corners as cap. The cap is cut into triangles from a random corner.
     const std::size_t n = 5 + random() % 6;
     Authored mesh;
     std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
@@ -233,8 +234,8 @@ TEST(AuthorTruth, triangles_back_to_back_whose_vertices_store_one_normal_are_no_
   std::mt19937 random(kSeed + 20);
   std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
   for (int draw = 0; draw < 6; ++draw) {
-    // The wall has a polygon that shares three points of the rim with the cap. Both polygons are cut in such a way that
-    // these points are a triangle of each.
+    // A polygon of the wall shares three points of the rim with the cap. Both polygons are cut so that these points
+    // form a triangle of each.
     const std::size_t n = 7 + random() % 4;
     Authored mesh;
     add_rings(mesh, 2, n, [&] { return hill(random); });
@@ -251,7 +252,7 @@ TEST(AuthorTruth, triangles_back_to_back_whose_vertices_store_one_normal_are_no_
                                                  mesh.sums("angle", {0, 1})};
     const std::vector<double> weights = {0.4, 0.3};
     std::vector<Vector> right = mesh.sums("angle", weights);
-    // The cap gets vertices of its own, as at a seam of a texture.
+    // The cap gets separate vertices, as at a seam of a texture.
     for (std::size_t c = of_wall; c < mesh.file.corners.size(); ++c)
       mesh.file.corners[c] += static_cast<std::uint32_t>(n);
     for (std::size_t v = n; v < 2 * n; ++v) {
@@ -278,7 +279,7 @@ TEST(AuthorTruth, quads_that_every_key_keeps_flat_are_found_beside_large_caps) {
     const float* const p = mesh.file.positions.data() + 3 * v;
     const float wider = 0.2F * static_cast<float>(v / kPoints % 3);
     for (const float c : {wider * p[0], wider * p[1], 0.0F}) mesh.file.targets[0].positions.push_back(c);
-    // Turns everything by a right angle around the x axis.
+    // The second target turns everything by a right angle about the x axis.
     for (const float c : {0.0F, -p[2] - p[1], p[1] - p[2]}) mesh.file.targets[1].positions.push_back(c);
   }
   for (std::size_t ring = 0; ring + 1 < kRings; ++ring)
@@ -306,7 +307,7 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
     Authored mesh = quads(random);
     std::array<std::vector<Vector>, 3> stored = {mesh.sums("angle", {0, 0}), mesh.sums("angle", {1, 0}),
                                                  mesh.sums("angle", {0, 1})};
-    // A third of the normals are edited, differently in each key.
+    // A third of the normals are edited, differently in the base and in each target.
     for (std::size_t v = 0; v < stored[0].size(); v += 3)
       for (std::vector<Vector>& of_key : stored) of_key[v] = bent(of_key[v], random, 0.3);
     mesh.store(stored[0], {stored[1], stored[2]});
@@ -318,14 +319,15 @@ TEST(AuthorTruth, what_the_author_bent_is_kept_at_the_base_and_at_every_key) {
       EXPECT_LT(degrees_between(truth.at(v, mesh, {1, 0}), stored[1][v]), 0.02) << v;
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0, 1}), stored[2][v]), 0.02) << v;
     }
-    // Normals that were not edited follow the rule at all weights.
+    // Normals that were not edited follow the weighting at all weights of the targets.
     const std::vector<Vector> right = mesh.sums("angle", {0.6, 0.7});
     for (std::size_t v = 1; v < right.size(); v += 3)
       EXPECT_LT(degrees_between(truth.at(v, mesh, {0.6, 0.7}), right[v]), 0.02) << v;
   }
 }
 
-// Returns the offset that the author adds to a sum: a vector perpendicular to the sum whose length is the angle.
+// Returns the offset of a stored normal from a normal sum, both of length 1. The offset is perpendicular to the sum,
+// and its length is the angle in radians.
 Vector added_to(const Vector& sum, const Vector& stored) {
   using namespace reference;
   const Vector across = normalised(add(stored, scaled(-dot(sum, stored), sum)));
@@ -338,8 +340,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   RecordProperty("seed", static_cast<int>(kSeed + 8));
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
-    // Both targets only scale these five rows, so they do not change the directions of the sums. The choice of the edge
-    // from which azimuths are measured then makes no difference.
+    // In these five rows, both targets only scale the mesh, so they do not change the directions of the sums. It then
+    // makes no difference from which edge azimuths are measured.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -348,7 +350,7 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
     for (std::size_t v = 0; v < 4 * kSide; ++v) {
       for (std::vector<Vector>& of_key : stored) {
         if (v % 3 == 0) of_key[v] = bent(of_key[v], random, 0.2);
-        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // points to the other side
+        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // points to the back
       }
     }
     mesh.store(stored[0], {stored[1], stored[2]});
@@ -378,7 +380,7 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows are flat. Only one vertex moves there, a neighbour of the edited vertex, and it moves within the plane.
+  // Five rows are flat. Only one vertex moves there, a neighbour of the edited vertex, and it remains in the plane.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
@@ -409,7 +411,7 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
     const std::array<reference::Mesh, 3> keys = {mesh.mesh({0, 0}), mesh.mesh({1, 0}), mesh.mesh({0, 1})};
     for (std::size_t q = 0; q < mesh.polygons.size(); ++q) {
       if (random() % 5 != 0) continue;
-      // The flat face gets its own vertices, while its corners still contribute to the vertices around it.
+      // The flat-shaded face gets separate vertices, but its corners still contribute to the vertices around it.
       const std::vector<std::size_t>& corners = mesh.polygons[q];
       for (const std::size_t corner : corners) {
         const auto copy = static_cast<std::uint32_t>(mesh.file.vertices());
@@ -492,7 +494,7 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
   for (const bool is_noise : {false, true}) {
     Authored mesh = quads(random);
     const std::vector<Vector> base = mesh.sums("angle", {0, 0});
-    std::vector<Vector> second = base;  // a small change of normals, so that an exporter keeps the target
+    std::vector<Vector> second = base;  // differs slightly from the base, so that an exporter keeps the target
     for (Vector& n : second) n = bent(n, random, is_noise ? 0.6 : 1e-3);
     mesh.store(base, {mesh.sums("angle", {1, 0}), second});
     const Truth truth(mesh.file);
@@ -505,12 +507,13 @@ TEST(AuthorTruth, a_key_that_does_not_turn_as_the_surface_does_is_stale_and_the_
 }
 
 TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
-  // The two halves of a sheet have separate vertices with the same normal where they meet, like a flattened box.
+  // The two halves of a sheet have separate vertices where they meet, with the same normal on both sides, as on a box
+  // that was flattened.
   ShadedMesh mesh;
   mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
   for (int v = 0; v < 8; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
-  // The right half folds down by 90 degrees, and renders its own normal.
+  // In the target, the right half folds down by 90 degrees, and its vertices have its own normal.
   mesh.targets.push_back({{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, -1, -1, 0, -1, 0, 0, 0},
                           {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1},
                           {}});
@@ -565,7 +568,8 @@ TEST(AuthorTruth, normals_that_a_bake_spread_over_its_targets_are_still_those_of
 TEST(AuthorTruth, keys_of_a_bake_that_no_author_made_tell_nothing) {
   std::mt19937 random(kSeed + 7);
   Authored mesh = quads(random);
-  // The normals follow area weights over the file's own triangles, so they tell nothing about other polygons.
+  // The stored normals use area weights over the triangles of the file, so they do not tell which polygons the author
+  // had.
   mesh.polygons.clear();
   for (std::size_t c = 0; c < mesh.file.corners.size(); c += 3)
     mesh.polygons.push_back({mesh.file.corners[c], mesh.file.corners[c + 1], mesh.file.corners[c + 2]});

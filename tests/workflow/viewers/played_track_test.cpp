@@ -1,4 +1,4 @@
-// Compares the weights that viewers play from tracks with plain loops that follow their sources.
+// Compares the weights that viewers play from tracks with plain loops, which follow the sources of the viewers.
 #include "workflow/viewers/played_track.h"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ TEST(PlayedTrack, every_viewer_plays_what_its_source_says) {
                                             GltfInterpolation::kCubicSpline};
       const Track track = random_track(kAll[round % 3], random);
       const double first = track.times.front(), last = track.times.back();
-      // Another track of the animation may begin earlier and end later.
+      // The animation may begin earlier and end later than this track, because of other tracks.
       const TimeRange range{round % 2 == 0 ? first : first / 2, round % 4 < 2 ? last : last + 0.1};
       for (int i = 0; i < 20; ++i) {
         const double time = std::uniform_real_distribution<double>(0, last + 0.2)(random);
@@ -82,9 +82,9 @@ TEST(PlayedTrack, says_whether_it_is_as_specified) {
 }
 
 TEST(PlayedTrack, filament_multiplies_tangents_by_the_part_that_has_gone_by) {
-  // The weight goes from 0 to 0 within an eighth of a second, with a slope of 3 per second. By the specification, the
-  // weight in the middle is the slope times the interval, divided by eight. Filament takes a half instead of the
-  // interval.
+  // The weight goes from 0 to 0 within an eighth of a second, and its slope at the first key is 3 per second. By the
+  // specification, the weight in the middle is the slope times the length of the interval, divided by eight. Filament
+  // uses 1/2, the elapsed share, in place of the length.
   const Track track{GltfInterpolation::kCubicSpline, {0, 0.125F}, {0, 0, 0, 0, 3, 3, 0, 0, 0, 0, 0, 0}};
   EXPECT_NEAR(played(viewer_named("three"), track, {0, 0.125}, 0.0625)[0], 3 * 0.125 / 8, 1e-12);
   EXPECT_NEAR(played(viewer_named("filament"), track, {0, 0.125}, 0.0625)[0], 3.0 / 8 / 2, 1e-12);

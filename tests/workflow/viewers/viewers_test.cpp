@@ -1,4 +1,5 @@
-// Compares the normals that viewers store and render with plain loops over the formulas of their sources.
+// Compares the normals that viewers store and render with plain loops, which follow the formulas in the sources of the
+// viewers.
 #include "chronormal/workflow/viewers.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +25,7 @@ Viewer viewer_named(std::string_view name) { return find_viewers(name).value().a
 
 Vec3f to_vec(const Triple& v) { return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])}; }
 
-// Draws numbers that are float32, like in a file.
+// Draws numbers that float32 represents, as in a file.
 Triple random_vector(std::mt19937& random, double size) {
   std::uniform_real_distribution<double> number(-size, size);
   const auto draw = [&] { return static_cast<double>(static_cast<float>(number(random))); };
@@ -72,7 +73,7 @@ TEST(Viewers, lists_are_in_the_order_asked_for_each_viewer_once) {
   EXPECT_EQ(viewers.value()[0].title, "Godot 4");
   EXPECT_EQ(viewers.value()[1].title, "three.js");
   ASSERT_TRUE(find_viewers("all"));
-  // "all" selects the viewers that render a file unchanged; compressors must be named.
+  // "all" selects the viewers that render a file unchanged. Programs that compress files must be named.
   EXPECT_EQ(find_viewers("all").value().size(), 6U);
   const Result<std::vector<Viewer>> and_others = find_viewers("all,three,gltfpack,quantize,meshopt");
   ASSERT_TRUE(and_others);
@@ -108,14 +109,15 @@ TEST(Viewers, each_shows_what_the_formulas_of_its_source_say) {
         weights.push_back(std::uniform_real_distribution<double>(-0.5, 1.5)(random));
       }
       const Triple expected = test::shown_by(viewer.name, normal, deltas, weights);
-      // If the terms of a sum nearly cancel, its direction is only rounding error.
+      // If the terms of a sum nearly cancel, the direction of the sum is only rounding error, so such sums are skipped.
       Triple plain = normal;
       for (std::size_t k = 0; k < deltas.size(); ++k)
         for (std::size_t c = 0; c < 3; ++c) plain[c] += weights[k] * deltas[k][c];
       if (std::fabs(plain[0]) + std::fabs(plain[1]) + std::fabs(plain[2]) < 0.05) continue;
       worst = std::max(worst, degrees_between(shown_of(viewer, normal, deltas, weights), expected));
     }
-    // In float32, a component halfway between two representable numbers may be rounded either way, but this is rare.
+    // In float32, a component that is halfway between two representable numbers may be rounded up or down, but this is
+    // rare.
     EXPECT_LT(worst, viewer.keeps_halves() ? 0.2 : 0.02) << viewer.name << ", seed " << kSeed;
   }
 }
@@ -132,25 +134,26 @@ TEST(Viewers, targets_of_unit_length_look_alike_everywhere) {
     for (std::size_t c = 0; c < 3; ++c) sum[c] = normal[c] + weight * delta[c];
     const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     for (const Viewer& viewer : kViewers) {
-      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, by the viewer's rounding
+      // in degrees, from the rounding of the viewer
+      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;
       EXPECT_LT(degrees_between(shown_of(viewer, normal, {delta}, {weight}), sum), step / length) << viewer.name;
     }
   }
 }
 
 TEST(Viewers, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_kept) {
-  // N + D is (3, 0, 3). Halfway there, the result is (0.35, 0, 0.85) with unit normals, and (1.5, 0, 2) by the
-  // specification.
+  // N + D is (3, 0, 3). At weight 1/2, the result has the direction of (0.35, 0, 0.85) if the viewer stores unit
+  // normals, and of (1.5, 0, 2) by the specification.
   const Triple normal = {0, 0, 1}, delta = {3, 0, 2};
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("godot"), normal, {delta}, {0.5}), normal), 22.5, 1e-2);
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("three"), normal, {delta}, {0.5}), normal), 36.8699, 1e-4);
-  // With N + D clamped to (1, 0, 1), the result is (0.5, 0, 1.5).
+  // If N + D is limited to (1, 0, 1), the result has the direction of (0.5, 0, 1.5).
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("gltfpack"), normal, {delta}, {0.5}), normal), 18.4349, 1e-4);
 }
 
 TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
-  // Filament 1.53.4 renders this normal, up to its eight bits per colour. N + D = (0, 0, 3) gets the frame (0, -3, -8),
-  // (24, 0, 0), which is no rotation.
+  // Filament 1.53.4 renders this normal, except for its eight bits per colour. For N + D = (0, 0, 3), Filament makes
+  // the frame (0, -3, -8), (24, 0, 0), which is not a rotation.
   const Vec3f along = kept_normal(viewer_named("filament"), {0, 0, 1});
   EXPECT_NEAR(along.z, 1, 1e-6);
   const Vec3f longer = kept_normal(viewer_named("filament"), {0.6F, 0, 2.4F});
@@ -165,7 +168,7 @@ TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
 }
 
 TEST(Viewers, keep_components_as_their_tools_write_them) {
-  // glTF Transform 4.5 and gltfpack 1.3 write these values.
+  // The values that glTF Transform 4.5 and gltfpack 1.3 write.
   EXPECT_EQ(kept_delta(viewer_named("quantize"), {}, {0.3F, -0.3F, 7}), (Vec3f{9811 / 32767.0F, -9811 / 32767.0F, 1}));
   EXPECT_EQ(kept_delta(viewer_named("gltfpack"), {}, {0.3F, -0.3F, -7}), (Vec3f{38 / 127.0F, -38 / 127.0F, -1}));
   EXPECT_EQ(kept_delta(viewer_named("playcanvas"), {}, {0.1F, 1e-9F, 1e6F}), (Vec3f{0.0999755859375F, 0, INFINITY}));
