@@ -36,7 +36,8 @@ std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-// Returns the JSON of a file. For a GLB this is its first chunk without the padding at its end, which may vary.
+// Returns the JSON of a file. For a GLB, this is the first chunk without the padding at its end, since an edit may
+// change the padding.
 std::string_view json_of(std::string_view file) {
   if (!file.starts_with("glTF")) return file;
   std::uint32_t size = 0;

@@ -130,7 +130,8 @@ inline void add_error(const std::string& name, const Error& error, GltfReading& 
 
 }  // namespace detail
 
-/// Reads everything in a file: every primitive with its shading, every track, the mesh, and every motion.
+/// Reads everything in a file: every primitive with its shading, every track, the mesh, and every motion. Returns what
+/// was found, with the errors.
 [[nodiscard]] inline GltfReading read_all_of(const Result<GltfDocument>& opened, const std::string& name,
                                              std::size_t most_bytes) {
   GltfReading reading;

@@ -1,4 +1,4 @@
-// Fuzz target of the reader of Maya's points: for any bytes, the result is an error with a place, or a cache.
+// Fuzz target of the reader of Maya's point caches: for any bytes, the result is an error with a place, or a cache.
 #include "io/cache/maya_cache.h"
 
 #include "cache_invariants.h"

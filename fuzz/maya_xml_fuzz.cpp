@@ -1,5 +1,5 @@
-// Fuzz target of the reader of Maya's descriptions: for any bytes, the result is an error with a place, or a consistent
-// description.
+// Fuzz target of the reader of the XML files that describe Maya's caches: for any bytes, the result is an error with a
+// place, or a consistent description.
 #include "io/cache/maya_cache.h"
 
 #include "cache_invariants.h"

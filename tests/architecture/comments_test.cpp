@@ -1,6 +1,5 @@
-// Tests that no comment begins like a fragment. The words in refused_openers.txt begin parts of sentences that a reader
-// would have to complete. A function's comment begins with a verb, a type's with a noun, and a note in code is a
-// sentence.
+// Tests that no comment begins like a fragment. The words in refused_openers.txt begin phrases that are not whole
+// sentences. A function's comment begins with a verb, a type's with a noun, and a note in code is a sentence.
 
 #include <gtest/gtest.h>
 
@@ -28,13 +27,13 @@ std::vector<std::string> refused_openers() {
   return openers;
 }
 
-// Returns the text of a line that has only a comment.
+// Returns the comment in a line that has nothing else, without the mark `mark`.
 std::optional<std::string_view> comment_in(std::string_view line, std::string_view mark) {
   const std::size_t begin = line.find_first_not_of(' ');
   if (begin == std::string_view::npos || !line.substr(begin).starts_with(mark)) return std::nullopt;
   line.remove_prefix(begin + mark.size());
   if (mark == "//" && line.starts_with('/')) line.remove_prefix(1);
-  if (!line.starts_with(' ')) return std::nullopt;  // code that was commented out, and rules of dashes
+  if (!line.starts_with(' ')) return std::nullopt;  // skips code that was commented out, and lines of dashes
   return line.substr(1);
 }
 

@@ -1,4 +1,4 @@
-/// Describes the translation unit of every header (every_header.cpp.in).
+/// Declares what every_header.cpp.in defines, for the test of this file.
 #ifndef CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 #define CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 

@@ -1,6 +1,6 @@
-// Tests the layers: each folder is a layer, and a folder in it is a room. A file may include only its own room, the
-// rooms before its own on its floor, and the floors before its own. The path alone decides, so this test needs no list
-// of files. docs/architecture.md draws the same plan.
+// Tests which files include which others. Each floor is a folder, and a room is a folder in it. A file may include only
+// its own room, the rooms before it on its floor, and the floors before its own. Paths alone decide, so this test needs
+// no list of files. docs/architecture.md describes the same order.
 
 #include <gtest/gtest.h>
 
@@ -62,8 +62,8 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// The place of a file: its floor, and the room there. Room 0 is the floor itself, above all of its rooms. The program
-// begins in main.cpp, which therefore comes after the rooms of its floor.
+// The place of a file: its floor, and the room on this floor. Room 0 is the floor itself, which precedes all of its
+// rooms. main.cpp, where the program begins, comes after the rooms of its floor.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;
@@ -71,8 +71,8 @@ struct Place {
   auto operator<=>(const Place&) const = default;
 };
 
-// Returns the room of a public header, which is the room of its source src/FLOOR/ROOM/STEM.cpp, or the floor itself if
-// there is no such source.
+// Returns the room of a public header: the room of its source src/FLOOR/ROOM/STEM.cpp, or the floor itself if there is
+// no such source.
 std::string room_of_public_header(const std::string& floor, const fs::path& header) {
   for (const auto& [name, rooms] : kFloors) {
     if (name != floor) continue;
@@ -83,9 +83,9 @@ std::string room_of_public_header(const std::string& floor, const fs::path& head
   return "";
 }
 
-// Returns the place of a file. `path` is the path of the file, or the text by which it is included:
-// include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., or cli/... Returns nothing for a path outside of the layers or
-// in a folder that is not a room.
+// Returns the place of a file. `path` is the path of the file, or the text by which others include it:
+// include/chronormal/FLOOR/STEM.h, src/FLOOR/ROOM/..., or cli/... Returns nothing if the path is on no floor, or in a
+// folder that is not a room.
 std::optional<Place> place_of(const std::string& path) {
   std::vector<std::string> parts = parts_of(path);
   if (!parts.empty() && (parts[0] == "include" || parts[0] == "src")) parts.erase(parts.begin());
@@ -119,7 +119,7 @@ std::string included_by(const std::string& line) {
   return last == std::string::npos ? "" : line.substr(first + 1, last - first - 1);
 }
 
-// Describes the includes of a file that break the rule; empty if there are none.
+// Returns a description of each include in a file that breaks the rule.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   const auto own = place_of(path);
@@ -152,7 +152,7 @@ std::vector<fs::path> product_files() {
   return files;
 }
 
-// Returns the lines of a file that use an instruction set directly instead of through Highway.
+// Returns the lines of a file that use an instruction set directly. Code must use Highway instead.
 std::vector<std::string> raw_intrinsics(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -197,10 +197,10 @@ TEST(Layers, every_file_includes_only_its_own_room_and_those_above) {
   }
 }
 
-// The rooms of bake in order: each may use only the rooms before it.
+// The rooms of bake in order. Each may include only the rooms before it.
 const std::vector<std::string> kRoomsOfBake = {"poses", "deltas", "judge", "fits", "candidates", "write", "sequence"};
 
-// Returns the lines that include a room of bake that comes after the file's own.
+// Returns the lines of a file that include a room of bake which comes after the file's own room.
 std::vector<std::string> later_rooms(const std::string& room, const std::string& text) {
   const auto place_of = [](const std::string& name) {
     return std::find(kRoomsOfBake.begin(), kRoomsOfBake.end(), name) - kRoomsOfBake.begin();
@@ -240,8 +240,8 @@ TEST(Layers, public_headers_include_only_public_headers) {
   }
 }
 
-// Only the library chronormal uses Highway: chronormal_io and the program are built without its headers, in wasm too.
-// Only src/simd/ includes its headers.
+// Only the library chronormal uses Highway. chronormal_io and the program are built without Highway's headers, also for
+// wasm. Only src/simd/ includes these headers.
 TEST(Layers, kernels_stand_in_the_library_that_has_highway) {
   std::size_t kernels = 0;
   for (const fs::path& file : product_files()) {
@@ -274,7 +274,7 @@ TEST(Layers, the_oracle_shares_no_code_with_the_product) {
   EXPECT_EQ(text.find("#include \"chronormal"), std::string::npos);
 }
 
-// Lists the headers that an umbrella header includes.
+// Returns the headers that an umbrella header (chronormal.h or chronormal_io.h) includes.
 std::vector<std::string> listed_by(const std::string& umbrella) {
   std::vector<std::string> listed;
   for (const std::string& line : lines_of(read(kRoot / "include/chronormal" / umbrella))) {
@@ -284,7 +284,8 @@ std::vector<std::string> listed_by(const std::string& umbrella) {
   return listed;
 }
 
-// chronormal.h must be usable with the library chronormal alone, which has no symbols of io and workflow.
+// Programs must be able to use chronormal.h with the library chronormal alone, which lacks the symbols of io and
+// workflow.
 TEST(Layers, the_umbrella_headers_list_every_public_header_in_the_order_of_the_layers) {
   const std::vector<std::string> core = listed_by("chronormal.h"), io = listed_by("chronormal_io.h");
   const auto is_io = [](const std::string& header) {
@@ -300,7 +301,7 @@ TEST(Layers, the_umbrella_headers_list_every_public_header_in_the_order_of_the_l
   std::vector<std::string> there;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "include")) {
     const std::string path = fs::relative(entry.path(), kRoot / "include").string();
-    if (path == "chronormal_c.h") continue;  // the header for C is separate
+    if (path == "chronormal_c.h") continue;  // the header for C is in no umbrella header
     if (entry.is_regular_file() && !is_umbrella("include/" + path)) there.push_back(path);
   }
   EXPECT_LE(there.size(), 32U) << "fewer doors: merge headers that are one idea";
@@ -321,8 +322,9 @@ TEST(Layers, raw_intrinsics_stand_in_two_files) {
   }
 }
 
-// Returns the lines by which a private header declares names in the public namespace. Private names belong in an inline
-// namespace, which separates them for the linker and the compiler. Code can use them without naming this namespace.
+// Returns the lines in which a private header declares names in the public namespace. Private names must be in an
+// inline namespace: then the linker and the compiler keep them apart, but code can use them without naming this
+// namespace.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {
@@ -343,7 +345,7 @@ TEST(Layers, private_headers_declare_internal_names) {
   }
 }
 
-// A file should hold one idea, and be neither too short nor too long.
+// A file should hold one idea, so it may be neither too short nor too long.
 TEST(Layers, files_hold_one_idea) {
   for (const fs::path& file : product_files()) {
     const std::size_t limit = file.string().starts_with("include/") ? 400 : 1200;
@@ -351,7 +353,7 @@ TEST(Layers, files_hold_one_idea) {
   }
 }
 
-// Several test files are compiled as one (CHRONORMAL_UNITY), so their names must not collide.
+// Several test files are compiled as one (CHRONORMAL_UNITY), so each needs its own namespace.
 TEST(Layers, every_test_file_has_a_namespace_of_its_own) {
   std::size_t count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {

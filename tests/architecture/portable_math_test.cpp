@@ -1,5 +1,5 @@
-// Checks that no code calls a function of the standard library whose rounding depends on the system, so that results
-// are the same on every machine.
+// Checks that no code calls a function of the standard library that rounds differently on different systems. Results
+// must be the same on every machine.
 
 #include <gtest/gtest.h>
 

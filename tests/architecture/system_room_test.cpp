@@ -1,5 +1,5 @@
-// Tests that only src/io/system/ calls the operating system. A compiler on Linux does not complain about POSIX names
-// elsewhere, so this test searches the text for them.
+// Tests that only src/io/system/ calls the operating system. On Linux, the compiler does not complain about POSIX names
+// elsewhere, so this test searches the text of the files for such names.
 
 #include <gtest/gtest.h>
 
@@ -23,16 +23,17 @@ namespace fs = std::filesystem;
 
 const std::string kRoom = "src/io/system/";
 
-// Files of the core that may call Linux and POSIX threads directly, under #if conditions, since the core cannot include
-// the room of the system.
+// Files of the core that may call Linux and POSIX threads directly, under #if conditions. The core cannot include
+// src/io/system/.
 const std::array<std::string, 2> kCore = {"src/core/memory.cpp", "src/core/parallel.cpp"};
 
 constexpr std::string_view kHeaders[] = {"unistd.h",   "fcntl.h",   "glob.h",    "poll.h",    "dirent.h", "termios.h",
                                          "sched.h",    "pthread.h", "dlfcn.h",   "pwd.h",     "io.h",     "malloc.h",
                                          "langinfo.h", "direct.h",  "process.h", "windows.h", "sys/"};
 
-// Three kinds of names: names of POSIX, some of which are macros on macOS; functions of the library that read a file's
-// name in the code page of Windows; and functions that libc++ has only in part (core/charconv.h).
+// Names that only src/io/system/ may use: names of POSIX, some of which are macros on macOS; functions of the standard
+// library that read the name of a file in the code page of Windows; and functions that libc++ has only in part
+// (core/charconv.h).
 constexpr std::string_view kWords[] = {
     "STDIN_FILENO", "STDOUT_FILENO", "STDERR_FILENO", "ssize_t",        "off_t",         "mode_t",
     "pid_t",        "dev_t",         "ino_t",         "timespec",       "pollfd",        "winsize",
@@ -42,7 +43,7 @@ constexpr std::string_view kWords[] = {
     "isatty",       "sigfillset",    "strdup",        "std::ifstream",  "std::ofstream", "std::fopen",
     "fopen",        "std::rename",   "std::to_chars", "std::from_chars"};
 
-// Parts of lines that only the room of the system may have: paths of Linux, and conversions between paths and text.
+// Parts of lines that only src/io/system/ may have: paths of Linux, and conversions between paths and text.
 constexpr std::string_view kParts[] = {"\"/proc/",
                                        "\"/sys/",
                                        "filesystem::path(",
@@ -64,8 +65,7 @@ bool has_word(std::string_view line, std::string_view word) {
   return false;
 }
 
-// Tells whether a line calls a function of the global namespace, such as "::open(". Functions of zlib do not belong to
-// the system and are ignored.
+// Tells whether a line calls a function of the global namespace, such as "::open(". Functions of zlib are permitted.
 bool calls_global(std::string_view line) {
   for (std::size_t at = 0; (at = line.find("::", at)) != std::string_view::npos; at += 2) {
     if (at > 0 && (is_letter(line[at - 1]) || line[at - 1] == '>')) continue;
@@ -87,14 +87,14 @@ bool includes_system(std::string_view line) {
                      [&](std::string_view header) { return line.substr(kInclude.size()).starts_with(header); });
 }
 
-// Returns the lines that only the room of the system may have, without comments.
+// Returns the lines of a file that only src/io/system/ may have. Ignores comments.
 std::vector<std::string> refused(const std::string& path, const std::string& text) {
   const bool is_core = std::find(kCore.begin(), kCore.end(), path) != kCore.end();
   std::vector<std::string> found;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     std::string code = line.substr(0, line.find("//"));
-    // fs::path() is an empty path, made without a conversion of text.
+    // fs::path() makes an empty path and converts no text, so it is permitted.
     for (std::size_t at = 0; (at = code.find("fs::path()")) != std::string::npos;) code.erase(at, 10);
     const bool has =
         std::any_of(std::begin(kWords), std::end(kWords), [&](auto word) { return has_word(code, word); }) ||

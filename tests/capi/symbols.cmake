@@ -1,5 +1,5 @@
 # cmake -DNM=... -DLIBRARY=... -DLIST=symbols.txt -P: checks that the shared library exports exactly the functions of
-# the list. Compiled programs depend on each of them (docs/stability.md).
+# the list. Programs that are already compiled depend on each of these functions (docs/stability.md).
 execute_process(COMMAND ${NM} -D --defined-only --format=posix ${LIBRARY} OUTPUT_VARIABLE output RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "${NM} cannot read ${LIBRARY}")

@@ -1,4 +1,4 @@
-// Tests `audit` for scripts and people: the verdict, the tables, the JSON, and exit codes.
+// Tests `audit` for scripts and people: the verdict, the tables, the JSON, and the exit codes.
 
 #include <gtest/gtest.h>
 
@@ -88,7 +88,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {"; within 90.1 degrees\n"});
-  // Four edges are torn at one moment, in every viewer.
+  // In every viewer, four edges are torn at one moment.
   EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
   const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
@@ -144,8 +144,8 @@ TEST_F(AuditCli, viewers_are_in_the_json_with_their_errors_and_sources) {
 }
 
 TEST_F(AuditCli, tolerance_is_a_gate_for_every_viewer_that_is_named) {
-  // Each normal is true at weight 1. In between, the longer normal delta turns the sum too soon in viewers that add
-  // deltas unchanged.
+  // The normal of each vertex is true at weight 1. At smaller weights, viewers that add up deltas turn the normal with
+  // the longer delta too early.
   test::ShadedMesh mesh = test::hinge();
   mesh.targets[0].normals = {0, 0, 0, -1, 0, 0, -1, 0, 0, -3, 0, -1};
   folder_.write("long.glb", mesh.file().glb());
@@ -348,8 +348,8 @@ TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
   EXPECT_EQ(baked.out.find("exact at every instant"), std::string::npos) << baked.out;
 }
 
-// A triangle that shrinks to a hundredth and turns over is still drawn, and its direction is exact, so it must be
-// judged.
+// A triangle that shrinks to a hundredth of its size and turns over is still drawn. Its direction is exact, so the
+// audit must judge it.
 TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   const std::string big = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
   const auto small = [](const std::string& size, const std::string& at) {

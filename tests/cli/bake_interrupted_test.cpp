@@ -76,7 +76,7 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
     fs::permissions(folder_ / "closed", fs::perms::owner_all);
     return;
   }
-  // Permissions do not stop root, but a read-only mount does.
+  // Permissions do not stop root from writing, but a read-only mount does.
   const std::string mount = "mount --bind closed closed && mount -o remount,bind,ro closed";
   if (run_shell(mount, folder_.path()).exit_code != 0) GTEST_SKIP() << "root may not mount here";
   expect_refused("closed");

@@ -168,7 +168,7 @@ TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
   expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
   expect_error(run("compare a.obj b.obj --colour-of-the-sky"), 2, {"'--colour-of-the-sky'\n"});
-  // The word after an option that takes a value is the value, even if it looks like an option.
+  // If an option takes a value, the next word is the value, even if it looks like an option.
   expect_error(run("compare a.obj b.obj --samples --sample"), 2, {"--samples"});
 }
 
@@ -738,7 +738,7 @@ TEST_F(Cli, each_keeps_the_notes_and_names_the_motion_that_failed) {
   expect_error(run("compare --each walk/ --sample twist"), 3, {"walk/", "frame 1", "2.obj", "line 4"});
 }
 
-// A command that runs longer than the delay of the progress bar.
+// A command that takes longer than the delay after which a progress bar is shown.
 constexpr const char* kSecondOfWork = "compare --sample eversion --schemes linear:scaled --samples 31";
 
 TEST_F(Cli, progress_stays_off_when_stderr_is_no_terminal) { EXPECT_EQ(run(kSecondOfWork).err, ""); }

@@ -1,4 +1,5 @@
-// Tests `compare --truth`: its output formats agree, its remarks fit the figures, and it refuses unsuitable options.
+// Tests `compare --truth`: all output formats must have the same figures, its remarks must fit the figures, and it must
+// refuse unsuitable options.
 
 #include <gtest/gtest.h>
 

@@ -188,7 +188,8 @@ TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
     EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
     EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
   }
-  // Standard error is closed, so the note about zeros cannot be printed. It must not end up in the output file instead.
+  // The program cannot print its note about zeros, since standard error is closed. The note must not end up in the
+  // output file instead.
   folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);

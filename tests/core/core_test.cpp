@@ -1,4 +1,4 @@
-// Tests result, vec3, views, and parallel.
+// Tests Result, Vec3, views of vectors, and the parallel loop.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

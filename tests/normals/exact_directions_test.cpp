@@ -89,7 +89,7 @@ std::vector<double> some_times(const Segment& segment, fixtures::Random& random)
   return times;
 }
 
-// The number of wrong results, and the largest error of the other results.
+// The number of wrong results, and the largest error of all other results in radians.
 struct Tally {
   std::size_t cases = 0, violations = 0;
   double largest = 0;

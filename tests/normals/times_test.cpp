@@ -245,7 +245,7 @@ void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, s
   }
 }
 
-// Adds ways that blend differences of positions in float32.
+// Adds ways that blend a target, whose deltas are differences of positions in float32.
 void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   Motion targets = motion;

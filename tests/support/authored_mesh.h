@@ -89,7 +89,7 @@ class AuthoredMesh {
     return unit_of(sum);
   }
 
-  // Returns the unit normals of all points, summed over all polygons around each point.
+  // Returns the unit normals of all points. Each is the weighted sum of the normals of the polygons around the point.
   [[nodiscard]] std::vector<Vector> point_normals(const std::vector<Vector>& p) const {
     std::vector<Vector> sums(p.size(), Vector{0, 0, 0});
     for (const Polygon& polygon : polygons_) {

@@ -96,7 +96,7 @@ class Hills {
   [[nodiscard]] std::size_t below(std::size_t count) {
     return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
   }
-  /// Draws random deltas for a share of the vertices.
+  /// Draws random position deltas of up to `size` for a share of the vertices. All other deltas are zero.
   [[nodiscard]] std::vector<float> deltas(double share = 1, double size = 0.4) {
     std::vector<float> result(positions.size());
     const auto rows = static_cast<std::size_t>(std::ceil(share * static_cast<double>(side_)));

@@ -1,5 +1,4 @@
-/// Computes the true normals of the vertices of a glTF mesh from their positions alone, by cross products in long
-/// double.
+/// Computes the true normals of the vertices of a glTF mesh by cross products in long double, from positions alone.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_TRUTH_H_
 
@@ -188,7 +187,7 @@ struct Pose {
   return error;
 }
 
-/// Returns the poses of a weight track at 101 times, from the first key to the last.
+/// Returns the poses of a weight track at 101 times, from its first key to its last.
 [[nodiscard]] inline std::vector<Pose> poses_of(const GltfPlayer& before, const GltfPlayer& after,
                                                 std::size_t animation, std::size_t channel) {
   const auto& a = before.json.at("animations").at(animation);

@@ -495,7 +495,7 @@ struct SchemeName {
   return std::nullopt;
 }
 
-/// Tells whether the path of a scheme depends on a number that the scheme searches for.
+/// Tells whether a scheme searches for a number on which its path depends.
 [[nodiscard]] inline bool is_searched(std::string_view name) {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }

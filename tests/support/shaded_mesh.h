@@ -111,7 +111,7 @@ struct ShadedMesh {
     return n;
   }
 
-  /// Returns the error of vertex v, in degrees.
+  /// Returns the angle, in degrees, between the normal that a viewer renders at vertex v and the true normal.
   [[nodiscard]] Real error(std::size_t v, const std::vector<double>& weights) const {
     const Vector base = unit_of(normal(v, std::vector<double>(weights.size())));
     const Vector right = rotated(base, unit_of(vector_at(normals, v)), unit_of(normal(v, weights)));

@@ -31,7 +31,7 @@ def switch_on(program):
 
 
 def part(name):
-    """Returns a module of the add-on."""
+    """Returns the module of the add-on with this name."""
     return sys.modules[f"{ADDON}.{name}"]
 
 

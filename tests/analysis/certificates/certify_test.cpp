@@ -50,7 +50,7 @@ std::size_t wanted_elements() {
   return std::clamp<std::size_t>(cases, 600, 200000);
 }
 
-// A scheme that is prepared for the faces of a segment.
+// A scheme that is prepared for the faces of a segment, with the control normals and the bounds of these faces.
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
   std::vector<ControlNormals> normals;
@@ -181,7 +181,8 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
               << tallies[s].gap / static_cast<double>(tallies[s].elements - tallies[s].unknown) << " rad\n";
 }
 
-// If hardly anything moves, the exact error is nearly zero, and the rounding of one slerp adds to that of the next.
+// If almost nothing moves, the exact error is nearly zero, and the error bound must contain the rounding errors of all
+// slerps.
 TEST(ExactCertificates, include_the_rounding_of_many_slerps) {
   const Motion motion = fixtures::soup({.face_count = 150, .seed = 9, .motion = 1e-6});
   const Segment segment = motion.segment(0);
@@ -248,8 +249,8 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
 }
 
 TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
-  // Vertex c moves around the edge from a to b. The normal turns from +z through -y to -z and never vanishes, but the
-  // straight line between the end normals passes through zero at t = 1/2.
+  // Vertex c moves around the edge from a to b. The normal turns from +z through -y to -z and never vanishes. But the
+  // straight line between the normals at both ends passes through zero at t = 1/2.
   const std::vector<Vec3d> at{{0, 0, 1}, {0, -1, 0}, {0, 0, -1}};
   const ControlNormals turning{at[0], at[1], at[2]};
   const Motion still = moving(kFlat, kFlat);
@@ -460,7 +461,7 @@ class EasedArc {
   void shared(double t, float* values) const { values[0] = static_cast<float>(eased(t)); }
 };
 
-// A scheme that does not use the framework of curve_scheme.h and describes nothing about itself.
+// A scheme that does not use the framework of curve_scheme.h, and gives certify() no information about itself.
 class Silent final : public Scheme {
  public:
   void prepare(const ElementBlock& block) override { count_ = block.elements.count; }
@@ -531,7 +532,7 @@ TEST(Certificates, hold_for_a_scheme_that_brings_its_own_weights) {
   }
 }
 
-// In every scheme that is a weighted sum, each weight equals its polynomial.
+// If a scheme is a weighted sum, each weight must equal the polynomial that the scheme states for it.
 TEST(Certificates, know_the_weights_of_all_sums) {
   const auto weight_at = [](const WeightBasis& basis, std::size_t k, double t) {
     double value = 0;

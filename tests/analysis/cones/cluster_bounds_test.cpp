@@ -249,7 +249,7 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
   EXPECT_GT(rival.wrong, 20u);  // shows that the test detects wrong bounds
 }
 
-// Tests one or a few faces of each family of hard faces, from cameras all around.
+// Tests motions of one or a few faces from each family of hard motions, seen by cameras all around.
 TEST(ExactClusterBounds, never_reject_hard_faces_that_are_seen) {
   fixtures::Random random(912);
   std::size_t rejected = 0;

@@ -161,7 +161,7 @@ TEST(ExactCones, of_control_normals_contain_every_exact_normal_of_the_interval) 
   EXPECT_EQ(outside_of(cones_of, false), 0u);
 }
 
-// Cones of the end normals alone are a wrong shortcut. This test shows that the check detects their errors.
+// Cones around the normals of both ends alone are a tempting but wrong method. The test must detect its errors.
 TEST(ExactCones, of_the_two_ends_alone_do_not) { EXPECT_GT(outside_of(cones_of_ends, false), 1000u); }
 
 TEST(Cones, have_the_same_bits_on_every_instruction_set_and_in_any_number) {
@@ -223,7 +223,7 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2 these control normals nearly cancel. Therefore an error of 2^-26 in one control normal changes the
+// At t = 1/2, these control normals nearly cancel. An error of 2^-26 in one control normal therefore changes the
 // direction of n(t) by much more than 2^-26.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
@@ -241,7 +241,7 @@ TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   }
 }
 
-// The three directions are two edges and a corner of a cube, whose smallest cones are known.
+// The three directions are x, y and z, or x, x + y and y. The smallest cones around them are known.
 TEST(Cones, are_the_smallest_around_three_directions) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
   const std::vector<ControlNormals> normals{{x, 3 * y, z}, {x, x + y, y}, {1e-140 * x, 1e140 * y, z}};

@@ -296,7 +296,7 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
   scene.from = {{-16, 0, 0}, {-8, -8, 0}, {8, -8, -8}, {-16, 0, 8}, {-16, 8, 0}};
   scene.to = {{16, 0, 0}, {8, 8, 0}, {-8, 8, 8}, {16, 0, 8}, {16, 8, 0}};
   const std::vector<Crossing> all = scene.crossings();
-  // The points pass through vertices, edges and the middles of faces.
+  // The five points pass through vertices, edges and the middles of faces.
   const std::vector<double> times = {0.25, 0.25, 1.0 / 3};
   for (std::size_t p = 0; p < 5; ++p) {
     const std::span<const Crossing> crossings = of_point(all, p);

@@ -1,5 +1,5 @@
-// Compares the optimal scale of one end normal with a brute force search in long double over a fine grid of scales and
-// times.
+// Compares the scale that best_end_delta() finds for one end normal with a brute force search in long double, over a
+// fine grid of scales and times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -46,8 +46,8 @@ Vector exact(const ControlNormals& n, Real w) {
   return add(add(scaled(v * v, real(n.n0)), scaled(2 * v * w, real(n.m))), scaled(w * w, real(n.n1)));
 }
 
-// Returns the largest angle over a grid of w that is dense near both ends, too. The result is too small by a relative
-// error of at most about 1e-3.
+// Returns the largest angle over a grid of times w, which is also dense near both ends. The result may be too small by
+// a relative error of about 1e-3.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;
@@ -89,9 +89,9 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
       brute.best = std::min(brute.best, brute_error(normals, u0, reference::scaled(s, u1), 100));
     }
-    const bool collapses = found.error > 90 * kDegree;  // then the largest angle depends on the grid
+    const bool collapses = found.error > 90 * kDegree;  // then, the largest angle depends on the grid
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // The function also returns the error of its result. This error must be the true one.
+    // The function also states the error of its result, which must be the true error.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -99,7 +99,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     EXPECT_NEAR(found.error, claimed, 2e-3 * claimed) << round;
     right_angles += collapses ? 1 : 0;
   }
-  EXPECT_GE(right_angles, 3);  // errors near 90 degrees occur, where there may be several minima
+  EXPECT_GE(right_angles, 3);  // makes sure that errors near 90 degrees occur, where there may be several minima
   EXPECT_LT(right_angles, 100);
 }
 
@@ -154,7 +154,8 @@ TEST(EndDelta, time_reversal_inverts_the_scale) {
 
 TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0};
-  // n(w) = 2 w (1-w) x + w^2 y turns along the straight line from 2 x to y.
+  // n(w) = 2 w (1-w) x + w^2 y has the same directions as the straight line from 2 x to y, so a scale gives them
+  // exactly.
   const EndDelta from_zero = best_end_delta({{}, x, y});
   EXPECT_NEAR(from_zero.scale, 0.5, 1e-9);
   EXPECT_LT(from_zero.error, 1e-9);
@@ -163,7 +164,7 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta to_zero = best_end_delta({x, y, {}});
   EXPECT_NEAR(to_zero.scale, 2, 1e-9);
   EXPECT_LT(to_zero.error, 1e-9);
-  // A middle control normal alone gives n(w) a single direction.
+  // If only the middle control normal is not zero, n(w) has a single direction.
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);
@@ -180,7 +181,8 @@ TEST(EndDelta, equal_and_antipodal_ends_keep_their_size) {
   const EndDelta equal = best_end_delta({x, y, 3.0 * x});
   EXPECT_EQ(equal.scale, 1);
   EXPECT_EQ(equal.delta, Vec3d{});
-  // n(w) = ((1-w)^2 + 3 w^2, 2 w (1-w), 0): the error is the atan of 2 w v / (v^2 + 3 w^2), at most atan(1 / sqrt(3)).
+  // n(w) = ((1-w)^2 + 3 w^2, 2 w (1-w), 0). With v = 1 - w, the error is the atan of 2 w v / (v^2 + 3 w^2), which is at
+  // most atan(1 / sqrt(3)).
   EXPECT_NEAR(equal.error, 30 * kDegree, 0.03 * kDegree);
 
   const EndDelta antipodal = best_end_delta({x, y, -x});
@@ -190,7 +192,7 @@ TEST(EndDelta, equal_and_antipodal_ends_keep_their_size) {
 }
 
 TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more) {
-  // n(w) = (1 - 2 w) (1, w, 0) is zero at w = 1/2, with opposite directions on both sides.
+  // n(w) = (1 - 2 w) (1, w, 0) is zero at w = 1/2 and has opposite directions before and after that.
   const EndDelta found = best_end_delta({{1, 0, 0}, {0, 0.5, 0}, {-1, -1, 0}});
   EXPECT_GE(found.error, 89 * kDegree);
   EXPECT_TRUE(std::isfinite(found.scale));
@@ -199,8 +201,8 @@ TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more)
 TEST(EndDelta, errors_of_lines_are_found_wherever_they_are) {
   Random random(6);
   for (int round = 0; round < 2000; ++round) {
-    // If the motion is strong, some normals turn fast. If the lengths of the ends differ much, the line turns fast near
-    // an end.
+    // If the motion is strong, some normals turn fast. If the lengths of the two end normals differ much, the straight
+    // line between them turns fast near an end.
     const ControlNormals normals = triangle(random, random.uniform(0, 30));
     const Vec3d from = unit(normals.n0), to = std::exp(random.uniform(-9, 9)) * unit(normals.n1);
     const auto expected = static_cast<double>(brute_error(normals, real(from), real(to), 1000));
@@ -217,11 +219,11 @@ TEST(EndDelta, a_line_that_turns_fast_near_an_end_is_seen_there) {
   EXPECT_NEAR(largest_line_error(normals, normals.n0, to), expected, 2e-3 * expected);
 }
 
-// Checks the averages in the table of docs/theory.md, section 4.8.
+// Checks the average errors in the table of docs/theory.md, section 4.8.
 TEST(EndDelta, it_helps_where_areas_change) {
   struct Row {
     const char* morph;
-    double unit_ends, best;  // errors in degrees: of unit ends, and of the best scale
+    double unit_ends, best;  // errors in degrees, with unit normals at the ends and with the best scale
   };
   for (const Row& row :
        {Row{"cloth", 2.34, 0.36}, {"bend", 4.41, 4.01}, {"twist", 9.58, 8.76}, {"eversion", 69.1, 68.3}}) {

@@ -1,4 +1,4 @@
-// Compares leading eigenvectors with their definition, on matrices that are built from known eigenvectors.
+// Checks the leading eigenvectors of matrices that are built from known eigenvectors.
 #include "analysis/fits/leading_vectors.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,8 @@
 namespace chronormal::leading_vectors_test {
 namespace {
 
-// A matrix with these eigenvalues, and its eigenvectors as rows. Products of reflections keep the rows orthonormal.
+// A matrix with given eigenvalues, and its eigenvectors as rows. The rows are made by reflections, so they are
+// orthonormal.
 struct Known {
   std::vector<std::vector<double>> vectors;
   std::vector<double> matrix;

@@ -1,4 +1,4 @@
-// Tests quality and reference_normals.
+// Tests Quality, which collects angular errors, and reference_normals(), which computes exact normals.
 
 #include "chronormal/analysis/quality.h"
 
@@ -87,7 +87,7 @@ TEST(Quality, parts_add_up) {
   first.add(second);
   EXPECT_NEAR(first.sum, whole.sum, 1e-15);
   EXPECT_EQ(first.max, whole.max);
-  EXPECT_EQ(first.max_at.element, 2u);  // the first of equal errors
+  EXPECT_EQ(first.max_at.element, 2u);  // of equal errors, the first is reported
   EXPECT_EQ(whole.max_at.element, 2u);
   EXPECT_EQ(first.count, 4u);
 }
@@ -115,7 +115,7 @@ Vec3d reference(const std::vector<float>& from, const std::vector<float>& to, do
 
 TEST(ReferenceNormals, are_cross_products_of_interpolated_vertices) {
   const std::vector<float> from = {0, 0, 0, 1, 0, 0, 0, 1, 0}, to = {0, 0, 2, 1, 0, 2, 0, 1, 4};
-  const Vec3d n = reference(from, to, 0.5);  // the corners are (0,0,1), (1,0,1) and (0,1,2) then
+  const Vec3d n = reference(from, to, 0.5);  // at t = 1/2, the corners are (0,0,1), (1,0,1) and (0,1,2)
   EXPECT_EQ(n, (Vec3d{0, -1, 1}));
 }
 
@@ -125,7 +125,8 @@ TEST(ReferenceNormals, of_a_polygon_are_its_vector_area) {
 }
 
 TEST(ReferenceNormals, a_collapse_is_exact_zero_wherever_it_lies) {
-  // Both edges are zero at the same t, which is not a binary fraction. The rounding error must not become a direction.
+  // Both edges are zero at the same t, which is not a binary fraction. The rounding error at this t must not become a
+  // direction.
   for (const auto& [start, end] :
        {std::pair{7.0f, -13.0f}, {1.0f, -9.0f}, {3.0f, -7.0f}, {9.0f, -11.0f}, {17.0f, -3.0f}}) {
     const std::vector<float> from = {0, 0, 0, start, start, 0, 0, start, start};
@@ -145,7 +146,7 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
   EXPECT_LT(length(near - far), 1e-12);
 }
 
-// Compares normals of faces and sums of faces with integers of any size.
+// Compares normals of faces, and sums of the normals of several faces, with integers of any size.
 TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
   constexpr std::uint64_t kSeed = 4950;
   fixtures::Random random(kSeed);
@@ -164,7 +165,7 @@ TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
         const auto judge = [&](const Vec3d& n, const test::IntegerVector& truth) {
           ++judged;
           if (n == Vec3d{}) {
-            // Inside the segment, the rounding of t may decide whether the normal is zero.
+            // If t is inside the segment, rounding of t may decide whether the normal is zero.
             doubtful += test::is_zero(truth) ? 0U : 1U;
             EXPECT_TRUE(test::is_zero(truth) || (0 < t && t < 1)) << family.name << " from seed " << kSeed;
           } else {

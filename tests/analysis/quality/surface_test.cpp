@@ -76,12 +76,12 @@ TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itsel
   const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
   EXPECT_EQ(surface.turned_edges.count, 0U);
-  // An edge counts if the windings of its two faces contradict each other.
+  // An edge counts as turned if the windings of its two faces contradict each other.
   EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
 }
 
 TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
-  // Faces 1 and 3 repeat face 0, and face 2 is its back. Face 4 has the same vertex twice and is ignored.
+  // Faces 1 and 3 are copies of face 0, and face 2 is its back. Face 4 uses a vertex twice and is ignored.
   const Surface surface = survey_triangles(4, {0, 1, 2, 1, 2, 0, 0, 2, 1, 2, 0, 1, 0, 0, 1, 1, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 1}));
   EXPECT_EQ(surface.back_to_back, (Found{1, 0}));
@@ -100,8 +100,8 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // The outlines of these polygons cross themselves, so polygons on the same four points are neither copies nor backs
-  // of each other.
+  // The outlines of these polygons cross themselves. Such polygons with the same four points are neither copies nor
+  // backs of each other.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});
@@ -114,7 +114,7 @@ TEST(Surface, edge_that_one_face_has_twice_is_open) {
   EXPECT_EQ(alone.open_edges, (Found{2, 0}));
   EXPECT_EQ(alone.turned_edges, Found{});
   EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
-  // A second face on one side of the edge makes the edge closed. It does not become non-manifold.
+  // A second face on one side of the edge closes the edge on that side. The edge does not count as non-manifold.
   const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
   EXPECT_EQ(both.edges, 4U);
   EXPECT_EQ(both.open_edges.count, 3U);
@@ -126,7 +126,7 @@ TEST(Surface, faces_that_share_a_vertex_are_one_piece) {
   EXPECT_EQ(survey_triangles(9, {0, 1, 2, 3, 4, 5, 5, 7, 2}).pieces, 1U);
 }
 
-// Every corner of a closed mesh gets its own vertex: the mesh has holes between vertices, but not between points.
+// Gives every corner of a closed mesh its own vertex. The mesh then has holes between vertices, but not between points.
 TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
   for (const auto& mesh : {fixtures::icosphere(2), fixtures::box_grid(4)}) {
     std::vector<fixtures::Point> points;
@@ -153,7 +153,7 @@ TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
 }
 
 TEST(Surface, one_end_of_an_edge_that_is_kept_apart_makes_it_a_seam) {
-  // The edge joins the points 0 and 1. Vertex 4 is a copy of one of the two.
+  // The edge joins points 0 and 1. Vertex 4 is a copy of either vertex 0 or vertex 1.
   const Topology low = fixtures::make_triangles(5, {0, 1, 2, 1, 4, 3}),
                  high = fixtures::make_triangles(5, {0, 1, 2, 4, 0, 3});
   EXPECT_EQ(survey(low, {{0, 1, 2, 3, 0}, 4}).seam_edges, (Found{1, 0}));
@@ -167,7 +167,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// Finds the same numbers independently, with maps and sets over edges and faces.
+// Counts the same things independently, with maps and sets of edges and faces.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();
@@ -181,7 +181,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
       points.count += is_new ? 1U : 0U;
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::size_t>> edges;
-    std::map<Corners, std::vector<std::size_t>> faces;  // keyed by the smallest of all rotated and reversed outlines
+    std::map<Corners, std::vector<std::size_t>> faces;  // the key is the smallest of all rotated and reversed outlines
     std::set<std::uint32_t> used;
     std::size_t repeating = 0, pairs = 0;
     std::vector<std::set<std::uint32_t>> pieces;
@@ -229,7 +229,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     RC_ASSERT(surface.unreferenced.count == topology.vertex_count() - used.size());
     RC_ASSERT(surface.repeating_faces.count == repeating);
     RC_ASSERT(surface.pieces == pieces.size());
-    // Each later face on the same points is either a copy of the first face, or the first face with the other winding.
+    // Each later face with the same points is a copy of the first face or its back.
     RC_ASSERT(surface.doubled_faces.count <= pairs);
     RC_ASSERT(surface.doubled_faces.count + surface.back_to_back.count >= pairs);
   });

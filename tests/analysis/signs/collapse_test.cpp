@@ -1,4 +1,4 @@
-// Compares the times at which faces collapse with polynomials over integers of any size.
+// Compares the times at which faces collapse with the roots of polynomials whose coefficients are integers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -18,7 +18,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// Returns the components of n(t), from positions alone.
+// Returns the components of n(t) as polynomials, computed from positions alone.
 std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::size_t face) {
   const auto vertices = segment.topology->face(face);
   std::array<test::WholeVector, 4> values;
@@ -33,7 +33,8 @@ std::array<WholePolynomial, 3> normal_polynomials(const Segment& segment, std::s
 
 bool is_unit(const Vec3d& v) { return std::fabs(length(v) - 1) < 1e-14; }
 
-// Tells whether each component of a direction has the sign of n's component at t, or is almost zero.
+// Tells whether the components of a direction have the signs of the components of n(t). Components of the direction
+// that are almost zero do not count.
 bool points_along(const Vec3d& direction, const std::array<WholePolynomial, 3>& n, double t) {
   const std::array<double, 3> components{direction.x, direction.y, direction.z};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -74,8 +75,8 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
       if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
     if ((starts || ends) && one.turns_over) return "turns over at an end";
-    // If all components are multiples of one linear polynomial, n has opposite directions on the two sides of its zero;
-    // otherwise the limit of the direction is the slope.
+    // If all components are multiples of one linear polynomial, n(t) has opposite directions on both sides of its zero.
+    // Otherwise, the limit of the direction at the zero is the derivative.
     const std::array<int, 3> slopes =
         common.is_linear()
             ? std::array<int, 3>{common.slope_at_root(n[0]), common.slope_at_root(n[1]), common.slope_at_root(n[2])}
@@ -88,7 +89,7 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  // Two zeros with no double between them count as one zero.
+  // Two zeros count as one if no double is between them.
   return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 
@@ -157,7 +158,7 @@ TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over)
 TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
   const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
   EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
-  // At both ends, the corner is out of the plane by 2^-149, the smallest float.
+  // At both ends, the third corner is 2^-149 (the smallest float) above the plane of motion.
   const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
   EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }

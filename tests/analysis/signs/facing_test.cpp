@@ -1,4 +1,5 @@
-// Compares sides of faces over time with polynomials over integers of any size.
+// Compares the sides that faces show over time with the signs of polynomials whose coefficients are integers of any
+// size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -25,8 +26,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// Each of these functions returns a vector in integers, in units of 2^-1074: the first for doubles, the second for
-// floats.
+// The next two functions return a vector of doubles, and a vector of floats, as integers in units of 2^-1074.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -39,13 +39,15 @@ test::WholeVector whole(const Vec3d& v) {
 }
 test::WholeVector whole(const Vec3f& v) { return whole(to_double(v)); }
 
-// Returns n(t) . w(t) from positions alone, by interpolation at t = -1, 0, 1 and 2, where the corners are integers.
+// Returns the polynomial n(t) . w(t), computed from positions alone: its values at t = -1, 0, 1 and 2, where the
+// corners are integers, determine it.
 WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
   const auto vertices = segment.topology->face(face);
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    // The times are fractions of two durations. Multiplying by both durations makes the times integers.
+    // The local times of the viewer are fractions with two different denominators. Multiplying by both makes the times
+    // integers.
     const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
     const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
     const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
@@ -63,14 +65,14 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
 
 int sign_of(Side side) { return static_cast<int>(side); }
 
-// Describes the fault of the changes of sides of one face, or returns "".
+// Checks the changes of side that the library found for one face. Describes the first fault, or returns "".
 std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Random& random) {
   if (f.is_zero()) return facing.count == 0 && facing.side == Side::kNone ? "" : "zero throughout";
   const std::size_t roots = f.count_roots();
   std::size_t inside = 0;
   double last = -1;
   int side = facing.count == 0 ? sign_of(facing.side) : 0;
-  std::vector<std::pair<double, int>> parts = {{0, side}};  // the times from which on the sign is known, with the sign
+  std::vector<std::pair<double, int>> parts = {{0, side}};  // times from which on the sign is known, with this sign
   for (const FacingChange& change : facing.changes()) {
     if (last > change.lower || change.lower > change.upper) return "not ascending";
     if (change.upper - change.lower > kWidestBracket) return "a wide bracket";
@@ -79,7 +81,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
       ++inside;
     } else {
       const int below = f.sign_at(change.lower), above = f.sign_at(change.upper);
-      // A root that is a double has its own bracket, and another root may follow before the next double.
+      // A root that is exactly a double has its own bracket. Another root may follow before the next double.
       const bool follows_a_root = below == 0 && change.lower == last;
       if (below == 0 && change.lower > 0 && !follows_a_root) return "lower end is a root";
       const bool crosses = below * above < 0;
@@ -93,7 +95,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
     last = change.upper;
   }
   if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
-  // Signs are checked exactly at many instants, including instants close to the brackets.
+  // Checks the sign exactly at many instants, some of which are close to the brackets.
   const std::size_t times = test::wanted_times(random);
   for (std::size_t i = 0; i < times; ++i) {
     double t = random.uniform(0, 1);
@@ -113,7 +115,8 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   return "";
 }
 
-// Makes a viewer. Its place is usually not a float, or it is a place from which the face is edge-on at a simple t.
+// Makes a viewer. Usually, the coordinates of its place are not floats. In some cases, the face is seen edge-on from
+// there at a simple t.
 View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto vertices = segment.topology->face(face);
   const Vec3d a = to_double(segment.from[vertices[0]]), b = to_double(segment.to[vertices[1]]),
@@ -135,7 +138,7 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       return View::of_direction(lattice());
     case 1:
       return View::of_direction(somewhere(1));
-    case 2:  // along an edge, so that the face is edge-on at t = 1
+    case 2:  // looks along an edge, so the face is edge-on at t = 1
       return View::of_direction(clamped(c - b));
     case 3:
       return View::of_eye(lattice());
@@ -145,18 +148,18 @@ View some_view(const Segment& segment, std::size_t face, test::Random& random) {
       return View::of_eye(a);
     case 6:
       return View::of_moving_eye(lattice(), lattice());
-    case 7: {  // a component far below the smallest float
+    case 7: {  // one component is far below the smallest float
       const Vec3d p = somewhere(1), q = lattice();
       return View::of_direction({std::ldexp(p.x, -static_cast<int>(random.below(1000))), q.y, q.z});
     }
     case 9:
-    case 10: {  // the viewer moves on a part of its path, whose ends need not be doubles
+    case 10: {  // the segment is a part of the viewer's path, and its ends need not be doubles
       const double before = static_cast<double>(random.below(9)), here = 1 + static_cast<double>(random.below(9)),
                    all = before + here + static_cast<double>(random.below(9));
       const Vec3d p = random.below(2) == 0 ? lattice() : clamped(a + somewhere(1)), q = somewhere(3);
       return View::of_moving_eye(p, q, LocalTime::between(0, before, all), LocalTime::between(0, before + here, all));
     }
-    case 8:  // the eye is closer to a corner than any float
+    case 8:  // the eye is closer to a corner than a float can be
       return View::of_eye(a + std::ldexp(1.0, -static_cast<int>(random.below(300))) * somewhere(1));
     default:
       return View::of_moving_eye(clamped(a + somewhere(1)), clamped(c + somewhere(1)));
@@ -194,7 +197,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The function may answer "undecided" only if there is a root.
+        // Only if there is a root may the function return kBoth, which also means "undecided".
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -242,7 +245,7 @@ TEST(Facing, a_face_among_others_has_the_bits_of_the_face_alone_on_every_instruc
   for (const std::size_t count : {0U, 1U, 2U}) EXPECT_GT(faces_by_changes[count], 30U) << count;
 }
 
-// Returns the exact value of a polynomial in Bernstein form.
+// Returns the exact value of a polynomial, given its Bernstein coefficients.
 exact::Rational exact_value(const std::vector<double>& p, double at) {
   std::vector<exact::Rational> row(p.begin(), p.end());
   const exact::Rational t(at), s = 1 - t;
@@ -253,7 +256,7 @@ exact::Rational exact_value(const std::vector<double>& p, double at) {
 }
 
 TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
-  // The coefficients have no error here, so only the rounding of the search itself could lead to wrong brackets.
+  // The coefficients have no errors here, so only rounding in the search itself could make a bracket wrong.
   constexpr std::size_t kBlocks = 200;
   fixtures::Random random(4711);
   std::size_t found = 0;
@@ -262,7 +265,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // In every fourth lane, an end value is so small that its sign is barely certain.
+        // In every fourth lane, an end value is so small that its sign is hardly certain.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
@@ -282,13 +285,13 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
   EXPECT_GT(found, kBlocks * kFacingBlock / 2);
 }
 
-// Makes a triangle in the plane z = 0 whose corner c moves as given.
+// Makes a triangle in the plane z = 0 whose corner c moves from `from` to `to`.
 Motion moving_corner(const fixtures::Point& from, const fixtures::Point& to) {
   return fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, from}, {{0, 0, 0}, {1, 0, 0}, to});
 }
 
 TEST(Facing, a_face_that_is_hidden_at_both_ends_may_be_seen_between) {
-  // n(t) . z = (1 - 4 t)(3 - 4 t): the face shows front, back, front to a viewer above.
+  // n(t) . z = (1 - 4 t)(3 - 4 t), so a viewer above sees the front, then the back, then the front again.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
                                               {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
   const Facing below = find_facing(motion.segment(0), 0, View::of_direction({0, 0, -1}));
@@ -318,7 +321,7 @@ TEST(Facing, a_face_that_is_hidden_at_both_ends_may_be_seen_between) {
 }
 
 TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
-  // n(t) . z = (1 - 2 t)^2 touches zero at t = 1/2.
+  // n(t) . z = (1 - 2 t)^2 is zero only at t = 1/2 and does not change its sign.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {-1, 0, 0}, {0, -1, 0}});
   const Facing facing = find_facing(motion.segment(0), 0, View::of_direction({0, 0, 1}));
@@ -330,7 +333,8 @@ TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
 }
 
 TEST(Facing, an_eye_may_pass_the_plane_of_a_face_three_times) {
-  // The face turns over twice while the eye falls through its plane, so that f is a cubic with three roots.
+  // The face turns over twice while the eye moves down through its plane. The polynomial is then a cubic with three
+  // roots.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
                                               {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
   const Facing facing = find_facing(motion.segment(0), 0, View::of_moving_eye({0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}));
@@ -372,7 +376,7 @@ TEST(Facing, time_that_runs_back_mirrors_the_changes) {
   EXPECT_GT(changes, 500U);
 }
 
-// Makes triangles over a grid, each vertex of which goes up or down on its own.
+// Makes a grid of triangles. Each vertex moves up or down independently.
 Motion crumpling_grid(std::uint32_t size) {
   test::Random random(11);
   std::vector<fixtures::Point> from, to;
@@ -390,7 +394,7 @@ Motion crumpling_grid(std::uint32_t size) {
   return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
 }
 
-// Compares the faces at every edge at instants that are outside of all brackets.
+// Compares the sides of the two faces at every edge, at instants that are outside of all brackets.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
   const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);
@@ -413,7 +417,8 @@ TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
       ++open;
       EXPECT_LT(signs[one.faces[0]] * signs[one.faces[1]], 0);
     }
-    // The number of edges with different sides equals a count with a map of edges.
+    // The test counts the edges whose faces show different sides with a map of edges. The library must find the same
+    // number.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<int>> edges;
     for (std::size_t f = 0; f < faces; ++f) {
       const auto face = motion.topology.face(f);

@@ -16,7 +16,8 @@ std::vector<ControlNormals> normals_of(const Motion& motion) {
   return normals;
 }
 
-// Returns a curve along z with the coefficients of a scalar quadratic in powers of t, plus a constant vector.
+// Returns a curve along z. Its length is a quadratic with the coefficients a0, a1 and a2 of 1, t and t^2. The vector
+// `beside` is added to the curve.
 ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}) {
   const auto at = [&](double z) { return beside + Vec3d{0, 0, z}; };
   return {at(a0), at(a0 + a1 / 2), at(a0 + a1 + a2)};
@@ -25,7 +26,8 @@ ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}
 ControlNormals with_roots(double first, double second) { return along_z(first * second, -(first + second), 1); }
 
 TEST(NearCollapse, vertex_that_crosses_the_opposite_edge_turns_the_face_over_then) {
-  // Vertices a and b rest, and c moves in the plane from y = when to y = when - 1, so the face collapses at t = when.
+  // Vertices a and b rest. Vertex c moves in the plane from y = when to y = when - 1, so the face collapses at t =
+  // when.
   for (const float when : {0.001F, 0.1F, 0.25F, 0.5F, 0.75F, 0.999F}) {
     const double start = when, end = static_cast<double>(when) - 1;
     const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 2}, {1, 0, 2}, {0.25, start, 2}},
@@ -56,7 +58,8 @@ TEST(NearCollapse, mirror_image_turns_over_half_way) {
   }
 }
 
-// If a face moves in a plane, n(t) has one component. Its roots follow from the quadratic formula in long double.
+// If a face moves in a plane, n(t) has only one component. The expected roots come from the quadratic formula in long
+// double.
 TEST(NearCollapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   Motion motion = fixtures::large_soup(2000, 21);
   for (Motion::Keyframe& keyframe : motion.keyframes) {
@@ -115,7 +118,7 @@ TEST(NearCollapse, two_zeros_are_two_and_very_near_ones_are_one_that_comes_back)
 }
 
 TEST(NearCollapse, a_miss_counts_below_the_share_only) {
-  // n(t) = (d, 0, 2 t - 1), whose largest control normal is 1.
+  // n(t) = (d, 0, 2 t - 1). The length of its largest control normal is about 1.
   EXPECT_EQ(find_near_collapses(along_z(-1, 2, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
   EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
   EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {kCollapseShare / 2, 0, 0})).count, 1U);
@@ -131,7 +134,7 @@ TEST(NearCollapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) 
        {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
     for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
       const NearCollapses found = find_near_collapses(normals);
-      // The search finds few collapses, and at the instant of each the reference normal is nearly zero.
+      // The search finds at most one collapse, and at its time the normal must be nearly zero.
       for (std::size_t i = 0; i < found.count; ++i)
         EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
       EXPECT_LE(found.count, 1U);
@@ -152,7 +155,7 @@ TEST(NearCollapse, random_faces_in_space_do_not_collapse) {
     EXPECT_EQ(find_near_collapses(normals).count, 0U);
 }
 
-// All directions are within 90 degrees of one axis, but |n(t)| may become arbitrarily small.
+// Draws control normals within 90 degrees of one axis, so that n(t) cannot be zero but may become very short.
 TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_never_wrong) {
   fixtures::Random random(20261125);
   std::size_t proven = 0, near = 0;
@@ -162,7 +165,7 @@ TEST(NearCollapse, a_glance_proves_that_almost_every_normal_stays_long_and_is_ne
       const auto [x, y, unused] = random.in_cube(1);
       return scale * Vec3d{x, y, z};
     };
-    // In half of the cases the end normals are nearly opposite.
+    // In half of the cases, the end normals are nearly opposite.
     ControlNormals c{vector(least), vector(least), vector(least)};
     if (i % 2 == 0) c.n1 = {-c.n0.x, -c.n0.y, c.n0.z};
     if (i % 4 == 0) c.m = {(i % 8 == 0 ? 1e-3 : 0) * c.m.x, 0, c.n0.z};

@@ -23,7 +23,7 @@ namespace {
 
 using namespace std::string_literals;
 
-// A kind of file: the bytes with which its files begin by its specification, and words that the message must have.
+// A kind of file: the first bytes that its specification demands, and the words that the message about it must have.
 struct Sample {
   std::string bytes, kind;
 };

@@ -580,7 +580,7 @@ TEST(Audit, stored_normals_that_add_up_to_zero_cannot_be_lit_and_are_off_by_180_
 }
 
 TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
-  // With weights of 3e38, deltas of 2 become infinite, and infinities of opposite signs add up to NaN.
+  // Weights of 3e38 make deltas of 2 infinite, and infinities of opposite signs add up to NaN.
   for (const bool has_opposite : {false, true}) {
     ShadedMesh mesh = hinge();
     mesh.targets[0].normals.assign(12, 2);

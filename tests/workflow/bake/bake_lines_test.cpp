@@ -236,7 +236,7 @@ TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
 }
 
 TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
-  // With 16 samples for each of 300 pieces, the animation has more samples than the fit uses.
+  // The animation has more samples than the fit uses: 16 for each of 300 pieces.
   GltfBuilder builder = test::hills_document(3, 8);
   test::Hills random(9);
   std::vector<float> times, values;

@@ -210,7 +210,7 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
   for (const BakeEncoding encoding : {BakeEncoding::kExact, BakeEncoding::kEndpoint, BakeEncoding::kHarmless}) {
     // The callback for progress shortens the input file, before or after the bake has written some arrays.
     for (const std::size_t step : {0U, 2U, 4U, 12U}) {
-      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // these encodings have read everything before
+      if (encoding != BakeEncoding::kHarmless && step == 12) continue;  // by then, such bakes have read everything
       folder.write("walk.pc2", whole);
       Result<Input> input = open_input(options);
       ASSERT_TRUE(input.ok());

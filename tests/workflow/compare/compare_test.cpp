@@ -405,7 +405,7 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// Where the normals of faces cancel, a vertex is judged only if it has a normal. Integers decide whether it has.
+// If the normals of its faces cancel, a vertex is judged only if it has a normal. Integers decide whether it has.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;

@@ -1,4 +1,4 @@
-// Compares sums of products on every instruction set, bit by bit, with three nested loops.
+// Compares sums of products with three nested loops, bit by bit, on every instruction set.
 #include "analysis/fits/kernels/products.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Checks that sums of normals in many poses, and the errors of these normals, have the bits of plain loops on every
-// instruction set.
+// Checks sums of normals in many poses, and the errors of these normals. On every instruction set, they must have the
+// same bits as plain loops.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #include <gtest/gtest.h>

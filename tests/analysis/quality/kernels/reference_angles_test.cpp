@@ -1,5 +1,5 @@
-// Checks that angles and reference normals computed in lanes have the bits of the scalar functions on every instruction
-// set, and that angles agree with long double.
+// Checks angles and reference normals that the kernel computes in SIMD lanes. On every instruction set, they must have
+// the same bits as the scalar functions. Also compares angles with long double.
 #include "analysis/quality/kernels/reference_angles.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 struct Pairs {
   std::vector<Vec3d> exact;
-  std::vector<float> shown;  // packed
+  std::vector<float> shown;  // three floats per normal
 
   void add(const Vec3d& n, const Vec3f& u) {
     exact.push_back(n);
@@ -31,7 +31,8 @@ struct Pairs {
 
 Vec3d to_vector(const fixtures::Point& p) { return {p[0], p[1], p[2]}; }
 
-// Makes pairs with angles from 0 to 180 degrees and lengths from 1e-60 to 1e60, and vectors without a direction.
+// Makes pairs of vectors with angles from 0 to 180 degrees and lengths from 1e-60 to 1e60, and pairs with vectors of
+// length zero.
 Pairs hard_pairs() {
   fixtures::Random random(24);
   Pairs pairs;

@@ -1,4 +1,5 @@
-// Checks that the angles that an audit computes in lanes have the bits of core/vec3.h on every instruction set.
+// Checks the angles that an audit computes in SIMD lanes. On every instruction set, they must have the same bits as the
+// functions of core/vec3.h.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +27,7 @@ TEST(TrianglesInMotion, have_the_bits_of_vector_areas_of_interpolated_positions_
     const Segment segment = motion.segment(0);
     const auto corners = motion.topology.corners();
     TrianglesInMotion triangles;
-    triangles.gather(segment.to, segment.from, corners.first(3));  // leaves data of another segment in the tiles
+    triangles.gather(segment.to, segment.from, corners.first(3));  // the tiles then hold data of another segment
     triangles.gather(segment.from, segment.to, corners);
     std::vector<TrianglesInMotion::Normal> normals;
     for (const double t : {0.0, 0.35, 1.0}) {
@@ -100,7 +101,8 @@ TEST(ShownAngles, have_the_bits_of_one_angle_after_the_other_on_every_instructio
     ends[i] = i % 20 < 2 ? -starts[i] : unit(starts[i] + random.uniform(0, 1) * unit(vector()));
     sums[i] = i % 15 == 0 ? Vec3d{} : vector();
     const double size = max_abs(sums[i]);
-    // Some elements have no normal, some normals are hardly more than rounding error, and some elements are not drawn.
+    // Some elements have no normal, some normals are hardly more than rounding error, and some elements have no face
+    // that is drawn.
     put(from, i, starts[i], i % 4 == 0 ? 2 * size : 0.3 * size);
     put(to, i, ends[i], 0);
     put(right, i, sums[i], i % 6 == 0 ? 1e14 * size : i % 8 == 0 ? 4 * size : size);

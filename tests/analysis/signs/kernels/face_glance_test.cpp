@@ -1,5 +1,5 @@
-// Tests the glance, a cheap check of faces. Compares its claims with long double and with the search for collapses, on
-// every instruction set.
+// Tests the glance, a cheap check that recognises faces that are far from a collapse. Compares its claims with long
+// double and with the search for collapses, on every instruction set.
 
 #include "analysis/signs/kernels/face_glance.h"
 
@@ -20,7 +20,7 @@
 namespace chronormal::face_glance_test {
 namespace {
 
-constexpr double kAngle = 0.4;  // radians
+constexpr double kAngle = 0.4;  // in radians
 
 std::vector<EdgedTile> tiles_of(const Segment& segment) {
   const std::size_t faces = segment.topology->face_count();
@@ -52,7 +52,7 @@ long double angle_of(const Vec3d& a, const Vec3d& b) {
   return std::atan2(std::sqrt(x * x + y * y + z * z), along);
 }
 
-// Checks every claim about the faces that are not unusual. Returns the number of these faces.
+// Checks every claim of the glance about faces that it calls usual. Returns the number of these faces.
 std::size_t check_usual(const Segment& segment, const GlanceLimits& limits, const char* name) {
   std::size_t usual = 0;
   const std::vector<EdgedTile> tiles = tiles_of(segment);
