@@ -16,8 +16,7 @@ inline constexpr char kHidden = '\x01';
 
 /// A bracket, a comma, a colon, a name or a scalar, with the blanks before it. `pointer` is the JSON pointer of the
 /// value that the token belongs to. Brackets belong to their own value; commas, names and colons belong to the value
-/// after them. If a later member of the same object has the same name, the pointer of the earlier member has kHidden in
-/// front of the name.
+/// after them. If an object has a name twice, the pointer of the earlier member has kHidden in front of the name.
 struct JsonToken {
   std::string pointer;
   std::string_view text;

@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 class CompareTruth : public testing::Test {
  protected:
   // Writes `frames` OBJ files of two triangles. From file to file, both triangles turn by `angle` radians about an axis
-  // outside of them.
+  // that goes through neither of them.
   void write_turn(double angle, int frames, bool with_velocities = false) {
     for (int frame = 0; frame < frames; ++frame) {
       std::ostringstream text;

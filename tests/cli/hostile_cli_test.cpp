@@ -174,7 +174,8 @@ TEST_F(HostileCli, writing_beyond_the_limit_of_the_shell_is_an_error_and_leaves_
 }
 
 TEST_F(HostileCli, signals_that_are_ignored_stay_ignored) {
-  // A shell ignores SIGINT for background jobs. It ignores SIGHUP too if `trap` says so, as the command nohup does.
+  // A shell ignores SIGINT for background jobs. The shell also ignores SIGHUP if `trap` says so, as the command nohup
+  // does.
   const ProcessResult result =
       run("sample --sample twist --times 0:0.001:1 -o out.npy & sleep 0.1; kill -INT $!; kill -HUP $!; wait $!",
           "trap '' HUP; ");
@@ -392,7 +393,7 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
 TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
   folder_.write("many.glb", grid_of_targets(60, 5));
   expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
-  // Such a large expansion is allowed here. The file has no normals to judge, which is another error.
+  // The limit permits the expansion here. The file has no normals to judge, which gives another error.
   expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing could be judged"});
 }
 

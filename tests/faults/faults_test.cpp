@@ -105,8 +105,8 @@ struct Outcome {
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
 // Tells whether the program is compiled with a sanitizer. The fault layer and the address sanitizer both replace
-// malloc, so these tests cannot run with such a program. They are then skipped with a message; the tests of the
-// sanitized build leave them out.
+// malloc, so the tests of this file skip such a program. The tests of the sanitized build do not run these tests at
+// all.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {

@@ -1,5 +1,5 @@
-// A program that calls only the function of plugin.cpp. It writes a file with three vertices, and the plugin counts
-// them.
+// A program that calls only the function of plugin.cpp. The program writes a file with three vertices, and the plugin
+// counts them.
 #include <cstdio>
 
 extern "C" long vertices_of(const char* path);

@@ -1,4 +1,5 @@
-// A shared library that reads a file with chronormal, like a plugin of a game engine. It exports one C function.
+// A shared library that reads a file with chronormal, like a plugin of a game engine. The library exports one C
+// function.
 #include "chronormal/chronormal_io.h"
 
 extern "C" __attribute__((visibility("default"))) long vertices_of(const char* path) {

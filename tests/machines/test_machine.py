@@ -113,8 +113,8 @@ class Machine(unittest.TestCase):
         os.close(terminal)
         if not ended:
             os.waitpid(pid, 0)
-        # Wine's console hides the cursor, and writes blanks by erasing cells and moving the cursor. It also ends each
-        # line twice.
+        # Wine's console hides the cursor, and writes blanks by erasing cells and moving the cursor. The console also
+        # ends each line twice.
         shown = re.sub("\x1b\\[\\?25[lh]", "", text.decode(errors="replace"))
         return re.sub("\x1b\\[K\x1b\\[(\\d*)C", lambda move: " " * int(move[1] or 1), shown)
 

@@ -225,8 +225,8 @@ RC_GTEST_PROP(Theorems, translated_mesh_has_the_same_normals_bit_for_bit, ()) {
   RC_ASSERT(control_normals(moved) == control_normals(motion));
 }
 
-// The rotation by a quaternion of small integers, multiplied by the squared length of the quaternion. It maps integers
-// to integers.
+// The rotation by a quaternion of small integers, multiplied by the squared length of the quaternion, so that the
+// matrix maps integers to integers.
 using IntegerMatrix = std::array<std::array<int, 3>, 3>;
 
 IntegerMatrix integer_rotation(int w, int x, int y, int z) {

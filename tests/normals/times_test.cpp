@@ -197,8 +197,8 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the C interface to `curves`, the ways of C++ to compare with, if both interfaces have the same
-// elements. Otherwise adds them to `all` as a separate group.
+// Adds the ways of the C interface. If C and C++ have the same elements, adds these ways to `curves`, which has the
+// ways of C++. Otherwise, adds them to `all` as a separate group.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // in the C interface, each corner has a separate normal

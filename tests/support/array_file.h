@@ -1,5 +1,5 @@
-/// Reads .npy and .npz files by a parser that shares no code with chronormal. It accepts only files in the form that
-/// chronormal writes.
+/// Reads .npy and .npz files by a parser that shares no code with chronormal. The parser accepts only files in the form
+/// that chronormal writes.
 #ifndef CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_ARRAY_FILE_H_
 

@@ -1,4 +1,4 @@
-/// Makes motions for tests from a seed. They have the same bits with every compiler and standard library.
+/// Makes motions for tests from a seed. The motions have the same bits with every compiler and standard library.
 ///
 /// Random numbers come directly from std::mt19937_64, whose output the C++ standard prescribes. Distributions of the
 /// standard library are not used, since the standard does not prescribe their algorithms. Coordinates that are computed
@@ -238,9 +238,9 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes needles that are as thin as integer coordinates of 20 bits allow. Two edges have a length of about 2^20.
-/// Projected onto one of the coordinate planes, their coordinates are integers and the edges span an area of 1. If
-/// in_plane, the triangles are in that plane; otherwise they are tilted against it.
+/// Makes needles that are as thin as integer coordinates of 20 bits allow. Two edges have a length of about 2^20. In
+/// one of the coordinate planes, the coordinates of the edges are integers, and the edges span an area of 1. If
+/// in_plane, the triangles are in that plane; otherwise the triangles are tilted against it.
 [[nodiscard]] inline Motion thinnest_soup(bool in_plane, std::size_t face_count = 1000, std::uint64_t seed = 13) {
   Random random(seed);
   const auto some = [&random] { return static_cast<std::int64_t>((1U << 19U) + random.below(1U << 19U)); };

@@ -48,7 +48,7 @@ namespace chronormal::test {
 }
 
 /// Adds a buffer view with `count` elements of `size` bytes that exist only in compressed form. The extension demands a
-/// fallback buffer for the uncompressed bytes. It is buffer 1, and has no URI.
+/// fallback buffer for the uncompressed bytes. The fallback buffer is buffer 1, and has no URI.
 inline std::size_t add_meshopt_view(GltfBuilder& builder, const std::string& coded, std::size_t count, std::size_t size,
                                     const char* mode, const char* filter = nullptr) {
   builder.buffer.resize((builder.buffer.size() + 3) / 4 * 4, '\0');

@@ -1,5 +1,6 @@
-/// A small viewer of glTF files that shares no code with the library. It reads a GLB file, plays weight tracks by
-/// appendix C of the glTF specification, adds up targets in float32, and computes the true normals from the positions.
+/// A small viewer of glTF files that shares no code with the library. The viewer reads a GLB file, plays weight tracks
+/// by appendix C of the glTF specification, adds up targets in float32, and computes the true normals from the
+/// positions.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLTF_PLAYER_H_
 

@@ -1,6 +1,6 @@
 /// Makes small motions whose normals are hard to compute in double, and some ordinary motions.
 ///
-/// The motions depend only on random numbers. They are the same with every compiler, except for the last bits of
+/// The motions depend only on random numbers, and are the same with every compiler, except for the last bits of
 /// std::pow.
 #ifndef CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
 #define CHRONORMAL_TESTS_SUPPORT_HARD_MOTIONS_H_
@@ -155,7 +155,7 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes an ordinary triangle of any scale and at any distance from the origin. It moves by up to twice its size.
+/// Makes an ordinary triangle of any scale and at any distance from the origin, which moves by up to twice its size.
 [[nodiscard]] inline MovingTriangle ordinary(Random& random) {
   MovingTriangle triangle;
   const double size = random.below(3) == 0 ? random_decade(random, -44, 38) : 1;
@@ -280,9 +280,9 @@ template <class Make>
 }
 
 /// Makes a fan of faces around vertex 0 whose normals nearly cancel and which hardly move. The rim has integer
-/// coordinates in a plane, and returns along the same points, so it encloses no area. The height of the rim above the
-/// plane is a small integer times a power of two. It is so small that double loses it when it is added to the height of
-/// vertex 0.
+/// coordinates in a plane, and returns along the same points, so the rim encloses no area. The height of the rim above
+/// the plane is a small integer times a power of two. This height is so small that double loses it in a sum with the
+/// height of vertex 0.
 [[nodiscard]] inline Motion cancelling_star(Random& random) {
   const std::size_t half = 2 + random.below(6), across = random.below(3);
   const auto small = [&random] { return static_cast<double>(random.below(15)) - 7; };

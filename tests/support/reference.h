@@ -150,8 +150,8 @@ template <class S>
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<Real, N>> slerp(const std::array<Real, N>& from, const std::array<Real, N>& to,
                                                        Real t) {
-  // Computes half the angle from the lengths of the difference and of the sum. This is accurate for small and large
-  // angles, and needs no cross product, which does not exist in four dimensions.
+  // Computes half the angle from the lengths of the difference and of the sum of the vectors. This method is accurate
+  // for small and large angles, and needs no cross product, which does not exist in four dimensions.
   const Real theta = 2 * std::atan2(length(subtract(to, from)), length(add(to, from)));
   if (theta > kPi - kNearAntipodal) return std::nullopt;
   if (theta < kTinyAngle) return normalised(add(scaled(1 - t, from), scaled(t, to)));
@@ -319,7 +319,8 @@ template <std::size_t N>
   return Frame{tangent, cross(normal, tangent), normal};
 }
 
-/// Returns the matrix M of eqs. 7 and 8. It maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t = 1.
+/// Returns the matrix M of eqs. 7 and 8, which maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t =
+/// 1.
 [[nodiscard]] inline std::optional<Matrix<4>> triangle_map(const Triangle& triangle, const Vector& normal0,
                                                            const Vector& normal1) {
   const auto homogeneous = [](const std::array<Vector, 3>& corners, const Vector& normal) {
@@ -503,9 +504,9 @@ struct SchemeName {
 /// Returns the unit normal that a scheme must give at t, or nothing if the scheme is not defined there or `name` is
 /// unknown.
 ///
-/// Some schemes search for a number. For these, `observed_middle` is the result of the tested scheme at t = 1/2. It
-/// determines the number, and thereby the result at every other t. Without `observed_middle`, the function returns
-/// nothing for such schemes. optimal_circle_error() and scaled_linear_error() test the search itself.
+/// Some schemes search for a number. For these schemes, `observed_middle` is the result of the tested scheme at t =
+/// 1/2, which determines the number, and thereby the result at every other t. Without `observed_middle`, the function
+/// returns nothing for such schemes. optimal_circle_error() and scaled_linear_error() test the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},

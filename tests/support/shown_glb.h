@@ -1,6 +1,6 @@
-/// A viewer for tests of baked sequences. It accepts only a GLB file with one animation and one morphing mesh, whose
-/// only primitive has targets with positions and normals. It throws for any other file. Weights are computed in double,
-/// and normals are added up in float32, as in viewers.
+/// A viewer for tests of baked sequences. The viewer accepts only a GLB file with one animation and one morphing mesh,
+/// whose only primitive has targets with positions and normals. For any other file, the viewer throws. Weights are
+/// computed in double, and normals are added up in float32, as in viewers.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHOWN_GLB_H_
 

@@ -1,5 +1,5 @@
-/// A skin for a morphing mesh. It can be written as JSON and bytes of a glTF file. Its oracle computes its effect in
-/// long double, by loops that share no code with src/.
+/// A skin for a morphing mesh. The skin can be written as JSON and bytes of a glTF file. Its oracle computes the effect
+/// of the skin in long double, by loops that share no code with src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 
@@ -34,7 +34,7 @@ struct Rows {
   }
 };
 
-/// Returns the product of two matrices. It applies matrix b first, and then matrix a.
+/// Returns the product of two matrices, which applies matrix b first, and then matrix a.
 [[nodiscard]] inline Rows after(const Rows& a, const Rows& b) {
   Rows result;
   for (std::size_t r = 0; r < 3; ++r) {

@@ -73,9 +73,9 @@ export class ExactNormals {
     return sums;
   }
 
-  // Returns for each primitive null if it is flat, and otherwise {directions, lengths}. `directions` has the true
-  // normal of each vertex, whose length is not 1. `lengths` has the length of the sum of cross products at the vertex.
-  // Both are zero for vertices in no triangle of the primitive.
+  // Returns for each primitive null if the primitive is flat, and otherwise {directions, lengths}. `directions` has the
+  // true normal of each vertex, whose length is not 1. `lengths` has the length of the sum of cross products at the
+  // vertex. If no triangle of the primitive uses a vertex, both are zero.
   at(weights) {
     const sums = this.sums(weights);
     return this.primitives.map((primitive, p) => {

@@ -81,7 +81,7 @@ function chunk(type, bytes) {
   return Buffer.concat([head, bytes]);
 }
 
-// Makes a GLB file whose positions are the first three numbers of compressed elements. It has a target that moves
+// Makes a GLB file whose positions are the first three numbers of compressed elements, with a target that moves
 // nothing.
 function glbOf(elements, count, componentType, filter) {
   const stream = encoded(elements, count);

@@ -24,9 +24,9 @@ export function moves(mesh) {
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
-// Returns an empty result: {mean, max, where, pairs, excluded, flat, drift}. It is about samples, each of a vertex in a
-// state of a mesh. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded` counts
-// samples without a direction or a triangle. `flat` counts primitives without normals, which viewers shade by
+// Returns an empty result about samples, each of which is a vertex in a state of a mesh: {mean, max, where, pairs,
+// excluded, flat, drift}. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded`
+// counts samples without a direction or a triangle. `flat` counts primitives without normals, which viewers shade by
 // themselves. `drift` is the largest distance between a vertex in `shown` and in `source`, as a share of the size of
 // its mesh.
 function nothing() {

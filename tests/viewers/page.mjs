@@ -1,5 +1,5 @@
-// The entry point of the test page. It gives all viewers the same functions. The page also compares pictures, so that
-// pixels need not leave the page.
+// The entry point of the test page, which gives all viewers the same functions. The page also compares pictures, so
+// that pixels need not leave the page.
 import * as babylon from './babylon_page.mjs';
 import * as filament from './filament_page.mjs';
 import { differenceOfPictures, drawPicture } from './picture.mjs';

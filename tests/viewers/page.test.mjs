@@ -127,8 +127,8 @@ const half = (side, camera) => page.evaluate((right, given) => {
   };
 }, side === 'right', camera);
 
-// Writes a still file: the mesh of another file at some weights, with the exact normals at these weights. It has a
-// target that moves nothing.
+// Writes a still file: the mesh of another file at some weights, with the exact normals at these weights and a target
+// that moves nothing.
 async function writeFrozen(target, source, weights) {
   const io = newIO(), document = await io.read(source), root = document.getRoot();
   const described = (await read(source)).meshes[0], truth = new ExactNormals(described).at(weights);

@@ -19,8 +19,8 @@ export const BOARD_PIXELS = Array.from({ length: BOARD * BOARD }, (_, p) =>
   [p % BOARD, Math.floor(p / BOARD)].map((c) => Math.floor(((c + 0.5) * SIZE.width) / BOARD)));
 
 // Writes a board as a file. `patches` has {normal, deltas} for each square. `normal` is a vector. `deltas` has a vector
-// for each target, or null if the target has no normals; it then has none in any square. `rows` has the weights at the
-// times 0, 1, 2, ...
+// for each target. If a target has no normals, its entry is null in all squares. `rows` has the weights at the times 0,
+// 1, 2, ...
 export function writeBoard(path, patches, rows) {
   const corners = [[0, 0], [1, 0], [1, 1], [0, 1]];
   const places = patches.flatMap((_, p) =>

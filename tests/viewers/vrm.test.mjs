@@ -1,6 +1,6 @@
-// Tests the avatars of docs/viewers.md with the code on that page. An avatar is baked, and three-vrm loads the result.
-// Its expressions set the weights of targets, and a face tracker sets weights by name. This test runs in Node.js;
-// viewers.test.mjs tests the pixels that are drawn with such weights.
+// Tests the avatars of docs/viewers.md with the code on that page. A bake corrects an avatar, and three-vrm loads the
+// result. Expressions of the avatar set the weights of targets, and a face tracker sets weights by name. This test runs
+// in Node.js; viewers.test.mjs tests the pixels that are drawn with such weights.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,6 +1,7 @@
-// Tests peers, processes that share a task; here they are threads. Their samples form one output with the same bytes as
-// from a single process. It appears only when all peers are done. Their audits have the same bytes as from a single
-// process, although each peer processes only its own segments.
+// Tests peers, which are processes that share a task; in this test, threads play the processes. The samples of all
+// peers form one output with the same bytes as from a single process. The output appears only when all peers are done.
+// Audits of peers also have the same bytes as from a single process, although each peer processes only its own
+// segments.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -214,8 +214,9 @@ constexpr std::array<fixtures::Point, 3> kFlat{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}
 constexpr std::array<fixtures::Point, 3> kUpright{{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
 
 TEST(Certificates, meet_an_error_that_is_known_by_hand) {
-  // n(t) = (0, -3t, 1-t), and linear interpolation gives (0, -t, 1-t). The tangent of the angle between them is 2 t
-  // (1-t) / ((1-t)^2 + 3 t^2). It is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3: 30 degrees.
+  // n(t) = (0, -3t, 1-t), and linear interpolation gives (0, -t, 1-t). The tangent of the angle between these two
+  // vectors is 2 t (1-t) / ((1-t)^2 + 3 t^2). The tangent is largest at t = 1 / (1 + sqrt 3), where it is 1 / sqrt 3,
+  // so the largest angle is 30 degrees.
   std::array<fixtures::Point, 3> long_upright = kUpright;
   long_upright[2][2] = 3;
   const ErrorBounds linear = bounds_of("linear", moving(kFlat, long_upright));

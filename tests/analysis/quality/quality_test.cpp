@@ -87,7 +87,7 @@ TEST(Quality, parts_add_up) {
   first.add(second);
   EXPECT_NEAR(first.sum, whole.sum, 1e-15);
   EXPECT_EQ(first.max, whole.max);
-  EXPECT_EQ(first.max_at.element, 2u);  // of equal errors, the first is reported
+  EXPECT_EQ(first.max_at.element, 2u);  // the first of several equal errors
   EXPECT_EQ(whole.max_at.element, 2u);
   EXPECT_EQ(first.count, 4u);
 }

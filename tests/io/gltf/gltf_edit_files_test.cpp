@@ -312,7 +312,7 @@ TEST(GltfEditFiles, failed_write_leaves_the_old_file_and_no_temporary) {
   EXPECT_TRUE(read_whole(path) == source);
   EXPECT_EQ(folder.entry_count(), 1U);
 
-  // The program still has the source mapped into memory while it replaces the source.
+  // The program still has the source file mapped into memory while it replaces this file.
   const std::string expected = bytes_or_error(edit, path);
   ASSERT_TRUE(edit.write(path, true).ok());
   EXPECT_TRUE(read_whole(path) == expected);

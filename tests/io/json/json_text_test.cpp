@@ -144,7 +144,7 @@ TEST(JsonText, change_that_is_not_possible_is_refused_and_changes_nothing) {
   EXPECT_TRUE(json.pointers().empty());
 }
 
-// Makes a random JSON value. It may have blanks, repeated or escaped names, and numbers of all kinds.
+// Makes a random JSON value. The value may have blanks, repeated or escaped names, and numbers of all kinds.
 std::string random_value(std::mt19937& random, int depth) {
   const auto pick = [&](const std::vector<std::string>& from) { return from[random() % from.size()]; };
   const auto blanks = [&] { return pick({"", "", " ", "\n  ", "\r\n", "\t"}); };

@@ -201,7 +201,7 @@ TEST(LocalTime, that_is_a_double_keeps_its_bits) {
   EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
-// A function that computes normals. It writes the normals at t, and returns how many of them are (0, 0, 0).
+// A function that writes the normals at t, and returns how many of them are (0, 0, 0).
 struct Door {
   std::string name;
   std::size_t size;

@@ -160,8 +160,8 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
   }
 }
 
-// The normals of all vertices of a triangle mesh at one t, and the sums of the lengths of the normals that are added.
-// Both are summed face by face, in long double.
+// The normals of all vertices of a triangle mesh at one t, and for each vertex the sum of the lengths of the normals
+// that were added. All sums are made face by face, in long double.
 struct VerticesAt {
   std::vector<std::array<long double, 3>> normals;
   std::vector<long double> lengths;

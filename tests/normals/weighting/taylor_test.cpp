@@ -1,4 +1,4 @@
-// Tests intervals, and Taylor coefficients that are intervals. Both must contain the true values.
+// Tests intervals, and Taylor coefficients that are intervals. Both kinds of intervals must contain the true values.
 
 #include "normals/weighting/taylor.h"
 

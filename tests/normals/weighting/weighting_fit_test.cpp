@@ -295,8 +295,8 @@ TEST(WeightingFit, straight_corners_are_bounded_by_all_weightings) {
 }
 
 TEST(WeightingFit, nearly_straight_corners_are_bounded_more_loosely) {
-  // In random quads, one vertex is near the line through its neighbours. It is displaced from the line either by as
-  // much as rounding to float32 does, or by more.
+  // In random quads, one vertex is near the line through its neighbours. The distance between the vertex and the line
+  // is as small as rounding to float32 makes it, or larger.
   fixtures::Random random(31);
   for (const double off : {1e-7, 1e-3}) {
     for (int round = 0; round < 50; ++round) {

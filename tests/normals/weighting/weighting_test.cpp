@@ -257,8 +257,8 @@ TEST(Weighting, a_corner_at_an_edge_without_length_adds_nothing_by_angle) {
 }
 
 TEST(Weighting, a_corner_at_an_edge_without_length_takes_nothing_from_the_faces_around_it) {
-  // The edge of the quad from vertex 1 to vertex 2 has length zero. It is one of the two edges at corner 1, and one of
-  // the two edges at corner 2.
+  // The edge of the quad from vertex 1 to vertex 2 has length zero. This edge is one of the two edges at corner 1, and
+  // one of the two edges at corner 2.
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 3, 2}};
   const Motion alone = test::still(fixtures::make_triangles(5, {1, 4, 3, 2, 4, 0}), points);
   const Motion both = test::still(fixtures::make_polygons(5, {0, 3, 6, 10}, {1, 4, 3, 2, 4, 0, 0, 1, 2, 3}), points);

@@ -417,7 +417,8 @@ TEST(Audit, authored_offset_names_the_weighting_that_comes_closest) {
 }
 
 TEST(Audit, authored_offset_names_area_where_all_weightings_come_equally_close) {
-  // Two triangles in one plane have the same normal by every weighting. The author's normals are turned away from it.
+  // Two triangles in one plane have the same normal by every weighting. The author's normals are turned away from this
+  // normal.
   ShadedMesh mesh = hinge();
   for (std::size_t v = 0; v < 4; ++v) mesh.normals[3 * v] = 0.6F, mesh.normals[3 * v + 2] = 0.8F;
   const Audit result = audit_of(mesh.file());
@@ -607,8 +608,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   // cancel at vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
-  // vertex 3: zero at weight 1/2, downwards at weight 1
-  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};
+  mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at 1
   MotionError error = audit_of(mesh.file(), {.samples = 3}).error;
   EXPECT_EQ(error.no_normal, 3U);
   EXPECT_EQ(error.unlit, 0U);
@@ -618,7 +618,7 @@ TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_onl
   EXPECT_EQ(error.no_normal, 2U);
   EXPECT_EQ(error.unlit, 1U);
   EXPECT_EQ(error.unlit_at.vertex, 1U);
-  // A viewer cannot light an infinite normal. This counts even where the surface has no normal.
+  // A viewer cannot light an infinite normal, not even where the surface has no normal.
   mesh.normals[11] = 3e38F;
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3e38F};
   error = audit_of(mesh.file(), {.samples = 3}).error;

@@ -33,7 +33,7 @@ void expect_same(const MotionError& a, const MotionError& b) {
   if (a.unlit > 0) expect_same(a.unlit_at, b.unlit_at);
 }
 
-// Runs both kinds of audit and compares them. Returns the number of judged samples.
+// Audits a motion in blocks and then vertex by vertex, and compares both results. Returns the number of judged samples.
 std::size_t expect_same_audits(const Motion& motion, AuditOptions options) {
   const Result<Audit> blocks = audit(motion, {}, options);
   options.keep_errors = true;

@@ -230,7 +230,7 @@ std::array<Real, N> value_at(const std::string& interpolation, const std::vector
   return result;
 }
 
-// A channel of a node. It can be evaluated at any time.
+// A channel of a node, which can be evaluated at any time.
 struct Channel {
   std::string path, interpolation;
   std::vector<float> times, values;
@@ -353,7 +353,8 @@ TEST(SkinnedAudit, bind_pose_gives_the_figures_without_a_skin_and_so_do_turns_an
 
 TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing) {
   // The normal of the folding face goes from (0, 0, 1) to (-1, 0, 0), while vertex 3 renders (0, 0, 1). On the screen,
-  // the joint halves the z of normals. It turns the true normal, (-sin, 0, cos) of the fold angle, towards -x.
+  // the joint halves the z of normals. The true normal, (-sin, 0, cos) of the fold angle, is therefore turned towards
+  // -x.
   const Audit result = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0.5}}}), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const MotionError& error = result.subjects[0].error;

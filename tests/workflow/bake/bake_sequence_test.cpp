@@ -39,7 +39,7 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-// selects a viewer that adds up deltas; otherwise, bakes warn about other viewers
+// A viewer that adds up deltas. If no viewer is named, a bake warns about viewers that do not.
 const std::vector<Viewer> kAddingUp = {kViewers[0]};
 
 // The vertices of each face of a file, and for each vertex the group of vertices that share its normal.
@@ -48,8 +48,8 @@ struct Surface {
   std::vector<std::size_t> group;
 };
 
-// Returns the surface if all edges are smooth: it has the faces of the motion, and vertices that coincide in all
-// keyframes share a normal.
+// Returns the surface if all edges are smooth. The surface has the faces of the motion, and vertices that coincide in
+// all keyframes share a normal.
 Surface smooth_surface(const Motion& motion) {
   Surface surface;
   for (std::size_t f = 0; f < motion.topology.face_count(); ++f) {
@@ -93,7 +93,7 @@ std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, 
 
 struct Judged {
   double mean = 0, max = 0;  // in degrees
-  // numbers of all samples, and of those that are not judged because n is nearly zero
+  // The numbers of all samples, and of the samples that are not judged because n is nearly zero.
   std::size_t count = 0, nearly = 0;
 };
 
@@ -434,7 +434,7 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   expect_exact(glb, smooth_surface(motion));
 }
 
-// In the last segment, elements shrink or appear. The first segment gives no hint of this.
+// In the last segment, elements shrink or appear, of which the first segment gives no hint.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {

@@ -1,6 +1,6 @@
-// Tests the smallest candidate of a bake, whose correction targets only the animations of the file drive. It must keep
-// a tolerance and a limit of bytes. Also tests its guarantees for long files, for files that were baked before, and for
-// primitives that share arrays.
+// Tests the smallest candidate of a bake, whose correction targets only the animations of the file drive. The candidate
+// must keep a tolerance and a limit of bytes. Also tests guarantees for long files, for files that were baked before,
+// and for primitives that share arrays.
 
 #include <gtest/gtest.h>
 

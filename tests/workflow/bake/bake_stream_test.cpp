@@ -1,5 +1,5 @@
-// Checks bakes of a sequence whose keyframes stay in files. They must have the same bytes as in memory, their memory
-// must not grow with the number of keyframes, and a failure must leave no files.
+// Checks bakes of a sequence whose keyframes stay in files. The results must have the same bytes as for a sequence in
+// memory, the memory of the bake must not grow with the number of keyframes, and a failure must leave no files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -191,8 +191,7 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
     // Linux counts the pages of a thread in batches of 64, so each of the two peaks may be wrong by one batch.
     constexpr std::size_t kBatches = 2 * 64 * 4096;
     EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
-    // shows that the test would notice if all output were kept in memory
-    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);
+    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // the test would notice output in memory
   }
 }
 

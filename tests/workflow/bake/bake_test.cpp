@@ -422,8 +422,7 @@ TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_toleran
 TEST(Bake, targets_that_only_scale_need_no_extra_ones) {
   GltfBuilder builder;
   test::Hills hills(8);
-  // the target doubles the size of the mesh
-  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));
+  builder.add_node(builder.add_mesh(hills.primitive(builder, {hills.positions})));  // the target doubles the size
   builder.add_animation("");
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   const Baked baked = test::bake_document(builder, with(BakeEncoding::kExact));
@@ -495,8 +494,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // At other weights, and if three targets are active, the deltas only approximate the requested weighting. They must
-  // be closer to it than area-weighted normals are.
+  // At other weights, and if three targets are active, the deltas only approximate the requested weighting. Their
+  // errors must be smaller than those of area-weighted normals.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {

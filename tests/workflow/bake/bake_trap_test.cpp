@@ -74,8 +74,7 @@ TEST(BakeTraps, all_primitives_of_a_mesh_have_the_same_number_of_targets) {
   test::Hills hills(3);
   const std::vector<std::vector<float>> deltas = {hills.deltas(), hills.deltas()};
   const std::size_t mesh = builder.add_mesh(hills.primitive(builder, deltas));
-  // without normals, viewers shade this primitive flat
-  builder.add_primitive(mesh, hills.primitive(builder, deltas, false));
+  builder.add_primitive(mesh, hills.primitive(builder, deltas, false));  // shaded flat, since it has no normals
   Json points = hills.primitive(builder, deltas);
   points["mode"] = 0;
   points["targets"][1]["NORMAL"] = builder.add_positions(deltas[0]);

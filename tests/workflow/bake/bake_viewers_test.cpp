@@ -47,8 +47,8 @@ double degrees_between(const Vector& a, const Vector& b) {
   return std::atan2(std::hypot(cross[0], cross[1], cross[2]), dot) * 180 / 3.14159265358979323846;
 }
 
-// A quad with normals and one target, whose weight goes from 0 to 1. It is baked so that arrays of zeros are stored as
-// bytes.
+// A quad with normals and one target, whose weight goes from 0 to 1. The quad is baked so that arrays of zeros are
+// stored as bytes.
 class BakedQuad : public ::testing::Test {
  protected:
   void SetUp() override {

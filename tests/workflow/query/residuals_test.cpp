@@ -34,7 +34,7 @@ using fixtures::Random;
 constexpr std::uint64_t kSeed = 4902;
 constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
-// unit and size of the coordinates near the origin, which have 22 bits
+// The unit and the size of the coordinates near the origin, which have 22 bits.
 constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;
 
 // A mesh near the origin and the same mesh far away, in one segment. The mesh is a closed surface, or separate
@@ -167,7 +167,8 @@ TEST_F(Residuals, leave_the_answers_of_queries_as_they_are_at_the_origin) {
   for_twins([](const Twins&, const Segment& near, const Segment& far, Random& random) {
     const std::size_t faces = near.topology->face_count();
     const fixtures::Point to = random.in_cube(1), first = random.in_cube(2 * kSize), last = random.in_cube(2 * kSize);
-    // Rounds the position of the eye to multiples of kUnit. It is then exact in double, also beside the mesh far away.
+    // Rounds the position of the eye to multiples of kUnit. The position is then exact in double, also beside the mesh
+    // far away.
     const auto eye = [](const fixtures::Point& p, const Vec3d& away) {
       const auto whole = [](double x) { return kUnit * std::round(x / kUnit); };
       return Vec3d{whole(p[0]), whole(p[1]), whole(p[2])} + away;

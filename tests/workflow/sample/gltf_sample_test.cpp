@@ -62,7 +62,7 @@ struct File {
     return builder;
   }
 
-  // Returns the weights of the mesh on a node at a time. They are linear between keys.
+  // Returns the weights of the mesh on a node at a time, linear between keys.
   [[nodiscard]] std::vector<Rational> weights_at(std::size_t node, const Rational& time) const {
     const auto& [times, values] = tracks[node];
     std::vector<Rational> weights(targets.size());

@@ -65,7 +65,7 @@ void store(const std::string& weighting, const std::vector<std::vector<std::size
   }
 }
 
-// Makes a bumpy sheet whose normals follow a weighting. It has one target, which lifts a corner.
+// Makes a bumpy sheet whose normals follow a weighting, with one target that lifts a corner.
 ShadedMesh sheet(const std::string& weighting, std::uint64_t seed = 1, std::size_t side = 8) {
   ShadedMesh mesh = test::random_sheet(seed, side, 0, 0);
   store(weighting, triangles_of(mesh), mesh);

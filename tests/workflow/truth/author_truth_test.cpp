@@ -234,8 +234,8 @@ TEST(AuthorTruth, triangles_back_to_back_whose_vertices_store_one_normal_are_no_
   std::mt19937 random(kSeed + 20);
   std::uniform_real_distribution<float> hill(-0.15F, 0.15F);
   for (int draw = 0; draw < 6; ++draw) {
-    // A polygon of the wall shares three points of the rim with the cap. Both polygons are cut so that these points
-    // form a triangle of each.
+    // A polygon of the wall shares three points of the rim with the cap. Both the polygon and the cap are cut so that
+    // these three points form a triangle.
     const std::size_t n = 7 + random() % 4;
     Authored mesh;
     add_rings(mesh, 2, n, [&] { return hill(random); });

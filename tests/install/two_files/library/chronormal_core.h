@@ -1,2 +1,2 @@
-// Stands in for the chronormal_core.h that tools/two_files.py writes: it includes the library instead.
+// Replaces the chronormal_core.h that tools/two_files.py writes. This file includes the library instead.
 #include "chronormal/chronormal.h"

@@ -32,8 +32,8 @@ long double off(const LongVector& u, const LongVector& v) {
   return std::hypot(x[0], x[1], x[2]) / std::hypot(v[0], v[1], v[2]);
 }
 
-// Checks n(t) only if its largest component exceeds this share of the sum of w_k max_abs(c_k), where w_k are the
-// weights of the control normals c_k.
+// The smallest size of n(t) at which the test compares directions: its largest component, as a share of the sum of w_k
+// max_abs(c_k), where w_k are the weights of the control normals c_k.
 constexpr double kCertain = 0x1p-26;
 
 ControlNormals element(fixtures::Random& random, int exponent) {
