@@ -134,8 +134,7 @@ TEST(Viewers, targets_of_unit_length_look_alike_everywhere) {
     for (std::size_t c = 0; c < 3; ++c) sum[c] = normal[c] + weight * delta[c];
     const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     for (const Viewer& viewer : kViewers) {
-      // degrees, by the rounding of the viewer
-      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;
+      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, by the viewer's rounding
       EXPECT_LT(degrees_between(shown_of(viewer, normal, {delta}, {weight}), sum), step / length) << viewer.name;
     }
   }
