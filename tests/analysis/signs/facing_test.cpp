@@ -115,8 +115,8 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   return "";
 }
 
-// Makes a viewer. Usually, the coordinates of its place are not floats. In some cases, the face is seen edge-on from
-// there at a simple t.
+// Makes a viewer. Usually, the coordinates of the viewer's place are not floats. In some cases, the face is seen
+// edge-on from this place at a t such as 0 or 1.
 View some_view(const Segment& segment, std::size_t face, test::Random& random) {
   const auto vertices = segment.topology->face(face);
   const Vec3d a = to_double(segment.from[vertices[0]]), b = to_double(segment.to[vertices[1]]),

@@ -263,7 +263,7 @@ TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
   EXPECT_EQ(error, "<stdout>: No space left on device");
 }
 
-// A socket on which nobody listens cannot be opened, and an output must not replace it.
+// A socket on which nobody listens cannot be opened, and an output must not replace the socket.
 TEST(WriteOutput, a_socket_is_no_place_for_a_file) {
   const TemporaryFolder folder;
   const std::string path = folder / "socket";

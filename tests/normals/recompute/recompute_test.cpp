@@ -1,5 +1,5 @@
-// Compares normals that are recomputed from positions at every t with exact rational arithmetic, and compares with each
-// other all calls that must give the same result.
+// Compares normals that are recomputed from positions at every t with exact rational arithmetic. If several calls must
+// give the same result, also compares their results with each other.
 
 #include "chronormal/normals/recompute.h"
 

@@ -19,7 +19,7 @@ namespace {
 
 using test::GltfBuilder;
 
-// Makes a triangle whose stored normals do not follow its target. The target is in the file `targets` times.
+// Makes a triangle whose stored normals do not follow its target. The file has `targets` copies of this target.
 GltfBuilder triangle(std::size_t targets) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 0, 1, 0}),

@@ -32,8 +32,8 @@ PointRows rows_of(const Motion::Keyframe& keyframe) {
   return rows;
 }
 
-// A sum of terms, together with the sum of their absolute values. If the sum is below the rounding error of so many
-// terms, it counts as 0.
+// A sum of terms, together with the sum of their absolute values. A sum below the rounding error of so many terms
+// counts as 0.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;

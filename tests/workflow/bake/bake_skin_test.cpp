@@ -301,7 +301,7 @@ TEST(BakeSkin, what_viewers_show_before_and_after_is_seen_in_their_own_ways) {
   }
 }
 
-// Returns a text with the candidates that a bake considered, and the deltas that it wrote.
+// Returns a text with the candidates that a bake considered, and the deltas that the bake wrote.
 std::string choices_of(const Baked& baked) {
   std::string text;
   for (const BakedCandidate& c : baked.report.meshes.at(0).candidates)

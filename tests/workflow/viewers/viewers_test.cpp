@@ -146,7 +146,8 @@ TEST(Viewers, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_k
   const Triple normal = {0, 0, 1}, delta = {3, 0, 2};
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("godot"), normal, {delta}, {0.5}), normal), 22.5, 1e-2);
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("three"), normal, {delta}, {0.5}), normal), 36.8699, 1e-4);
-  // If N + D is limited to (1, 0, 1), the result has the direction of (0.5, 0, 1.5).
+  // gltfpack clamps the components of N + D to 1, which gives (1, 0, 1), so the result at weight 1/2 has the direction
+  // of (0.5, 0, 1.5).
   EXPECT_NEAR(degrees_between(shown_of(viewer_named("gltfpack"), normal, {delta}, {0.5}), normal), 18.4349, 1e-4);
 }
 

@@ -76,8 +76,8 @@ Expected expected_of(const Segment& segment, const NormalGroups& groups) {
   return expected;
 }
 
-// Tells whether a component equals a sum that was computed in another order, except for rounding. If the component is
-// zero, the sum must be a zero with the same sign.
+// Tells whether a component of a control normal equals a sum that was computed in another order, except for rounding.
+// If the component is zero, the sum must be a zero with the same sign.
 bool is_right(float value, double expected, float magnitude) {
   const auto rounded = static_cast<float>(expected);
   if (std::memcmp(&value, &rounded, sizeof(float)) == 0) return true;
