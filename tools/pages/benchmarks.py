@@ -92,8 +92,7 @@ def memory(page, run):
 
 def ways(page, run):
     names = {"one t, float3": "exact to float3", "one t, three planes": "exact to planes", "one t, octahedral (4 bytes)": "exact to octahedral",
-             "one t, rgb10a2 (4 bytes)": "exact to rgb10a2", "8 t in one pass, per t": "exact to float3, 8 t", "played from step to step": "playback to float3",
-             "one t, two threads": "exact to float3, 2 threads", "prepare, two threads": "prepare exact, 2 threads"}
+             "one t, rgb10a2 (4 bytes)": "exact to rgb10a2", "8 t in one pass, per t": "exact to float3, 8 t", "one t, two threads": "exact to float3, 2 threads", "prepare, two threads": "prepare exact, 2 threads"}
     two_sizes(page, run, "ways", "ns per vertex, exact curves", "vertices", names)
 
 
@@ -106,11 +105,9 @@ def schemes(page, run):
     for quality in run.data["qualities"]:
         name = quality["scheme"]
         if quality["mesh"] == "twist" and ("schemes", name, "45k", "grid") in run.rows:
-            played = run.rows.get(("schemes", f"{name}, played", "45k", "grid"))
             error = lambda v: f"{v:.3f}" if v >= 1e-3 else scientific(v)  # noqa: E731
-            rows.append([f"`{name}`", text(run.ns("schemes", name)), text(played["median_ns"]) if played else "-",
-                         f"{quality['bytes']:.0f}", error(quality["mean_degrees"]), error(quality["max_degrees"])])
-    page.table("schemes", ["scheme", "ns", "ns, played", "bytes", "average error, degrees", "worst"], rows)
+            rows.append([f"`{name}`", text(run.ns("schemes", name)), f"{quality['bytes']:.0f}", error(quality["mean_degrees"]), error(quality["max_degrees"])])
+    page.table("schemes", ["scheme", "ns", "bytes", "average error, degrees", "worst"], rows)
 
 
 def blends(page, run):
@@ -119,12 +116,6 @@ def blends(page, run):
              *(text(run.ns("blend" if of == 100 else "dense blend", f"{active} of {of}: {way}")) for way in ways_of)]
             for active, of in ((1, 100), (4, 100), (16, 100), (52, 100), (100, 100), (1, 5), (5, 5))]
     page.table("blends", ["active targets", "`BlendNormals`", "its `in_float32`", *ways_of[2:]], rows)
-
-
-def curves(page, run):
-    names = {"curve of degree 6": "degree 6 to float3", "straight path, degree 2": "degree 2 to float3",
-             **{name: name for name in ("move, then recompute in float32", "move, then recompute")}}
-    two_sizes(page, run, "curves", "ns per vertex", "curved paths", names)
 
 
 def commands(page):
@@ -165,7 +156,7 @@ def draw(page, run):
 
 def main():
     page, run = Page("benchmarks"), Run(MAIN)
-    for measure in (normals, frames, memory, ways, schemes, blends, curves, draw):
+    for measure in (normals, frames, memory, ways, schemes, blends, draw):
         measure(page, run)
     machines(page)
     commands(page)
