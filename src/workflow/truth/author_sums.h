@@ -11,7 +11,7 @@
 /// point: some tools give the corners of flat faces their own normal, but still count these faces for the other
 /// corners.
 ///
-/// Which of these sums to use is found by comparing them with the normals that the file stores (author_rule.h).
+/// author_rule.h compares these sums with the normals that the file stores, and takes the sum that fits them best.
 ///
 /// Shapes     elements are those of GltfShading; positions are those of all its vertices
 /// Threads    const functions may run at once
