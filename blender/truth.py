@@ -100,7 +100,7 @@ class Subject:
         return result.reshape(-1, 3)[:, _AXES] * _SIGNS
 
     def animate(self, frames: list[int], values: numpy.ndarray) -> None:
-        """Animates the copy with linear keyframes; `values` has the values of the keys, (frames, keys)."""
+        """Animates the shape keys of the copy with linear keyframes; `values` is an array (frames, shape keys)."""
         self.mesh.shape_keys.animation_data_create().action = bpy.data.actions.new(NAME)
         curves = self.mesh.shape_keys.animation_data.action.fcurves
         for key, column in zip(self.keys, values.T):

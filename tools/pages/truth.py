@@ -62,7 +62,7 @@ def run(*words):
 
 
 def compared(path, every):
-    """Returns a dict with the average error of each row in degrees, and the bend of the path as text."""
+    """Returns the average error of each scheme or path in degrees, by its name, and the `bend` of compare as text."""
     result = json.loads(run("compare", path, "--truth", every, "--elements", "vertices", "--json", "--schemes", ",".join(SCHEMES)))
     found = {row["scheme"] if row["path"] == "linear" else row["path"]: row["mean_degrees"] for row in result["rows"]}
     of_faces = json.loads(run("compare", path, "--truth", every, "--elements", "faces", "--json", "--schemes", "quaternion:matrix"))

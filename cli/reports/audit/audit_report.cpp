@@ -89,7 +89,7 @@ std::string headline(const Audited& input) {
   if (audit.error.cancelled > 0)
     text += formatted(
         "  {} of these cannot be judged because normals of faces cancel, as on a sheet whose sides share "
-        "vertices.\n  No --tolerance allows it. The first is at {}\n",
+        "vertices.\n  They count as errors whatever --tolerance is. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text +=

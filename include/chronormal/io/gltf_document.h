@@ -48,12 +48,12 @@ class Expansion;  // limits the memory and the output that reading a file may ca
 ///     weight = sum of a w_i + sum of q w_i w_j
 struct GltfExtraTarget {
   struct LinearTerm {
-    std::size_t i = 0;  ///< number of one of the mesh's own targets
+    std::size_t i = 0;  ///< index of one of the mesh's own targets
     double a = 1;
     friend bool operator==(const LinearTerm&, const LinearTerm&) = default;
   };
   struct QuadraticTerm {
-    std::size_t i = 0, j = 0;  ///< numbers of two of the mesh's own targets; they may be equal
+    std::size_t i = 0, j = 0;  ///< indices of two of the mesh's own targets; they may be equal
     double q = 1;
     friend bool operator==(const QuadraticTerm&, const QuadraticTerm&) = default;
   };

@@ -11,8 +11,9 @@
 /// derivatives at both ends. The products of edges and deviations bound the distance between two normal vectors of a
 /// face, one on the curves and one on the chords. The Bernstein coefficients of the normal on the chords bound its
 /// length from below. A segment gets the fewest pieces of the series 1, 2, 3, 4, 6, 8, 12 ... for which the ratio of
-/// these two bounds is at most the sine of the tolerance in every face and piece. Since vectors are bounded, sums over
-/// the faces of a vertex or corner are within the tolerance, too, as far as these faces have similar directions.
+/// these two bounds is at most the sine of the tolerance in every face and piece. The bound holds for
+/// normal vectors, not only for their angles, so it also holds for their sum over the faces of a vertex or corner, if
+/// these faces have similar directions.
 ///
 /// The new keyframes are float32, and the rounding of their positions adds to the error; a face whose normals deviate
 /// by no more than this rounding is accepted, too. A face that nearly vanishes between two keyframes may miss the

@@ -106,7 +106,9 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
 }
 
 Result<OutputFile> OutputFile::go_on(const std::string& path, bool force, std::uint64_t kept) {
-  if (is_stream(path)) return Error{ErrorCode::kUsage, path, "a later run cannot go on with a stream; name a file"};
+  if (is_stream(path))
+    return Error{ErrorCode::kUsage, path,
+                 "--resume cannot continue an output that is a pipe or the standard output; name a file with -o"};
   if (Status status = check_output(path, force); !status) return status.error();
   auto state = std::make_unique<State>();
   state->path = path;

@@ -68,8 +68,8 @@ class JsonView {
   /// Returns true if the object has this member, and false if the value is not an object.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing, or after
-  /// a complaint.
+  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing.
+  /// Complain and return nothing if it is empty or of another kind.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 

@@ -92,7 +92,7 @@ Result<Header> HeaderReader::read() {
     if (words.empty() || words[0] == "comment" || words[0] == "obj_info") continue;
     if (words[0] == "end_header") {
       if (words.size() != 1) return error("the line end_header must have no other words");
-      if (!has_format_) return error("the header has no line that begins with format");
+      if (!has_format_) return error("the header has no line that begins with 'format'");
       header_.body_begin = lines_.position();
       header_.line_count = lines_.number();
       if (Status status = check_elements(); !status) return status.error();
@@ -105,7 +105,7 @@ Result<Header> HeaderReader::read() {
 
 Status HeaderReader::read_statement(const Words& words) {
   if (words[0] == "format") return read_format(words);
-  if (!has_format_) return error("a line that begins with format must come before " + scan::quoted(words[0]));
+  if (!has_format_) return error("a line that begins with 'format' must come before " + scan::quoted(words[0]));
   if (words[0] == "element") return read_element(words);
   if (words[0] == "property") return read_property(words);
   return error(scan::quoted(words[0]) + " is not a keyword of a PLY header");

@@ -311,7 +311,7 @@ class Mending {
   std::size_t budget_ = 400000;
 };
 
-// The candidates of a mesh, compared with its stored normals.
+// The rules by which the author may have computed the normals of a mesh, each compared with the stored normals.
 class Candidates {
  public:
   Candidates(const GltfShading& shading, const Polygons& plain, const Polygons& quads,

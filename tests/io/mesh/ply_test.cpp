@@ -180,10 +180,10 @@ TEST(ReadPly, header_that_breaks_the_grammar_is_an_error_with_its_line) {
   EXPECT_EQ(error_of("ply\nformat ascii 1.0\n"),
             "walk.ply, line 2: the header does not end, since the line end_header is missing");
   EXPECT_EQ(error_of("ply\ncomment a\nend_header\n"),
-            "walk.ply, line 3: the header has no line that begins with format");
+            "walk.ply, line 3: the header has no line that begins with 'format'");
   EXPECT_EQ(with("ascii 1.0", "ascii 1.1"), "walk.ply, line 2: version '1.1' of PLY cannot be read; only 1.0 can");
   EXPECT_TRUE(with("ascii", "binary_mixed_endian").starts_with("walk.ply, line 2: the encoding 'binary_mixed_endian'"));
-  EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with format"));
+  EXPECT_TRUE(with("format ascii 1.0\n", "").starts_with("walk.ply, line 2: a line that begins with 'format'"));
   EXPECT_EQ(with("element vertex 4", "element vertex 4 5"), "walk.ply, line 3: the line must be: element NAME COUNT");
   EXPECT_EQ(with("float y", "float16 y"), "walk.ply, line 5: the type 'float16' is not a type of PLY");
   EXPECT_EQ(with("element face", "elements face"), "walk.ply, line 7: 'elements' is not a keyword of a PLY header");

@@ -33,8 +33,8 @@ GltfBuilder rig(unsigned seed, std::size_t targets = kTargets) {
   return test::with_misleading_normals(test::still_hills_document(targets, seed));
 }
 
-// Returns the weights of all targets. `own` has the author's targets, and those of correction targets follow from the
-// formulas in the file.
+// Returns the weights of all targets. `own` has the weights of the author's targets. The weights of the correction
+// targets are computed by the formulas in the file.
 std::vector<float> driven(const Baked& baked, const std::vector<double>& own) {
   std::vector<float> all(own.begin(), own.end());
   const auto& extras = baked.mesh()["extras"]["chronormal"]["extras"];

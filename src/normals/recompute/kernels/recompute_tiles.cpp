@@ -163,8 +163,8 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 #endif
 
-// Interpolates between two vectors in double, for the lanes from `lane` on: half of a vector of floats if it has two
-// halves.
+// Returns s a + t b in double, for as many lanes from `lane` on as fit into a vector of doubles. This is half of a
+// vector of floats, or the whole vector if it has only one lane.
 HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
   const HalfFloatTag part;
   const auto load = [part, lane](const float* plane)

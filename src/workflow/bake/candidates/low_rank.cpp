@@ -231,8 +231,8 @@ void fit_few(LowRankFit& fit, const LowRankLimits& limits, std::span<const float
   }
 }
 
-// Returns the weights of correction targets at instants that are not rows, by least squares over all points. The result
-// has the shape (poses, extras).
+// Returns the weights of correction targets at the instants that are not rows of the fit, by least squares over all
+// points. The result has the shape (instants, extras).
 std::vector<double> weights_at(const LowRankFit& fit, const MissingNormals& missing, const Cholesky& gram) {
   const std::size_t extras = fit.extras(), padded = fit.padded(), stride = missing.stride();
   constexpr std::size_t kParts = 32;
