@@ -22,7 +22,7 @@ test_machine() {
 }
 
 part_machines() {
-  part_build
+  configure_and_build release chronormal_cli
   run_ctest release two_files -L two_files
   compile_two_files "GCC for this machine alone" g++ "-march=native -O3" ""
   compile_two_files "GCC without its vectors" g++ "-DCHRONORMAL_PLAIN_ARRAYS" ""
