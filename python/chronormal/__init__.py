@@ -306,7 +306,8 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
     (T, n, 3) for T t.
 
     scheme  a name of schemes()
-    p0, p1, faces, elements, crease, weld  as for curves(); some schemes need faces
+    p0, p1, faces, elements, crease, weld  as for curves(), but faces by default, as in compare(): the schemes of the paper
+            are about faces, and some need them
     t       in [0, 1]
     """
     times = _floats(t, "t")

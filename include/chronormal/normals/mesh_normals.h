@@ -58,7 +58,7 @@ namespace chronormal {
 inline constexpr double kCurvesFrom = 2;
 
 struct MeshNormalsOptions {
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   Weighting weighting = Weighting::kArea;  ///< must be kArea for faces and for blend shapes
   double tolerance = kExactTolerance;      ///< radians, for segments; at least kExactTolerance
   Threads threads = Threads::kOne;         ///< the threads on which segments are prepared

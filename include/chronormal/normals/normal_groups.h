@@ -212,7 +212,7 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 /// crease angle, or from the smoothing groups or the normals of a file (Input in io/input.h). These arrays must outlive
 /// the options.
 struct ElementOptions {
-  ElementKind kind = ElementKind::kFaces;
+  ElementKind kind = ElementKind::kVertices;
   bool weld = true;           ///< vertices that coincide in all keyframes share a normal, so that seams do not show
   double crease_angle = 180;  ///< degrees, for corners: edges that are sharper in keyframe 0 are hard
   std::span<const std::uint32_t> group_of_face = {};  ///< smoothing groups, if not empty

@@ -65,7 +65,7 @@ struct CompareOptions {
   Access access = Access::kRandom;
   /// Is called in the calling thread with the amount of work done and the total; may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  ElementOptions elements = {};  ///< the elements whose normals are compared
+  ElementOptions elements = {ElementKind::kFaces};  ///< faces as in the tables of the paper, or others
   /// The weighting of faces in the normals of vertices and corners. With a weighting other than area, normals are not
   /// quadratics: schemes are prepared from the exact weighted normals, and `polynomial` is the quadratic through three
   /// of them. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
@@ -151,7 +151,7 @@ struct BlendCompareOptions {
   std::size_t active = 0;  ///< number of active targets; 0 means 1, 2, 4, 8, 16 and all, as far as there are so many
   std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
   /// Elements of a motion; those of a glTF file follow its stored normals.
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   /// An animation of a glTF file, by name or index: up to `rows` of its weight vectors, evenly spaced.
   std::string animation = {};
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -230,9 +230,9 @@ struct BlendComparison {
 // Source     docs/truth.md.
 
 struct TruthOptions {
-  std::size_t every = 2;             ///< keyframes 0, N, 2 N, ... are kept; at least 2
-  std::vector<std::string> schemes;  ///< names of schemes; if empty, those of compare()
-  ElementOptions elements = {};      ///< the elements whose normals are compared
+  std::size_t every = 2;                            ///< keyframes 0, N, 2 N, ... are kept; at least 2
+  std::vector<std::string> schemes;                 ///< names of schemes; if empty, those of compare()
+  ElementOptions elements = {ElementKind::kFaces};  ///< the elements whose normals are compared
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 

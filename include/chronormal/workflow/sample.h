@@ -68,7 +68,7 @@ struct Stepping {
 };
 
 struct SampleOptions {
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea only for the weighting kArea
   /// Interpolates by this scheme (schemes/scheme.h) between the exact normals at the ends of a segment; if empty,
