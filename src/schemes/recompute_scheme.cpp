@@ -1,9 +1,9 @@
 // The cross product, computed again at every t: eq. 1 on the vertices at t, then eq. 2. The scheme runs
-// normals/recompute.h, and counts the operations of its formula. Interpolating two edges instead of three vertices
+// normals/recompute/recompute_faces.h, and counts the operations of its formula. Interpolating two edges instead of three vertices
 // gives the same normal, costs less, and stays precise far from the origin.
 
-#include "chronormal/normals/recompute.h"
 #include "normals/curves/curve_elements.h"
+#include "normals/recompute/recompute_faces.h"
 #include "schemes/counting.h"
 #include "schemes/makers.h"
 
