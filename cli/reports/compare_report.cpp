@@ -8,8 +8,8 @@
 
 #include "chronormal/schemes/scheme.h"
 #include "cli/options/command.h"
-#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/rows.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"

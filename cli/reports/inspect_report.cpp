@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "chronormal/analysis/quality.h"
-#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/rows.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"
@@ -75,7 +75,7 @@ std::string facts_of(const Inspected& input) {
   const Surface& surface = found.surface;
   std::string text;
   const auto add = [&text](const char* what, const std::string& value) { text += fact(what, value); };
-  if (const std::optional<FileSeries>& series = input.opened.series()) add("files", series_words(*series));
+  if (const std::optional<FileSeries>& series = input.opened->series()) add("files", series_words(*series));
   add("faces", face_words(found));
   add("surface",
       formatted("{}, {}; {} open", counted(surface.pieces, "piece", "pieces"), counted(surface.edges, "edge", "edges"),
@@ -272,7 +272,7 @@ std::string inspect_text(const Inspected& input) {
   if (input.gltf) text += track_table(*input.gltf);
 
   const std::vector<Trouble> troubles = find_trouble(input);
-  const std::vector<std::string> notes = input.opened.notes();
+  const std::vector<std::string> notes = input.opened->notes();
   if (!notes.empty()) text += '\n' + heading("How it was read:") + '\n';
   for (const std::string& note : notes) text += "  " + printable(note) + '\n';
   if (troubles.empty()) return text + (notes.empty() ? "\nno problems found\n" : "");

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
-#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/rows.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"

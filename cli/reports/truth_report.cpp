@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "cli/reports/compare_report.h"
-#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/rows.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"

@@ -37,7 +37,7 @@ _Path = Union[str, "_os.PathLike[str]"]
 _Source = Union[_Path, Iterable[_Path], bytes, bytearray, memoryview, Motion, None]
 _Faces = Union[ArrayLike, Sequence[Sequence[int]], "tuple[ArrayLike, ArrayLike]"]
 _Elements = Literal["vertices", "faces", "corners"]
-_Weighting = Literal["area", "angle", "uniform", "area-angle", "max"]
+_Weighting = Literal["area", "angle", "uniform", "area-angle", "max", "inverse-edges", "inverse-roots"]
 
 
 def _vectors(array, place):
@@ -70,15 +70,16 @@ def _are_offsets(faces):
     """Return True if a tuple is (offsets, corners), and False if it is two faces.
 
     Offsets begin with 0, end with the number of corners, and rise by at least 3 each time. Two faces of equal size
-    never do so.
+    never do so. Arrays that are long enough for offsets are read as (offsets, corners) even if they break this rule,
+    and are then refused with the place of the mistake, so that a mistake does not make two large faces.
     """
     if not isinstance(faces, tuple) or len(faces) != 2 or not all(_np.ndim(part) == 1 for part in faces):
         return False
-    if any(isinstance(part, _np.ndarray) for part in faces):
-        return True
     offsets, corners = faces
     if len(offsets) == 0:
         return True
+    if any(isinstance(part, _np.ndarray) for part in faces):
+        return len(corners) >= 3 * (len(offsets) - 1)
     steps = [b - a for a, b in zip(offsets[:-1], offsets[1:])]
     return offsets[0] == 0 and offsets[-1] == len(corners) and all(step >= 3 for step in steps)
 
@@ -191,7 +192,8 @@ def curves(p0: ArrayLike, p1: ArrayLike, faces: _Faces, elements: _Elements = "v
     faces      (F, 3) vertices of each face, counted from 0; polygons as the package says
     elements   the elements that have a normal: "vertices", "faces" or "corners", in the order of faces
     crease     degrees, for corners: edges that are sharper at t = 0 are hard; None: no edge is
-    weighting  how the faces around a vertex count: "area" (exact), "angle", "uniform", "area-angle", "max" (fitted)
+    weighting  how the faces around a vertex count: "area" (exact), or fitted: "angle", "uniform", "area-angle", "max",
+               "inverse-edges", "inverse-roots"
     tolerance  radians: the largest error of a normal; 1e-3 takes a third of the memory
     weld       whether vertices at one point at both ends share a normal, so that seams do not show
     threads    0: all cores; k: at most k
@@ -276,7 +278,7 @@ def read(source: _Source = None, *, sample: str | None = None, base: _Path | Non
 
 
 def motion(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None) -> Motion:
-    """Make a Motion from arrays, which audit(), compare(), errors() and bake() accept in place of files.
+    """Make a Motion from arrays, which all functions that read files accept in place of them.
 
     positions  (T, V, 3), two keyframes or more; between two of them vertices move on straight lines
     faces      as for curves()
@@ -308,7 +310,8 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
     (n, 3) for one t, or (T, n, 3) for T values of t.
 
     scheme  a name of schemes()
-    p0, p1, faces, elements, crease, weld  as for curves(); some schemes need faces
+    p0, p1, faces, elements, crease, weld  as for curves(), but faces by default, as in compare(): the schemes of the paper
+            are about faces, and some need them
     t       in [0, 1]
     """
     times = _floats(t, "t")
@@ -319,7 +322,10 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
 
 def inspect(source: _Source = None, *, sample: str | None = None, base: _Path | None = None, fps: float = 1.0,
             animation: str | int | None = None, world: bool = False, loop: bool = False, strict: bool = False) -> dict[str, Any]:
-    """Return the dict of `chronormal inspect --json`: what a file contains, and possible causes of wrong normals."""
+    """Return the dict of `chronormal inspect --json`: what a file contains, and possible causes of wrong normals.
+
+    source  as for read(), or a Motion; sample, base, fps, animation, world, loop, strict: as for read()
+    """
     return _json.loads(_chronormal.inspect(_source(source, sample, base, fps, animation, world, loop=loop, strict=strict)))
 
 

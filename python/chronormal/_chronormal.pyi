@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 __version__: str
 
 _Elements = Literal["vertices", "faces", "corners"]
-_Weighting = Literal["area", "angle", "uniform", "area-angle", "max"]
+_Weighting = Literal["area", "angle", "uniform", "area-angle", "max", "inverse-edges", "inverse-roots"]
 
 class Curves:
     def unit_normals(self, t: float | ArrayLike, out: NDArray[np.float32] | None = None,

@@ -388,7 +388,11 @@ std::string figure_of_face(const py::dict& source, const std::vector<std::string
 }
 
 std::string inspect_source(const py::dict& source) {
-  require(source["motion"].is_none(), "source", "inspect() needs files or bytes, not a Motion");
+  if (const py::object motion = source["motion"]; !motion.is_none()) {
+    const auto& given = motion.cast<const ReadMotion&>();
+    return inspect_json(
+        without_gil([&]() -> Result<Inspected> { return inspect_input(given.motion(), given.name()); }));
+  }
   Input input = open_files(source, true, KeepShading::kNone);
   const std::string animation = source["animation"].cast<std::string>();
   return inspect_json(without_gil([&] { return inspect_input(std::move(input), animation); }));

@@ -7,6 +7,7 @@ import json
 import os
 import pickle
 import tempfile
+import typing
 import unittest
 
 import numpy as np
@@ -73,6 +74,9 @@ class MotionTest(unittest.TestCase):
                 (found,), (expected,) = cn.errors(self.motion, **options), cn.errors(file, **options)
                 self.assertTrue(np.array_equal(found.errors, expected.errors, equal_nan=True))
             self.assertEqual(cn.bake(self.motion)[0], cn.bake(file)[0])
+            self.assertEqual(cn.inspect(cn.read(file)), cn.inspect(file))
+            self.assertEqual(cn.inspect(self.motion)["input"]["segments"], len(self.times) - 1)
+            self.assertEqual(cn.inspect(mesh_at_rest())["input"]["segments"], 0)
             moments = self.times[:-1] + 0.25
             self.assertTrue(np.array_equal(self.motion.unit_normals(moments), cn.read(file).unit_normals(moments)))
 
@@ -80,8 +84,6 @@ class MotionTest(unittest.TestCase):
         for name, value in {"fps": 2, "path": "catmull-rom", "animation": "a", "base": "b.obj", "loop": True}.items():
             with self.assertRaisesRegex(ValueError, f"^{name}: "):
                 cn.audit(self.motion, **{name: value})
-        with self.assertRaisesRegex(ValueError, "files or bytes"):
-            cn.inspect(self.motion)
         with self.assertRaisesRegex(ValueError, "does not move"):
             cn.audit(mesh_at_rest())
         with self.assertRaisesRegex(ValueError, "two keyframes"):
@@ -185,7 +187,8 @@ class CurvesTest(unittest.TestCase):
             blend.unit_normals([float("nan")])
 
     def test_a_tuple_of_two_faces_is_two_faces(self):
-        for faces in (((0, 1, 2), (2, 1, 7)), ([0, 1, 2], [2, 1, 7]), ((0, 3, 4), (1, 2, 7)), ((0, 1, 2, 3), (4, 5, 6, 7))):
+        for faces in (((0, 1, 2), (2, 1, 7)), ([0, 1, 2], [2, 1, 7]), ((0, 3, 4), (1, 2, 7)), ((0, 1, 2, 3), (4, 5, 6, 7)),
+                      (np.array([0, 1, 2]), np.array([0, 2, 3])), (np.array([0, 3, 4]), [1, 2, 7])):
             as_tuple = cn.curves(*self.positions, tuple(faces), elements="faces")
             self.assertEqual(len(as_tuple), 2)
             as_array = cn.curves(*self.positions, np.array(faces), elements="faces")
@@ -193,6 +196,18 @@ class CurvesTest(unittest.TestCase):
         corners = [0, 1, 7, 6, 1, 2, 8]
         for offsets in ([0, 4, 7], np.array([0, 4, 7])):
             self.assertEqual(len(cn.curves(*self.positions, (offsets, corners), elements="faces")), 2)
+        with_quad = (np.array([0, 1, 2]), np.array([0, 2, 3, 8]))
+        self.assertEqual(len(cn.curves(*self.positions, with_quad, elements="faces")), 2)
+        with self.assertRaisesRegex(ValueError, "offset"):
+            cn.curves(*self.positions, (np.array([0, 4, 8]), np.array(corners)))
+
+    def test_every_weighting_of_the_program_has_a_type(self):
+        names = typing.get_args(cn._Weighting)
+        with self.assertRaises(ValueError) as refused:
+            cn.curves(*self.positions, self.faces, weighting="mass")
+        self.assertTrue(str(refused.exception).endswith(", ".join(names)), refused.exception)
+        for name in names:
+            cn.curves(*self.positions, self.faces, weighting=name)
 
 
 class FileOptionTest(unittest.TestCase):

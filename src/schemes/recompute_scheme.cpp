@@ -1,9 +1,10 @@
 // The scheme recompute: the cross product, computed again at every t. It takes eq. 1 for the vertices at t, and then
-// eq. 2. The scheme runs normals/recompute.h, and counts the operations of its formula. Two edges are interpolated
-// instead of three vertices. This gives the same normal, costs less, and stays precise far from the origin.
+// eq. 2. The scheme runs normals/recompute/recompute_faces.h, and counts the operations of its formula. Two edges are
+// interpolated instead of three vertices. This gives the same normal, costs less, and stays precise far from the
+// origin.
 
-#include "chronormal/normals/recompute.h"
 #include "normals/curves/curve_elements.h"
+#include "normals/recompute/recompute_faces.h"
 #include "schemes/counting.h"
 #include "schemes/makers.h"
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "cli/reports/rows.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/rows.h"
 #include "cli/terminal/screen.h"
 #include "cli/terminal/table.h"
 #include "cli/terminal/text.h"

@@ -58,7 +58,7 @@ namespace chronormal {
 inline constexpr double kCurvesFrom = 2;
 
 struct MeshNormalsOptions {
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   Weighting weighting = Weighting::kArea;  ///< must be kArea for faces and for blend shapes
   /// The largest error of a normal in radians, for segments; at least kExactTolerance.
   double tolerance = kExactTolerance;

@@ -215,7 +215,7 @@ enum class ElementKind { kFaces, kVertices, kCorners };
 /// smooth edges. Hard edges come from the crease angle, or from the smoothing groups or the normals of a file (Input in
 /// io/input.h). The arrays of groups and normals must outlive the options.
 struct ElementOptions {
-  ElementKind kind = ElementKind::kFaces;
+  ElementKind kind = ElementKind::kVertices;
   /// True if vertices that coincide in all keyframes share a normal, so that seams do not show.
   bool weld = true;
   /// In degrees, for corners: an edge with a larger angle between its faces in keyframe 0 is hard.

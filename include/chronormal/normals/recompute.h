@@ -32,12 +32,6 @@
 
 namespace chronormal {
 
-/// Writes the unit normals at t of a range of faces, with the same bits as NormalRecompute. Pure: no allocation, no
-/// throw, and no scratch memory. It is therefore slower than NormalRecompute on meshes in random order and on positions
-/// that are not packed. Preconditions: result has faces.count elements; the faces exist in the topology.
-std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
-                            VectorView<float> result) noexcept;
-
 class NormalRecompute {
  public:
   /// Creates an object without elements.

@@ -66,7 +66,8 @@ struct CompareOptions {
   Access access = Access::kRandom;
   /// Is called in the calling thread with the number of units of work that are done, and their total. It may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
-  ElementOptions elements = {};  ///< the elements whose normals are compared
+  /// The elements whose normals are compared. They are faces unless set, as in the tables of the paper.
+  ElementOptions elements = {ElementKind::kFaces};
   /// The weighting of faces in the normals of vertices and corners. Normals with a weighting other than area are not
   /// quadratic in time. Schemes are then prepared from the exact weighted normals, and `polynomial` is the quadratic
   /// through three of these. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
@@ -159,7 +160,7 @@ struct BlendCompareOptions {
   std::size_t active = 0;
   std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
   /// The elements of a motion. The elements of a glTF file follow from its stored normals.
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   /// An animation of a glTF file, by name or index, from which the weights come: up to `rows` of its weight vectors,
   /// evenly spaced. If it is empty, weights are random.
   std::string animation = {};
@@ -240,9 +241,9 @@ struct BlendComparison {
 // Source     docs/truth.md.
 
 struct TruthOptions {
-  std::size_t every = 2;             ///< N; the keyframes 0, N, 2 N, ... are kept; at least 2
-  std::vector<std::string> schemes;  ///< names of schemes; if empty, the default schemes of compare()
-  ElementOptions elements = {};      ///< the elements whose normals are compared
+  std::size_t every = 2;                            ///< N; the keyframes 0, N, 2 N, ... are kept; at least 2
+  std::vector<std::string> schemes;                 ///< names of schemes; if empty, the default schemes of compare()
+  ElementOptions elements = {ElementKind::kFaces};  ///< the elements whose normals are compared
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 

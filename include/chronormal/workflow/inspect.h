@@ -153,16 +153,17 @@ struct InspectedGltf {
   std::optional<std::size_t> animation;  ///< the animation that was inspected; no value for targets or a mesh at rest
 };
 
-/// An opened input, and the results of its inspection.
+/// An input, and the results of its inspection.
 struct Inspected {
-  Input opened;
+  std::optional<Input> opened;           ///< no value for a motion of the caller
+  std::string motion_name;               ///< the name of such a motion
   std::optional<Inspection> inspection;  ///< no value for a glTF file without faces
   std::vector<std::string> keyframe_names;
   std::vector<Motion::SegmentKeys> segments;
   MotionKind kind = MotionKind::kSequence;
   std::optional<InspectedGltf> gltf;
 
-  [[nodiscard]] const std::string& name() const noexcept { return opened.name(); }
+  [[nodiscard]] const std::string& name() const noexcept { return opened ? opened->name() : motion_name; }
   /// Returns true if the input has morph targets. Segment k then goes from keyframe 0 at weight 0 to target k at weight
   /// 1.
   [[nodiscard]] bool has_targets() const noexcept { return kind == MotionKind::kTargets && !segments.empty(); }
@@ -173,6 +174,9 @@ struct Inspected {
 [[nodiscard]] Result<Inspected> inspect_input(
     Input input, const std::string& animation,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
+
+/// Inspects a motion of the caller, or a mesh, with a name for messages.
+[[nodiscard]] Inspected inspect_input(const Motion& motion, std::string name);
 
 }  // namespace chronormal
 

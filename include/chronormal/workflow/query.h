@@ -110,7 +110,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// for vertices in no face. Errors: those of make_groups() and segment_parts(); kUsage for the direction (0, 0, 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {},
-                                               const ElementOptions& elements = {});
+                                               const ElementOptions& elements = {ElementKind::kFaces});
 
 /// Finds the points that are inside a closed mesh at the first instant of the span, and the time, place and direction
 /// of all crossings of the surface (analysis/containment.h). A point moves on a straight line at constant speed from
@@ -143,7 +143,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 /// make_groups() and segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {},
-                                                const ElementOptions& elements = {});
+                                                const ElementOptions& elements = {ElementKind::kFaces});
 
 /// Writes the columns of an answer as a .npz file: int64, float64, float32 and bool, named TABLE_COLUMN, or COLUMN if
 /// the table has no name. Errors: kUsage for another extension; those of write_output().

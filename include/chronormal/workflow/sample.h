@@ -69,7 +69,7 @@ struct Stepping {
 };
 
 struct SampleOptions {
-  ElementOptions elements = {ElementKind::kVertices};
+  ElementOptions elements = {};
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea is allowed only for Weighting::kArea
   /// The name of a scheme (schemes/scheme.h) that interpolates between the exact normals at the ends of a segment. If

@@ -25,6 +25,7 @@
 #include "normals/curves/curve_elements.h"
 #include "normals/groups/face_window.h"
 #include "normals/recompute/kernels/recompute_tiles.h"
+#include "normals/recompute/recompute_faces.h"
 
 namespace chronormal {
 namespace {
@@ -405,10 +406,10 @@ std::size_t write_zeros(VectorView<float> result) {
 
 }  // namespace
 
-std::size_t unit_normals_at(const Segment& segment, IndexRange faces, const LocalTime& t,
-                            VectorView<float> result) noexcept {
+std::size_t internal::unit_normals_at(const Segment& segment, IndexRange faces, double t,
+                                      VectorView<float> result) noexcept {
   assert(result.count == faces.count && faces.end() <= segment.topology->face_count());
-  if (std::isnan(t.t)) return write_zeros(result);
+  if (std::isnan(t)) return write_zeros(result);
   return Call(segment, local_time(t), result, faces.first).faces(faces);
 }
 

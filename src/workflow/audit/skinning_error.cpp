@@ -8,7 +8,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kSkinnedBlock = 1024;
 
 // Returns the error of one vertex in degrees, or nothing if one of the two normals vanishes.
 std::optional<double> degrees_at(const MeshSkin& skin, std::size_t vertex, const Vec3d& before, const Vec3d& after) {
@@ -29,14 +29,14 @@ void SkinningErrors::add_sample(const BlendSource& source, const MeasuredSample&
     placed_ = source.placed();
     const JudgedPart& part = sample.placed.part;
     std::vector<Vec3d> positions(part.vertices().size());
-    parallel_each(positions.size(), kBlock, [&](std::size_t i) {
+    parallel_each(positions.size(), kSkinnedBlock, [&](std::size_t i) {
       positions[i] = source.skin()->of_vertex(part.vertices()[i])(sample.placed.positions[i]);
     });
     PartNormals skinned;
     part.normals(positions, skinned);
     source.turn(positions, skinned.elements);
     last_ = parallel_fold<SkinningError>(
-        part.outputs().size(), kBlock,
+        part.outputs().size(), kSkinnedBlock,
         [&](std::size_t i, SkinningError& result) {
           const JudgedOutput& output = part.outputs()[i];
           const Vec3d& before = sample.placed.normals.elements[output.element];

@@ -169,7 +169,7 @@ std::string inspect_json(const Inspected& input) {
                    {"faces", has_faces ? input.inspection->faces : 0},
                    {"keyframes", has_faces ? input.inspection->keyframes : 0},
                    {"segments", input.segments.size()}};
-  if (const std::optional<FileSeries>& series = input.opened.series())
+  if (const auto series = input.opened ? input.opened->series() : std::nullopt)
     json["files"] = {{"count", series->count},         {"first", series->first},
                      {"last", series->last},           {"least_step", series->least_step},
                      {"most_step", series->most_step}, {"are_seconds", series->are_seconds}};
@@ -182,7 +182,7 @@ std::string inspect_json(const Inspected& input) {
                                {"what", trouble.what},
                                {"where", trouble.where.empty() ? Json() : Json(trouble.where)},
                                {"meaning", trouble.meaning}});
-  json["notes"] = input.opened.notes();
+  json["notes"] = input.opened ? input.opened->notes() : std::vector<std::string>{};
   return json_text(json);
 }
 

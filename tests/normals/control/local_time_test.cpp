@@ -155,7 +155,6 @@ TEST(LocalTime, is_a_quotient_without_rounding) {
     }
     expect("recomputed faces", all_faces, [&](View view) { NormalRecompute(segment).unit_normals(t, view); });
     expect("recomputed groups", all_groups, [&](View view) { NormalRecompute(segment, groups).unit_normals(t, view); });
-    expect("faces anew", all_faces, [&](View view) { unit_normals_at(segment, {0, view.count}, t, view); });
     expect("a motion and a time", all_groups, [&](View view) {
       std::vector<float> of_vertices(3 * motion.topology.vertex_count());
       MeshNormals normals = MeshNormals::make(motion).value();
@@ -222,9 +221,6 @@ std::vector<Door> doors(const Motion& motion, const NormalGroups& groups) {
                      return NormalCurves::of_groups(segment, groups, {tolerance}).unit_normals(times, results);
                    }});
   }
-  all.push_back({"faces anew", faces, [=](double t, VectorView<float> result) {
-                   return unit_normals_at(segment, {0, faces}, t, result);
-                 }});
   all.push_back({"recomputed faces", faces,
                  [=](double t, VectorView<float> result) { return NormalRecompute(segment).unit_normals(t, result); }});
   all.push_back({"recomputed groups", groups.size(), [=, &groups](double t, VectorView<float> result) {

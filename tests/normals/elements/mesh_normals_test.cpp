@@ -71,6 +71,13 @@ TEST(MeshNormals, faces_have_their_own_normals) {
     for (std::size_t f = 0; f < 2; ++f) expect_direction(normals_at(normals.value(), t), f, face_normal(f, t));
 }
 
+TEST(MeshNormals, options_without_a_kind_mean_vertices) {
+  const Motion motion = fixtures::smooth_morph(3);
+  const std::size_t vertices = motion.topology.vertex_count();
+  EXPECT_EQ(MeshNormals::make(motion.topology).value().size(), vertices);
+  EXPECT_EQ(MeshNormals::make(motion.topology, {.elements = {.weld = false}}).value().size(), vertices);
+}
+
 TEST(MeshNormals, vertices_across_a_seam_share_a_normal_unless_they_are_separate) {
   MeshNormalsOptions options;
   const Result<MeshNormals> welded = normals_of(options);

@@ -299,7 +299,7 @@ TEST(GltfSamples, are_the_same_on_every_way_that_the_library_has) {
       judge.add("curves of faces", result, faces);
       NormalCurves::of_groups(segment, groups, {}, Threads::kOne).unit_normals(t, group_view);
       judge.add("curves of groups", of_groups, vertices);
-      unit_normals_at(segment, {0, faces.size()}, t, view);
+      NormalRecompute(segment).unit_normals(t, view);
       judge.add("recomputed faces", result, faces);
       NormalRecompute(segment, groups).unit_normals(t, group_view);
       judge.add("recomputed groups", of_groups, vertices);

@@ -14,9 +14,9 @@
 #include "chronormal/core/result.h"
 #include "io/bytes/file.h"
 #include "io/gltf/decode/gltf_bytes.h"
-#include "io/gltf/edit/gltf_edit_arrays.h"
 #include "io/gltf/edit/unused_arrays.h"
 #include "io/gltf/glb/glb.h"
+#include "io/gltf/glb/new_arrays.h"
 #include "io/gltf/model/gltf_model.h"
 #include "io/json/json_text.h"
 

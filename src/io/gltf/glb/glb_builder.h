@@ -25,7 +25,7 @@
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
 #include "io/bytes/spool.h"
-#include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/glb/new_arrays.h"
 
 namespace chronormal::inline internal {
 

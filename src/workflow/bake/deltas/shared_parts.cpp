@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/glb/new_arrays.h"
 
 namespace chronormal::inline internal {
 namespace {

@@ -1,6 +1,6 @@
 /// Defines the largest lengths of names and tables that all reports share, and converts angles to degrees.
-#ifndef CLI_REPORTS_ROWS_H_
-#define CLI_REPORTS_ROWS_H_
+#ifndef CLI_TERMINAL_ROWS_H_
+#define CLI_TERMINAL_ROWS_H_
 
 #include <cstddef>
 
@@ -18,4 +18,4 @@ inline constexpr std::size_t kMostRows = 16;
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_ROWS_H_
+#endif  // CLI_TERMINAL_ROWS_H_

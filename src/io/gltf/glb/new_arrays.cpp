@@ -1,4 +1,4 @@
-#include "io/gltf/edit/gltf_edit_arrays.h"
+#include "io/gltf/glb/new_arrays.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 /// Stores new arrays of a glTF file, and describes them by accessors and buffer views. Private to io.
-#ifndef CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
-#define CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
+#ifndef CHRONORMAL_IO_GLTF_GLB_NEW_ARRAYS_H_
+#define CHRONORMAL_IO_GLTF_GLB_NEW_ARRAYS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -114,4 +114,4 @@ class NewArrays {
 
 }  // namespace chronormal::inline internal::gltf
 
-#endif  // CHRONORMAL_IO_GLTF_EDIT_GLTF_EDIT_ARRAYS_H_
+#endif  // CHRONORMAL_IO_GLTF_GLB_NEW_ARRAYS_H_
