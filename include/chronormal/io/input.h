@@ -59,7 +59,10 @@ struct InputOptions {
   double frames_per_second = 1;      ///< from 1e-9 to 1e9
   /// An animation of a glTF file, by name or index; if empty, its morph targets are used.
   std::string animation = {};
-  bool world = false;           ///< move vertices of a glTF file to their places in the scene
+  bool world = false;  ///< move vertices of a glTF file to their places in the scene
+  /// Moves vertices of a glTF file by the skins of its nodes, to their places in the scene, even without `world`. Under
+  /// an animation, their paths are curves. These are cut into straight pieces, at most max_expansion between two keys.
+  bool skins = false;
   bool allow_external = false;  ///< a glTF file may refer to files outside of its folder
   /// The largest memory that a file may cause: so many times its size, or 32 MiB if that is more. Requests of the user
   /// are not limited.

@@ -12,13 +12,18 @@
 /// Each mesh is a separate body, and so is each node with a mesh. Vertices are those of the file, not welded, part by
 /// part: in the order of meshes and primitives for targets, and of nodes and primitives for an animation or in the
 /// world. They are at the positions of the mesh, or in the world, where the nodes of the file move them (animations of
-/// nodes and skins are not applied; by the specification, a node with a skin does not move its mesh). If a node
-/// mirrors, faces are reversed, so that their normals still point outwards.
+/// nodes are not applied; by the specification, a node with a skin does not move its mesh). If a node mirrors, faces
+/// are reversed, so that their normals still point outwards.
+///
+/// On request, skins move vertices, always in the world, and an animation may move a mesh by its joints alone. Joints
+/// move vertices on curves, which are cut into straight pieces so that normals are within kPathTolerance of those of
+/// the curves (gltf_skinned_part.h). Vertices behind a skin are rounded to float32.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +31,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/paths.h"
 #include "io/bytes/expansion.h"
 
 namespace chronormal::inline internal {
@@ -33,6 +39,8 @@ namespace chronormal::inline internal {
 struct GltfMotionOptions {
   std::string animation;  ///< name or index; empty for the targets
   bool world = false;     ///< true if nodes move vertices to their places in the world, once for each node
+  bool skins = false;     ///< true if skins move vertices
+  std::size_t most_pieces = chronormal::kMostPieces;  ///< of an interval between two keys, for skins
   /// The largest distance between a cut cubic spline and the true one, relative to the diagonal of the bounding box.
   double curve_tolerance = 1e-5;
   /// The largest memory for keyframes in bytes, since a small file can demand much.
@@ -46,6 +54,8 @@ struct GltfMotion {
   double curve_error = 0;
   /// The times of the keys of an animation, ascending, without the times at which cubic splines were cut.
   std::vector<double> key_times = {};
+  std::vector<Error> unread_skins = {};  ///< why skins were ignored that cannot be read
+  std::optional<CutPath> cut = {};  ///< how the paths of vertices behind skins were cut; nothing if there is no skin
 };
 
 /// Returns true if some target of the document moves a primitive with faces.
