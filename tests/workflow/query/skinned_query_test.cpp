@@ -295,7 +295,7 @@ Rig tube(fixtures::Random& random, std::size_t joints, bool is_cubic) {
                                   : i == 3 || *path == 's'          ? 1
                                   : *path == 't' && i == 1 && j > 0 ? length
                                                                     : 0;
-            one.values.push_back(static_cast<float>(middle) + (is_cubic ? 0.3F : 1.0F) * number(low, high));
+            one.values.push_back(static_cast<float>(middle) + (is_cubic ? 0.15F : 1.0F) * number(low, high));
           }
         }
       }
