@@ -95,11 +95,11 @@ struct Pieces {
 };
 
 /// Returns the fewest pieces that suffice for all faces for which some number of pieces suffices, or `most` if that is
-/// fewer. Numbers up to `tried` are tried, also beyond `most`. bounds.not_within(faces, pieces) returns those of the
-/// faces for which so many pieces are not enough, in their order; nullptr stands for all faces.
+/// fewer. bounds.not_within(faces, pieces) returns those of the faces for which so many pieces are not enough, in their
+/// order; nullptr stands for all faces.
 template <class Bounds>
-[[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most, std::size_t tried = kMostPieces) {
-  tried = std::max(most, tried);
+[[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most) {
+  const std::size_t tried = std::max(most, kMostPieces);
   std::vector<std::size_t> ladder, left;  // number of pieces of each rung, and of faces that it leaves
   for (std::size_t n = 1; n <= tried; n *= 2) {
     ladder.push_back(n);

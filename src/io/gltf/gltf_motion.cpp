@@ -27,8 +27,6 @@ using gltf::WeightCurve;
 
 // An animation of a face that speaks for 15 minutes needs some 200,000 pieces at the default tolerance.
 constexpr std::size_t kMostPieces = 250000;
-// If the joints move so fast that all faces need more pieces than allowed, they get as many as are allowed.
-constexpr std::size_t kMostTried = 400;
 
 // A collector of the primitives of a motion in order, with the targets and tracks that move them.
 class Assembly {
@@ -492,9 +490,9 @@ class AnimationReader {
                              std::to_string(kMostPieces) + " straight pieces");
   }
 
-  // Returns the number of pieces of an interval between two keys, at least `fewest`, that keeps normals behind skins
-  // within the tolerance. Counts the faces for which it does not.
-  [[nodiscard]] std::size_t pieces_behind_skins(double from, double to, std::size_t fewest) {
+  // Returns the number of pieces of an interval between two keys, from `fewest` to `most`, that keeps normals behind
+  // skins within the tolerance. Counts the faces for which it does not.
+  [[nodiscard]] std::size_t pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
     struct OfParts {
       std::vector<GltfSkinPieces> parts;
 
@@ -529,9 +527,24 @@ class AnimationReader {
       }
       of_parts.parts.emplace_back(*skinned, assembly_.motion().topology, assembly_.parts()[p], std::move(before), sine);
     }
-    const Pieces pieces = pieces_for(of_parts, std::max<std::size_t>(options_.most_pieces, 1), kMostTried);
-    beyond_ += pieces.count < fewest ? of_parts.not_within(nullptr, fewest).size() : pieces.beyond;
-    return std::max(pieces.count, fewest);
+    const Pieces pieces = pieces_for(of_parts, std::max(most, fewest));
+    // If joints move so fast that most faces need more pieces than are allowed, they get as many as are allowed.
+    const bool is_fast = 2 * pieces.beyond > assembly_.motion().topology.face_count();
+    const std::size_t count = std::max({pieces.count, fewest, is_fast ? most : 1});
+    beyond_ += count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond;
+    return count;
+  }
+
+  // Returns the largest number of pieces behind skins that each interval between two keys may have: as many as
+  // --max-expansion names, or fewer if the keyframes would need more memory than is allowed. At least 1.
+  [[nodiscard]] std::size_t most_pieces_behind_skins() const {
+    std::size_t most = std::max<std::size_t>(options_.most_pieces, 1);
+    const std::size_t intervals = std::max<std::size_t>(keys_.size(), 2) - 1;
+    const auto fits = [&](std::size_t pieces) {
+      return assembly_.check_memory(keyframes_of(intervals * pieces), options_.most_bytes, weight_bytes_).ok();
+    };
+    while (most > 1 && !fits(most)) --most;
+    return most;
   }
 
   // Cuts curves into chords, short enough that a chord stays within the tolerance. The distance between a curve and its
@@ -539,12 +552,13 @@ class AnimationReader {
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
     double curve_error = 0;
+    const std::size_t most = assembly_.has_skins() ? most_pieces_behind_skins() : 1;
     for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
       const double from = keys_[k], duration = keys_[k + 1] - from, a = acceleration(from, keys_[k + 1]);
       const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
       if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces))) return too_many_pieces();
       auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
-      if (assembly_.has_skins()) count = pieces_behind_skins(from, keys_[k + 1], count);
+      if (assembly_.has_skins()) count = pieces_behind_skins(from, keys_[k + 1], count, most);
       if (count > kMostPieces - std::min(pieces_.size(), kMostPieces)) return too_many_pieces();
       const std::size_t keyframes = keyframes_of(pieces_.size() + count);
       if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
