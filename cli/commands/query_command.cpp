@@ -70,27 +70,6 @@ Result<Question> find_question(const QueryArguments& options) {
   return *found;
 }
 
-// Prints a warning if a mesh has a skin. Joints move vertices on curves, which straight segments cannot represent, so
-// the answer is about the mesh without its skin. Errors: kUsage if the user asked for positions in the world.
-Status check_skins(const Input& input, const InputOptions& options) {
-  if (input.document() == nullptr) return Success{};
-  for (const GltfNode& node : input.document()->nodes()) {
-    if (!node.has_skin || !node.mesh) continue;
-    if (options.world)
-      return misuse(
-          "--world",
-          formatted(
-              "mesh {} has a skin, which query does not apply; leave --world out to examine the mesh before skinning",
-              *node.mesh));
-    say("query",
-        formatted("mesh {} has a skin, which query does not apply; the answer is about the mesh before skinning",
-                  *node.mesh),
-        Tone::kWarning);
-    return Success{};
-  }
-  return Success{};
-}
-
 Result<int> run(const QueryArguments& options) {
   const Result<Question> question = find_question(options);
   if (!question) return question.error();
@@ -115,9 +94,10 @@ Result<int> run(const QueryArguments& options) {
   if (const Status distinct = check_distinct({{"OUT", output}}, read); !distinct) return distinct.error();
 
   Progress progress(options.common.quiet);
-  Result<Input> input = open_input("query", options.input, progress);
+  InputOptions behind_skins = options.input;
+  behind_skins.skins = true;
+  Result<Input> input = open_input("query", behind_skins, progress);
   if (!input) return input.error();
-  if (const Status skins = check_skins(input.value(), options.input); !skins) return skins.error();
   const Result<const Motion*> motion = input.value().motion();
   if (!motion) return motion.error();
   QuerySpan span = options.span;

@@ -2,6 +2,7 @@
 #include "cli/options/command.h"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -25,9 +26,10 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)
     say_text(formatted(
-        "{} paths: {} cut into {}, with normals within {} degrees of the curves; coordinates are rounded by {:.1g}\n",
-        path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
-        counted(cut.pieces, "straight piece", "straight pieces"), cut.path.tolerance, cut.rounding));
+        "{} paths: {} cut into {}, with normals within {} degrees of the curves; coordinates are rounded by {:.1g}{}\n",
+        cut.skins ? "skinned" : path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
+        counted(cut.pieces, "straight piece", "straight pieces"), cut.path.tolerance, cut.rounding,
+        cut.skins ? ", in the scene's world" : ""));
   if (cut.beyond > 0)
     warn(
         formatted("in {} of {} cases (a face in a segment), normals are not that close to the curve, since the face "
@@ -205,15 +207,24 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   Result<Input> input = chronormal::open_input(options);
   progress.clear();
   if (!input) return input;
+  // Reading the motion behind skins may find more notes.
+  std::optional<Error> fault;
+  std::size_t faces = 0;
+  if (options.is_curved() || (options.skins && input.value().document() != nullptr)) {
+    const Result<MotionStream*> pieces = input.value().stream();
+    if (pieces)
+      faces = pieces.value()->motion().topology.face_count();
+    else
+      fault = pieces.error();
+  }
   constexpr std::size_t kMostSaid = 8;
   const std::vector<std::string> notes = input.value().notes();
   for (std::size_t i = 0; i < std::min(notes.size(), kMostSaid); ++i) say(command, notes[i], Tone::kWarning);
   if (notes.size() > kMostSaid)
     say(command, formatted("{} more notes like these were left out", notes.size() - kMostSaid), Tone::kWarning);
-  if (!options.is_curved()) return input;
-  const Result<MotionStream*> pieces = input.value().stream();
-  if (!pieces) return pieces.error();
-  say_of_curves(command, input.value().cut_path(), pieces.value()->motion().topology.face_count(), progress.is_quiet());
+  if (fault) return *fault;
+  if (options.is_curved() || input.value().cut_path().skins)
+    say_of_curves(command, input.value().cut_path(), faces, progress.is_quiet());
   return input;
 }
 

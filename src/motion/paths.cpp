@@ -1,20 +1,9 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// Let e and f be the edges of a face over one piece, as chords. Let the cubics differ from the chords by p and q times
-// s (1 - s). p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, with the derivatives by s of
-// the cubic. To see this, note that p s (1 - s) and the difference of cubic and chord are cubics that vanish at s = 0
-// and 1 and have the same second derivatives. So the normal of the curve differs from the normal n of the chords by
-//
-//     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                           (1)
-//
-// added up over the triangles of the face. Both products are quadratics in s, and so is n. A quadratic is never longer
-// than the longest of its Bernstein coefficients, and never shorter than the shortest projection of these coefficients
-// on a direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from below by l. The angle between n
-// and n + d is then at most asin(r / l). A sum over several faces changes by at most the sum of their r, so the same
-// bounds serve vertices and corners.
-//
-// Rounding a keyframe to float32 moves each coordinate by up to 2^-24 of its value. This changes the normal like (1),
-// by up to |e| |dq| + |dp| |f| + |dp| |dq|. Cutting a piece whose r is below this change gains nothing.
+// The bound of the angle between normals is in motion/piece_bounds.h. For a cubic, an edge differs from its chord by
+// p s (1 - s), where p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6, with the derivatives
+// by s of the cubic. To see this, note that p s (1 - s) and the difference of cubic and chord are cubics that vanish at
+// s = 0 and 1 and have the same second derivatives.
 #include "chronormal/motion/paths.h"
 
 #include <algorithm>
@@ -32,7 +21,7 @@
 #include "core/charconv.h"
 #include "core/portable_math.h"
 #include "core/rounding.h"
-#include "core/vector_area.h"
+#include "motion/piece_bounds.h"
 
 namespace chronormal {
 namespace {
@@ -99,36 +88,6 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   }
 }
 
-// A vector that changes linearly over a piece, given by its values at both ends.
-struct Ends {
-  Vec3d from, to;
-};
-
-// The edge from the first corner of a face to another corner, over a piece: its chord, the deviation of the cubic from
-// the chord, and a bound of the rounding error at either end.
-struct PieceEdge {
-  Ends chord, beside;
-  double rounding = 0;
-};
-
-// Sums of cross products of edges, as quadratics in s.
-class Products {
- public:
-  void add(const Ends& e, const Ends& f) noexcept {
-    from_ = from_ + cross(e.from, f.from);
-    middle_ = middle_ + 0.5 * (cross(e.from, f.to) + cross(e.to, f.from));
-    to_ = to_ + cross(e.to, f.to);
-  }
-  [[nodiscard]] double longest() const noexcept { return std::max({length(from_), length(middle_), length(to_)}); }
-  [[nodiscard]] double shortest() const noexcept {
-    const Vec3d direction = unit(from_ + 2 * middle_ + to_);
-    return std::min({dot(from_, direction), dot(middle_, direction), dot(to_, direction)});
-  }
-
- private:
-  Vec3d from_, middle_, to_;
-};
-
 // The bounds by which faces of a segment tell whether a number of pieces is sufficient.
 class PieceBounds {
  public:
@@ -162,22 +121,8 @@ class PieceBounds {
   }
 
   [[nodiscard]] bool is_within(std::span<const std::uint32_t> face, double start, double end) const {
-    Products normal, beside, beside_both;
-    double rounding = 0;
-    for_fan(
-        face.size(), [&](std::size_t c) { return edge(face[0], face[c], start, end); },
-        [&](const PieceEdge& e, const PieceEdge& f) {
-          normal.add(e.chord, f.chord);
-          beside.add(e.chord, f.beside);
-          beside.add(e.beside, f.chord);
-          beside_both.add(e.beside, f.beside);
-          const auto size = [](const PieceEdge& edge) {
-            return std::max(length(edge.chord.from), length(edge.chord.to));
-          };
-          rounding += size(e) * f.rounding + e.rounding * size(f) + e.rounding * f.rounding;
-        });
-    const double most = (1 + 0x1p-30) * (beside.longest() / 4 + beside_both.longest() / 16);
-    return most <= rounding || most <= sine_ * normal.shortest();
+    return internal::is_within(
+        face.size(), [&](std::size_t c) { return edge(face[0], face[c], start, end); }, sine_);
   }
 
   [[nodiscard]] PieceEdge edge(std::uint32_t a, std::uint32_t b, double start, double end) const {
@@ -193,45 +138,14 @@ class PieceBounds {
     const Vec3d here = share * lerp(first, last, start), there = share * lerp(first, last, end);
     return {{evaluate(e, start), evaluate(e, end)},
             {-1.0 * (2 * here + there), -1.0 * (here + 2 * there)},
-            2 * std::sqrt(3.0) * kFloatUnitRoundoff * size};
+            0,
+            edge_rounding(size)};
   }
 
   const Topology& topology_;
   const CubicSegment& cubics_;
   double sine_;
 };
-
-struct Pieces {
-  std::size_t count = 1, beyond = 0;
-};
-
-// Returns the fewest pieces that suffice for all faces that any number of pieces can satisfy. Returns at most `most`,
-// even if more would be needed.
-Pieces pieces_for(const PieceBounds& bounds, std::size_t most) {
-  const std::size_t tried = std::max(most, kMostPieces);
-  // Numbers of pieces in ascending order; for each, the number of faces for which it does not suffice.
-  std::vector<std::size_t> ladder, left;
-  for (std::size_t n = 1; n <= tried; n *= 2) {
-    ladder.push_back(n);
-    if (n > 1 && n + n / 2 <= tried) ladder.push_back(n + n / 2);
-  }
-  std::vector<std::uint32_t> never = bounds.not_within(nullptr, 1);
-  left.push_back(never.size());
-  for (std::size_t r = 1; r < ladder.size() && !never.empty(); ++r) {
-    never = bounds.not_within(&never, ladder[r]);
-    left.push_back(never.size());
-  }
-  auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces should suffice for every face for which larger pieces did. The code checks this once more, because
-  // the tolerance is guaranteed.
-  for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
-    const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
-    if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;
-  }
-  if (ladder[rung] <= most) return {ladder[rung], never.size()};
-  while (ladder[rung] > most) --rung;
-  return {ladder[rung], bounds.not_within(nullptr, ladder[rung]).size()};
-}
 
 // Computes the keyframes of pieces. Reads the keyframes of the original stream when they are needed.
 struct Cutter {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -49,19 +51,42 @@ class QueryCli : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(QueryCli, a_mesh_behind_a_skin_is_asked_before_it_is_skinned_and_that_is_said) {
+TEST_F(QueryCli, a_skin_that_cannot_be_read_is_said_and_left_out) {
   test::GltfBuilder builder = test::still_hills_document(1);
-  folder_.write("free.glb", builder.glb());
   const auto joint = builder.add("nodes", {{"translation", {0, 5, 0}}});
   builder.json["nodes"][0]["skin"] = builder.add("skins", {{"joints", {joint}}});
   folder_.write("skinned.glb", builder.glb());
-  const ProcessResult free = run("collapse free.glb"), skinned = run("collapse skinned.glb");
-  EXPECT_EQ(free.exit_code, 0) << free.err;
-  EXPECT_EQ(free.err.find("skin"), std::string::npos) << free.err;
+  const ProcessResult skinned = run("collapse skinned.glb");
   EXPECT_EQ(skinned.exit_code, 0) << skinned.err;
-  EXPECT_NE(skinned.err.find("mesh 0 has a skin, which query does not apply"), std::string::npos) << skinned.err;
-  expect_misuse("collapse skinned.glb --world", "leave --world out");
-  EXPECT_EQ(run("collapse free.glb --world").exit_code, 0);
+  EXPECT_NE(skinned.err.find("JOINTS_0); the mesh is moved without its skin"), std::string::npos) << skinned.err;
+  EXPECT_EQ(run("collapse skinned.glb --strict").exit_code, 3);
+}
+
+TEST_F(QueryCli, a_mesh_behind_a_skin_is_asked_as_it_is_in_the_scene) {
+  test::GltfBuilder builder = test::still_hills_document(1);
+  folder_.write("free.glb", builder.glb());
+  auto& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
+  const std::size_t count = builder.json["accessors"][attributes["POSITION"].get<std::size_t>()]["count"];
+  attributes["JOINTS_0"] = builder.add_accessor("VEC4", std::vector<std::uint8_t>(4 * count));
+  attributes["WEIGHTS_0"] = builder.add_accessor("VEC4", std::vector<float>(4 * count));
+  const auto joint = builder.add("nodes", {{"rotation", {1, 0, 0, 0}}});  // half a turn around x
+  builder.json["nodes"][0]["skin"] = builder.add("skins", {{"joints", {joint}}});
+  builder.json["nodes"][0]["rotation"] = {0, 1, 0, 0};
+  folder_.write("skinned.glb", builder.glb());
+  const auto rows = [&](const std::string& arguments) {
+    const ProcessResult result = run(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err.find("skinned paths: ") != std::string::npos &&
+                  result.err.find("in the scene's world") != std::string::npos,
+              arguments.find("skinned.glb") != std::string::npos)
+        << result.err;
+    return std::count(result.out.begin(), result.out.end(), ',');
+  };
+  const auto front = rows("facing free.glb --direction 0.2,0.9,0.4 --json");
+  const auto back = rows("facing free.glb --direction 0.2,-0.9,-0.4 --json");
+  EXPECT_NE(front, back);
+  EXPECT_EQ(rows("facing skinned.glb --direction 0.2,-0.9,-0.4 --json"), front);
+  EXPECT_EQ(rows("facing skinned.glb --direction 0.2,-0.9,-0.4 --json --world"), front);
 }
 
 TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {

@@ -60,7 +60,11 @@ struct InputOptions {
   double frames_per_second = 1;      ///< keyframes per second in formats without times; from 1e-9 to 1e9
   /// The animation of a glTF file to read, by name or index. If it is empty, the morph targets are read.
   std::string animation = {};
-  bool world = false;           ///< true to move the vertices of a glTF file to their places in the scene
+  bool world = false;  ///< true to move the vertices of a glTF file to their places in the scene
+  /// True to move the vertices of a glTF file by the skins of its nodes, to their places in the scene even without
+  /// `world`. Under an animation, vertices move on curves. These are cut into straight pieces, at most max_expansion
+  /// between two keys.
+  bool skins = false;
   bool allow_external = false;  ///< true if a glTF file may refer to files outside of its folder
   /// The largest memory that reading a file may cause, as a multiple of the file's size. At least 32 MiB are always
   /// allowed. Memory that options of the user ask for is not limited.

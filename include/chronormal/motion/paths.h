@@ -136,6 +136,7 @@ struct VelocityFit {
 /// The numbers that describe how curves were cut into pieces.
 struct CutPath {
   Path path;
+  bool skins = false;        ///< the paths are those of vertices behind the skins of a glTF file; then `path` is linear
   std::size_t segments = 0;  ///< number of segments between the original keyframes
   std::size_t pieces = 0;    ///< number of pieces of all segments
   /// Number of faces that miss the tolerance with any number of pieces, counted once for each segment.

@@ -4,17 +4,21 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
+#include <memory>
 #include <utility>
 
 #include "chronormal/motion/motion.h"
 #include "core/blocks.h"
 #include "core/portable_math.h"
+#include "core/rounding.h"
 #include "core/twofold.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/expansion.h"
+#include "io/gltf/gltf_skin.h"
+#include "io/gltf/gltf_skinned_part.h"
 #include "io/gltf/gltf_weights.h"
 #include "io/gltf/model/gltf_model.h"
+#include "motion/piece_bounds.h"
 
 namespace chronormal::inline internal {
 namespace {
@@ -28,7 +32,9 @@ constexpr std::size_t kMostPieces = 250000;
 // A collector of the primitives of a motion in order, with the targets and tracks that move them.
 class Assembly {
  public:
-  Assembly(const GltfDocument& document, bool world) : document_(document), world_(world) {}
+  Assembly(const GltfDocument& document, const GltfMotionOptions& options,
+           std::optional<std::size_t> animation = std::nullopt)
+      : document_(document), world_(options.world), with_skins_(options.skins), animation_(animation) {}
 
   // Adds those primitives of a mesh that have faces.
   void add_mesh(std::optional<std::size_t> node, std::size_t mesh) {
@@ -50,11 +56,73 @@ class Assembly {
       for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
         if (const auto mesh = document_.nodes()[n].mesh; mesh && wanted(*mesh)) add_mesh(n, *mesh);
       }
-    } else {
-      for (std::size_t m = 0; m < document_.meshes().size(); ++m) {
-        if (wanted(m)) add_mesh(std::nullopt, m);
-      }
+      return;
     }
+    // A skin belongs to a node, so a mesh with a skin is added for each node that has one.
+    std::vector<std::vector<std::size_t>> skinned(document_.meshes().size());
+    for (std::size_t n = 0; n < document_.nodes().size(); ++n)
+      if (is_skinned(n)) skinned[*document_.nodes()[n].mesh].push_back(n);
+    for (std::size_t m = 0; m < document_.meshes().size(); ++m) {
+      if (!wanted(m)) continue;
+      if (skinned[m].empty()) add_mesh(std::nullopt, m);
+      for (const std::size_t n : skinned[m]) add_mesh(n, m);
+    }
+  }
+
+  // Returns true if a skin moves the mesh of a node, and skins are wanted.
+  [[nodiscard]] bool is_skinned(std::size_t node) const {
+    return with_skins_ && document_.nodes()[node].mesh && document_.nodes()[node].has_skin;
+  }
+  // Returns the skin of such a node, which is read once, or nullptr if it cannot be read.
+  [[nodiscard]] std::shared_ptr<const GltfSkin> skin_of(std::size_t node) {
+    const auto [posed, is_new] = skins_.try_emplace(node);
+    if (!is_new) return posed->second.skin;
+    Result<GltfSkin> read = GltfSkin::read(document_, node, animation_);
+    if (!read) {
+      result_.unread_skins.push_back(read.error());
+      return nullptr;
+    }
+    posed->second.skin = std::make_shared<const GltfSkin>(std::move(read).value());
+    posed->second.pose = posed->second.skin->pose(0, false);
+    return posed->second.skin;
+  }
+  // Returns the part as one behind a skin, or nullptr. Valid after read().
+  [[nodiscard]] const GltfSkinnedPart* skinned(std::size_t part) const {
+    return skinned_parts_[part] ? &*skinned_parts_[part] : nullptr;
+  }
+  [[nodiscard]] bool has_skins() const noexcept {
+    return std::any_of(skinned_parts_.begin(), skinned_parts_.end(), [](const auto& part) { return part.has_value(); });
+  }
+
+  // Poses all skins, and returns true if a joint is not where it was.
+  bool pose(double time, bool just_before) {
+    bool has_moved = false;
+    for (auto& [node, posed] : skins_) {
+      if (!posed.skin || !posed.skin->moves()) continue;
+      std::vector<AffineTransform> pose = posed.skin->pose(time, just_before);
+      has_moved |= !std::equal(pose.begin(), pose.end(), posed.pose.begin(), [](const auto& a, const auto& b) {
+        return a.columns == b.columns && a.offset == b.offset;
+      });
+      posed.pose = std::move(pose);
+    }
+    return has_moved;
+  }
+
+  // Writes the positions of some vertices of a part before a skin.
+  void unskinned(std::size_t part, std::span<const std::uint32_t> vertices, std::span<const double> weights,
+                 std::span<Vec3d> all) const {
+    const GltfGeometry& geometry = geometries_[part];
+    parallel_each(vertices.size(), kBlockOfCoordinates / 3, [&](std::size_t n) {
+      const auto vector = [&](const std::vector<float>& from) {
+        return to_double(VectorView<const float>::packed(std::span(from))[vertices[n]]);
+      };
+      Vec3d sum = vector(geometry.positions);
+      for (std::size_t k = 0; k < geometry.targets.size(); ++k) {
+        const std::vector<float>& deltas = geometry.targets[k].positions;
+        if (weights[k] != 0 && !deltas.empty()) sum = sum + weights[k] * vector(deltas);
+      }
+      all[vertices[n]] = sum;
+    });
   }
 
   [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
@@ -64,6 +132,9 @@ class Assembly {
   // computed: targets, corners, and other_bytes for weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
+    const bool all_skinned = std::all_of(parts().begin(), parts().end(), [&](const GltfPart& part) {
+      return part.node && is_skinned(*part.node);
+    });  // and thus rounded
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
     // Each keyframe also takes memory for its segment and its place on the heap.
     constexpr std::size_t kBytesPerKeyframe = 128;
@@ -79,7 +150,7 @@ class Assembly {
       const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
       // Each of the two factors is below 2^40.
       take(primitive.targets.size() + 1, kBytesPerVertex * part.vertex_count);
-      take(keyframes, kWithResiduals * part.vertex_count);
+      take(keyframes, (all_skinned ? kBytesPerVertex : kWithResiduals) * part.vertex_count);
       take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));
     }
     if (!enough)
@@ -115,6 +186,14 @@ class Assembly {
         corners.push_back(static_cast<std::uint32_t>(part.first_vertex + vertex));
       geometry.value().corners = {};
       geometries_.push_back(std::move(geometry).value());
+      skinned_parts_.emplace_back();
+      std::shared_ptr<const GltfSkin> skin = part.node && is_skinned(*part.node) ? skin_of(*part.node) : nullptr;
+      if (!skin) continue;
+      Result<GltfSkinnedPart> read = GltfSkinnedPart::read(document_, part, std::move(skin));
+      if (read)
+        skinned_parts_.back() = std::move(read).value();
+      else
+        result_.unread_skins.push_back(read.error());
     }
     if (corners.empty()) return invalid_input(document_.name(), "the meshes have no faces, so they have no normals");
     Result<Topology> topology = Topology::triangles(vertex_count_, std::move(corners));
@@ -150,13 +229,29 @@ class Assembly {
     keyframe.time = time;
     keyframe.name = std::move(name);
     keyframe.set_positions(high, low);
+    if (has_skins()) {
+      const auto largest =
+          std::max_element(high.begin(), high.end(), [](double a, double b) { return std::fabs(a) < std::fabs(b); });
+      largest_ = std::max(largest_, std::fabs(*largest));
+    }
     return Success{};
   }
 
   [[nodiscard]] Motion& motion() noexcept { return result_.motion; }
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
-  [[nodiscard]] Result<GltfMotion> finish() {
+  // Finishes the motion. `beyond` is the number of faces that miss the tolerance behind skins, and key_times has the
+  // ends of the intervals that were cut; it is empty if nothing was.
+  [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
+    if (has_skins()) {
+      CutPath& cut = result_.cut.emplace();
+      cut.skins = true;
+      cut.pieces = result_.motion.segments.size();
+      cut.segments = key_times.empty() ? cut.pieces : key_times.size() - 1;
+      cut.beyond = beyond;
+      cut.rounding = kFloatUnitRoundoff * largest_;
+    }
+    result_.key_times = std::move(key_times);
     if (Status status = validate(result_.motion); !status)
       return invalid_input(std::string(document_.name()).append(", ").append(status.error().place),
                            status.error().message);
@@ -166,8 +261,13 @@ class Assembly {
 
  private:
   static constexpr std::size_t kBlockOfCoordinates = 3 * 2048;
+  struct PosedSkin {
+    std::shared_ptr<const GltfSkin> skin;
+    std::vector<AffineTransform> pose;
+  };
 
-  // Returns the coordinates of some vertices of a part at the given weights, in the space of the mesh or of the world.
+  // Returns the coordinates of some vertices of a part at the given weights: in the space of the mesh or of the world,
+  // or behind the skin of the part in its pose.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -177,6 +277,17 @@ class Assembly {
       if (weights[k] != 0 && !deltas.empty()) sums.add(weights[k], std::span(deltas).subspan(some.first, some.count));
     }
     sums.settle();
+    if (const GltfSkinnedPart* const behind = skinned(part)) {
+      const std::vector<AffineTransform>& pose = skins_.at(*parts()[part].node).pose;
+      for (std::size_t i = 0; i < some.count; i += 3) {
+        const Vec3d before{sums[i].high, sums[i + 1].high, sums[i + 2].high};
+        const Vec3f place = to_float(behind->place(pose, (some.first + i) / 3, before));
+        sums.set(i, {double{place.x}, 0});
+        sums.set(i + 1, {double{place.y}, 0});
+        sums.set(i + 2, {double{place.z}, 0});
+      }
+      return sums;
+    }
     const AffineTransform& transform = transforms_[part];
     for (std::size_t i = 0; world_ && i < some.count; i += 3) {
       const Twofold x = sums[i], y = sums[i + 1], z = sums[i + 2];
@@ -192,7 +303,11 @@ class Assembly {
   }
 
   const GltfDocument& document_;
-  bool world_;
+  bool world_, with_skins_;
+  std::optional<std::size_t> animation_;
+  std::map<std::size_t, PosedSkin> skins_;                     // of nodes
+  std::vector<std::optional<GltfSkinnedPart>> skinned_parts_;  // one for each part
+  double largest_ = 0;                                         // coordinate, if there are skins
   GltfMotion result_;
   std::size_t vertex_count_ = 0;
   std::vector<GltfGeometry> geometries_;     // one for each part
@@ -207,7 +322,7 @@ std::string target_name(const GltfDocument& document, std::size_t target) {
 }
 
 Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOptions& options) {
-  Assembly assembly(document, options.world);
+  Assembly assembly(document, options);
   assembly.add_meshes([&](std::size_t mesh) { return document.meshes()[mesh].target_count > 0; });
   std::size_t target_count = 0;
   for (const GltfPart& part : assembly.parts())
@@ -215,7 +330,9 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
   if (assembly.empty() || !has_moving_targets(document))
     return invalid_input(
         document.name(),
-        "nothing in this file moves by morph targets; export the shape keys of the mesh as morph targets");
+        options.skins && !document.animations().empty()
+            ? "nothing in this file moves by morph targets; choose an animation with --animation"
+            : "nothing in this file moves by morph targets; export the shape keys of the mesh as morph targets");
   if (Status status = assembly.check_memory(target_count + 1, options.most_bytes); !status) return status.error();
   if (Status status = assembly.read(true); !status) return status.error();
 
@@ -237,7 +354,7 @@ Result<GltfMotion> read_targets(const GltfDocument& document, const GltfMotionOp
 class AnimationReader {
  public:
   AnimationReader(const GltfDocument& document, std::size_t animation, const GltfMotionOptions& options)
-      : document_(document), animation_(animation), options_(options), assembly_(document, options.world) {}
+      : document_(document), animation_(animation), options_(options), assembly_(document, options, animation) {}
 
   Result<GltfMotion> read() {
     if (Status status = read_curves(); !status) return status.error();
@@ -251,23 +368,36 @@ class AnimationReader {
       if (Status status = add_piece(pieces_[piece], pieces_[piece + 1]); !status) return status.error();
     }
     assembly_.motion().connect(MotionKind::kAnimation);
-    Result<GltfMotion> result = assembly_.finish();
-    if (result) result.value().key_times = std::move(keys_);
-    return result;
+    return assembly_.finish(beyond_, std::move(keys_));
   }
 
  private:
   Status read_curves() {
     const std::vector<GltfTrack>& tracks = document_.animations()[animation_].tracks;
-    std::vector<std::size_t> order(tracks.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return tracks[a].node < tracks[b].node; });
-    for (const std::size_t t : order) {
-      const GltfTrack& track = tracks[t];
-      const std::size_t mesh = document_.nodes()[track.node].mesh.value();
+    std::map<std::size_t, std::optional<std::size_t>> of_nodes;  // the track of a node's weights
+    for (std::size_t t = 0; t < tracks.size(); ++t) of_nodes[tracks[t].node] = t;
+    for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
+      if (!assembly_.is_skinned(n)) continue;
+      const std::shared_ptr<const GltfSkin> skin = assembly_.skin_of(n);
+      if (!skin || !skin->moves()) continue;
+      of_nodes.try_emplace(n);
+      const std::vector<double> times = skin->key_times();
+      keys_.insert(keys_.end(), times.begin(), times.end());
+      jumps_ |= skin->jumps();
+    }
+    for (const auto& [node, t] : of_nodes) {
+      const std::size_t mesh = document_.nodes()[node].mesh.value();
       const std::size_t first_part = assembly_.parts().size();
-      assembly_.add_mesh(track.node, mesh);
+      assembly_.add_mesh(node, mesh);
       if (assembly_.parts().size() == first_part) continue;
+      if (!t) {
+        const std::vector<double>& own = document_.nodes()[node].weights;
+        const std::vector<double>& weights = own.empty() ? document_.meshes()[mesh].weights : own;
+        curve_of_part_.resize(assembly_.parts().size(), curves_.size());
+        curves_.emplace_back(GltfKeys{{}, weights}, GltfInterpolation::kLinear, weights.size());
+        continue;
+      }
+      const GltfTrack& track = tracks[*t];
       const auto known = curve_of_track_.find(track.same_keys_as);
       if (known == curve_of_track_.end()) {
         const std::size_t target_count = document_.meshes()[mesh].target_count;
@@ -276,7 +406,7 @@ class AnimationReader {
         const bool enough = binary::fits(track.key_count, bytes_per_key, options_.most_bytes);
         weight_bytes_ = enough ? weight_bytes_ + track.key_count * bytes_per_key : options_.most_bytes + 1;
         if (Status status = assembly_.check_memory(0, options_.most_bytes, weight_bytes_); !status) return status;
-        Result<GltfKeys> keys = document_.keys(animation_, t);
+        Result<GltfKeys> keys = document_.keys(animation_, *t);
         if (!keys) return keys.error();
         curve_of_track_.emplace(track.same_keys_as, curves_.size());
         curves_.emplace_back(std::move(keys).value(), track.interpolation, target_count);
@@ -284,9 +414,10 @@ class AnimationReader {
       curve_of_part_.resize(assembly_.parts().size(), curve_of_track_.at(track.same_keys_as));
     }
     if (assembly_.empty())
-      return invalid_input(
-          document_.name() + ", /animations/" + std::to_string(animation_),
-          "the animation drives no morph targets; choose another with --animation, or leave --animation out");
+      return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                           std::string("the animation drives no morph targets") +
+                               (options_.skins ? " and no skin; choose another with --animation"
+                                               : "; choose another with --animation, or leave --animation out"));
     return Success{};
   }
 
@@ -304,7 +435,8 @@ class AnimationReader {
   // Returns an upper bound of the number of keyframes for a number of intervals of time: one keyframe at each end of an
   // interval, or two where weights jump.
   [[nodiscard]] std::size_t keyframes_of(std::size_t pieces) const {
-    const bool jump = std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
+    const bool jump =
+        jumps_ || std::any_of(curves_.begin(), curves_.end(), [](const WeightCurve& c) { return c.jumps(); });
     return jump ? 2 * pieces : pieces + 1;
   }
 
@@ -343,12 +475,13 @@ class AnimationReader {
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
-  // Returns a bound of the acceleration of any vertex between two neighbouring keys, in units of the file per second
-  // squared.
+  // Returns a bound of the acceleration of any vertex without a skin between two neighbouring keys, in units of the file
+  // per second squared.
   [[nodiscard]] double acceleration(double from, double to) const {
     double largest = 0;
     std::vector<double> bounds;
     for (std::size_t p = 0; p < assembly_.parts().size(); ++p) {
+      if (assembly_.skinned(p) != nullptr) continue;
       bounds.resize(reach_[p].size());
       curves_[curve_of_part_[p]].curvature(from, to, bounds);
       double sum = 0;
@@ -358,19 +491,82 @@ class AnimationReader {
     return largest;
   }
 
+  [[nodiscard]] Error too_many_pieces() const {
+    return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
+                         "the animation bends too much between its keys, and would need more than " +
+                             std::to_string(kMostPieces) + " straight pieces");
+  }
+
+  // Returns the number of pieces of an interval between two keys, from `fewest` to `most`, that keeps normals behind
+  // skins within the tolerance. Counts the faces for which it does not.
+  [[nodiscard]] std::size_t pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
+    struct OfParts {
+      std::vector<GltfSkinPieces> parts;
+
+      [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
+                                                          std::size_t pieces) const {
+        std::vector<std::uint32_t> all;
+        for (const GltfSkinPieces& part : parts) {
+          const std::vector<std::uint32_t> some = part.not_within(faces, pieces);
+          all.insert(all.end(), some.begin(), some.end());
+        }
+        return all;
+      }
+    } of_parts;
+    const double sine = portable::sin(kPathTolerance / kDegreesPerRadian);
+    for (std::size_t p = 0; p < assembly_.parts().size(); ++p) {
+      const GltfSkinnedPart* const skinned = assembly_.skinned(p);
+      if (skinned == nullptr) continue;
+      const WeightCurve& curve = curves_[curve_of_part_[p]];
+      const GltfGeometry& geometry = assembly_.geometry(p);
+      GltfUnskinned before{from, to, {}, {}};
+      before.at = [this, p](std::span<const std::uint32_t> vertices, double time, bool just_before,
+                            std::span<Vec3d> all) {
+        assembly_.unskinned(p, vertices, weights_of(p, time, just_before), all);
+      };
+      std::vector<double> bends(reach_[p].size());
+      curve.curvature(from, to, bends);
+      for (std::size_t k = 0; k < bends.size(); ++k) {
+        const auto deltas = VectorView<const float>::packed(std::span(geometry.targets[k].positions));
+        if (bends[k] == 0 || deltas.count == 0) continue;
+        before.bend.resize(deltas.count);
+        for (std::size_t v = 0; v < deltas.count; ++v) before.bend[v] += bends[k] * length(to_double(deltas[v]));
+      }
+      of_parts.parts.emplace_back(*skinned, assembly_.motion().topology, assembly_.parts()[p], std::move(before), sine);
+    }
+    const Pieces pieces = pieces_for(of_parts, std::max(most, fewest));
+    // If joints move so fast that most faces need more pieces than are allowed, they get as many as are allowed.
+    const bool is_fast = 2 * pieces.beyond > assembly_.motion().topology.face_count();
+    const std::size_t count = std::max({pieces.count, fewest, is_fast ? most : 1});
+    beyond_ += count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond;
+    return count;
+  }
+
+  // Returns the largest number of pieces that each interval between two keys may have behind skins: as many as
+  // --max-expansion names, or fewer if the keyframes would need more memory than is allowed. At least 1.
+  [[nodiscard]] std::size_t most_pieces_behind_skins() const {
+    std::size_t most = std::max<std::size_t>(options_.most_pieces, 1);
+    const std::size_t intervals = std::max<std::size_t>(keys_.size(), 2) - 1;
+    const auto fits = [&](std::size_t pieces) {
+      return assembly_.check_memory(keyframes_of(intervals * pieces), options_.most_bytes, weight_bytes_).ok();
+    };
+    while (most > 1 && !fits(most)) --most;
+    return most;
+  }
+
   // Cuts curves into chords that stay within the tolerance. The distance between a curve and a chord is at most h^2 / 8
   // times the largest acceleration, where h is the duration of the chord.
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
     double curve_error = 0;
+    const std::size_t most = assembly_.has_skins() ? most_pieces_behind_skins() : 1;
     for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
       const double from = keys_[k], duration = keys_[k + 1] - from, a = acceleration(from, keys_[k + 1]);
       const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
-      if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces)))
-        return invalid_input(document_.name() + ", /animations/" + std::to_string(animation_),
-                             "the animation bends too much between its keys, and would need more than " +
-                                 std::to_string(kMostPieces) + " straight pieces");
-      const auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
+      if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces))) return too_many_pieces();
+      auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
+      if (assembly_.has_skins()) count = pieces_behind_skins(from, keys_[k + 1], count, most);
+      if (count > kMostPieces - std::min(pieces_.size(), kMostPieces)) return too_many_pieces();
       const std::size_t keyframes = keyframes_of(pieces_.size() + count);
       if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
       for (std::size_t i = 0; i < count; ++i)
@@ -383,23 +579,28 @@ class AnimationReader {
     return Success{};
   }
 
+  // Returns the weights of a part at a time.
+  [[nodiscard]] std::vector<double> weights_of(std::size_t part, double time, bool just_before) const {
+    std::vector<double> weights(reach_[part].size());
+    curves_[curve_of_part_[part]].at(time, just_before, weights);
+    return weights;
+  }
+
   // Returns the weights of all parts at a time, one list for each part.
   [[nodiscard]] std::vector<std::vector<double>> weights_at(double time, bool just_before) const {
-    std::vector<std::vector<double>> weights(assembly_.parts().size());
-    for (std::size_t p = 0; p < weights.size(); ++p) {
-      weights[p].resize(reach_[p].size());
-      curves_[curve_of_part_[p]].at(time, just_before, weights[p]);
-    }
+    std::vector<std::vector<double>> weights;
+    for (std::size_t p = 0; p < assembly_.parts().size(); ++p) weights.push_back(weights_of(p, time, just_before));
     return weights;
   }
 
   // Adds the keyframes at both ends of an interval of time. The keyframe at the first end exists already, because the
-  // previous interval ends there, unless the weights jump at this time.
+  // previous interval ends there, unless weights or joints jump at this time.
   Status add_piece(double from, double to) {
     const Motion& motion = assembly_.motion();
     for (const auto& [time, just_before] : {std::pair(from, false), std::pair(to, true)}) {
       std::vector<std::vector<double>> weights = weights_at(time, just_before);
-      if (!just_before && !motion.keyframes.empty() && weights == last_weights_) continue;
+      const bool has_moved = assembly_.pose(time, just_before);
+      if (!just_before && !motion.keyframes.empty() && weights == last_weights_ && !has_moved) continue;
       last_weights_ = std::move(weights);
       const auto of_part = [&](std::size_t p) { return std::span<const double>(last_weights_[p]); };
       if (Status status = assembly_.add_keyframe(time, "", of_part); !status) return status;
@@ -415,7 +616,8 @@ class AnimationReader {
   // The key is the same_keys_as of a track.
   std::map<std::size_t, std::size_t> curve_of_track_;
   std::vector<std::size_t> curve_of_part_;
-  std::size_t weight_bytes_ = 0;
+  std::size_t weight_bytes_ = 0, beyond_ = 0;
+  bool jumps_ = false;  // true if joints jump
   // times of the keys, and times at which the intervals begin or end, in seconds
   std::vector<double> keys_, pieces_;
   std::vector<std::vector<double>> reach_;  // one list for each part, with a number for each target
@@ -463,7 +665,7 @@ Result<GltfMotion> read_gltf_motion(const GltfDocument& document, const GltfMoti
 }
 
 Result<GltfMotion> read_gltf_mesh(const GltfDocument& document, const GltfMotionOptions& options) {
-  Assembly assembly(document, options.world);
+  Assembly assembly(document, options);
   assembly.add_meshes([](std::size_t) { return true; });
   if (assembly.empty()) return invalid_input(document.name(), "the file has no mesh with faces, so it has no normals");
   if (Status status = assembly.check_memory(1, options.most_bytes); !status) return status.error();

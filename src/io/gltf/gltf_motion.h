@@ -14,13 +14,18 @@
 /// animation or in the world.
 ///
 /// Positions are in the space of the mesh, or in the world, where the nodes of the file move them. Animations of nodes
-/// and skins are not applied; by the specification, a node with a skin does not move its mesh. If a node mirrors, faces
-/// are reversed, so that their normals still point outwards.
+/// are not applied; by the specification, a node with a skin does not move its mesh. If a node mirrors, faces are
+/// reversed, so that their normals still point outwards.
+///
+/// On request, skins move vertices, always in the world, and an animation may move a mesh by its joints alone. Joints
+/// move vertices on curves, which are cut into straight pieces, so that normals are within kPathTolerance of the normals
+/// on the curves (gltf_skinned_part.h). Vertices behind a skin are rounded to float32.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,6 +33,7 @@
 #include "chronormal/core/result.h"
 #include "chronormal/io/gltf_document.h"
 #include "chronormal/motion/motion.h"
+#include "chronormal/motion/paths.h"
 #include "io/bytes/expansion.h"
 
 namespace chronormal::inline internal {
@@ -35,6 +41,9 @@ namespace chronormal::inline internal {
 struct GltfMotionOptions {
   std::string animation;  ///< name or index of the animation; empty for the targets
   bool world = false;     ///< true for positions in the world, where each node that carries a mesh adds a copy of it
+  bool skins = false;     ///< true if skins move vertices
+  /// The largest number of pieces of an interval between two keys, for skins.
+  std::size_t most_pieces = chronormal::kMostPieces;
   /// The largest allowed distance between a cut cubic spline and the true one, relative to the diagonal of the bounding
   /// box.
   double curve_tolerance = 1e-5;
@@ -50,6 +59,8 @@ struct GltfMotion {
   double curve_error = 0;
   /// The times of the keys of an animation, ascending, without the times at which cubic splines were cut.
   std::vector<double> key_times = {};
+  std::vector<Error> unread_skins = {};  ///< why skins were ignored that cannot be read
+  std::optional<CutPath> cut = {};  ///< how the paths of vertices behind skins were cut; nothing if there is no skin
 };
 
 /// Returns true if some target of the document moves a primitive with faces.

@@ -29,24 +29,6 @@ Quaternion as_rotation(const Quaternion& q) {
   return {q[0] / length, q[1] / length, q[2] / length, q[3] / length};
 }
 
-// Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification
-// demands.
-Quaternion rotation_at(const gltf::WeightCurve& curve, GltfInterpolation interpolation, double time, bool just_before) {
-  Quaternion rotation;
-  const auto times = curve.times();
-  const auto after = std::upper_bound(times.begin(), times.end(), time);
-  if (interpolation != GltfInterpolation::kLinear || after == times.begin() || after == times.end()) {
-    curve.at(time, just_before, rotation);
-    return as_rotation(rotation);
-  }
-  NodeTransform from, to;
-  curve.at(*(after - 1), false, from.rotation);
-  curve.at(*after, false, to.rotation);
-  from.rotation = as_rotation(from.rotation);
-  to.rotation = as_rotation(to.rotation);
-  return interpolated(from, to, (time - *(after - 1)) / (*after - *(after - 1))).rotation;
-}
-
 Vec3d vector_at(const gltf::WeightCurve& curve, double time, bool just_before) {
   std::array<double, 3> v{};
   curve.at(time, just_before, v);
@@ -200,6 +182,23 @@ std::vector<double> GltfSkin::key_times() const {
   return result;
 }
 
+std::array<double, 4> GltfSkin::rotation_at(const Curve& moving, double time, bool just_before) {
+  const gltf::WeightCurve& curve = moving.curve;
+  Quaternion rotation;
+  const auto times = curve.times();
+  const auto after = std::upper_bound(times.begin(), times.end(), time);
+  if (moving.interpolation != GltfInterpolation::kLinear || after == times.begin() || after == times.end()) {
+    curve.at(time, just_before, rotation);
+    return as_rotation(rotation);
+  }
+  NodeTransform from, to;
+  curve.at(*(after - 1), false, from.rotation);
+  curve.at(*after, false, to.rotation);
+  from.rotation = as_rotation(from.rotation);
+  to.rotation = as_rotation(to.rotation);
+  return interpolated(from, to, (time - *(after - 1)) / (*after - *(after - 1))).rotation;
+}
+
 std::vector<AffineTransform> GltfSkin::pose(double time, bool just_before) const {
   std::vector<gltf::Placement> placements;
   placements.reserve(bones_.size());
@@ -211,7 +210,7 @@ std::vector<AffineTransform> GltfSkin::pose(double time, bool just_before) const
         node.translation = vector_at(moving.curve, time, just_before);
         break;
       case Path::kRotation:
-        node.rotation = rotation_at(moving.curve, moving.interpolation, time, just_before);
+        node.rotation = rotation_at(moving, time, just_before);
         break;
       case Path::kScale:
         node.scale = vector_at(moving.curve, time, just_before);

@@ -10,6 +10,7 @@
 #ifndef CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 #define CHRONORMAL_IO_GLTF_GLTF_SKIN_H_
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -27,6 +28,15 @@ namespace chronormal::inline internal {
 struct JointShare {
   std::uint32_t joint = 0;
   double share = 0;
+};
+
+/// Bounds of the motion of a joint, or of a node above one, over an interval of time in which no curve has a key: of the
+/// linear part of its matrix in the world, and of the second derivative of the offset of this matrix, as the sum of
+/// what each bone from the root to this one adds. Where two bones meet, the difference of their `path_bend` from that
+/// of the bone where they part bounds how they bend against each other.
+struct BoneBounds {
+  double size = 1, speed = 0, bend = 0;  ///< of the value, the first and the second derivative (per second)
+  double path_bend = 0;
 };
 
 class GltfSkin {
@@ -56,6 +66,19 @@ class GltfSkin {
   /// the jump, or just before it if just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
+  /// Returns whether joints jump in the animation.
+  [[nodiscard]] bool jumps() const noexcept;
+
+  /// Returns bounds for all bones between two neighbouring key times, or times between these. They are infinite for a
+  /// cubic rotation that may have no direction. O(bones + curves).
+  [[nodiscard]] std::vector<BoneBounds> bounds(double from, double to) const;
+
+  /// Return the bone of a joint; the bone at which the paths of two bones to their roots meet, or nothing; and the
+  /// inverse bind matrix of a joint.
+  [[nodiscard]] std::size_t bone_of_joint(std::size_t joint) const noexcept { return bone_of_joint_[joint]; }
+  [[nodiscard]] std::optional<std::size_t> meeting_bone(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] const AffineTransform& inverse_bind(std::size_t joint) const noexcept { return inverse_binds_[joint]; }
+
  private:
   // A joint, or a node above a joint. Parents come before their children.
   struct Bone {
@@ -69,6 +92,9 @@ class GltfSkin {
     gltf::WeightCurve curve;
   };
 
+  // Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification
+  // demands.
+  [[nodiscard]] static std::array<double, 4> rotation_at(const Curve& moving, double time, bool just_before);
   // Collects the joints and all their ancestors as bones.
   void add_bones(const GltfDocument& document);
   [[nodiscard]] Status add_curve(const GltfDocument& document, const gltf::NodeChannel& channel);

@@ -505,10 +505,10 @@ struct Input::State {
   Opened opened;
   Expansion expansion;       // limit of memory for all inputs except documents
   GltfMotionOptions chosen;  // the options with which the document is read
-  bool allow_mesh = false;
+  bool allow_mesh = false, strict = false;
   Path path;
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
-  std::optional<CutPath> cut;
+  std::optional<CutPath> cut, cut_of_skins;
   std::optional<Error> cut_error;
   // The next members belong to a document, and are set when they are first requested.
   bool has_motion = true, has_normals = true;
@@ -526,10 +526,15 @@ Status Input::State::read_motion() {
   const bool is_mesh = allow_mesh && chosen.animation.empty() && !has_moving_targets(document);
   Result<GltfMotion> read = is_mesh ? read_gltf_mesh(document, chosen) : read_gltf_motion(document, chosen);
   if (!read) return read.error();
+  for (const Error& fault : read.value().unread_skins) {
+    if (strict) return fault;
+    opened.read.notes.push_back(fault.text() + "; the mesh is moved without its skin");
+  }
   opened.read.motion = std::move(read.value().motion);
   parts = std::move(read.value().parts);
   curve_error = read.value().curve_error;
   key_times = std::move(read.value().key_times);
+  cut_of_skins = read.value().cut;
   has_motion = true;
   return Success{};
 }
@@ -546,7 +551,7 @@ Status Input::State::cut_motion() {
   if (status) {
     Result<CutStream> made = cut_into_segments(std::move(*opened.read.stream), path, most_pieces, kept_bytes);
     if (made) {
-      cut = made.value().cut;
+      cut = cut_of_skins ? cut_of_skins : made.value().cut;
       opened.read.stream = std::move(made.value().stream);
       return Success{};
     }
@@ -681,7 +686,10 @@ Result<Input> open_input(const InputOptions& asked) {
   if (state->opened.document) {
     state->chosen.animation = options.animation;
     state->chosen.world = options.world;
+    state->chosen.skins = options.skins;
+    state->chosen.most_pieces = options.max_expansion;
     state->allow_mesh = options.allow_mesh;
+    state->strict = options.strict;
     state->has_motion = state->has_normals = false;
     state->opened.read.shaded_by = state->name;
   }

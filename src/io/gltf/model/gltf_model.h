@@ -103,8 +103,8 @@ struct PrimitiveSource {
   std::optional<std::size_t> indices;
   std::vector<Attributes> targets;
   std::optional<Draco> draco;
-  std::vector<InfluenceSource> influences = {};  ///< only for primitives with targets
-  std::optional<Error> influence_fault = {};     ///< reason why the influences cannot be read
+  std::vector<InfluenceSource> influences = {};
+  std::optional<Error> influence_fault = {};  ///< reason why the influences cannot be read
 };
 
 struct SkinSource {

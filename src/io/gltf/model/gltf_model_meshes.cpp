@@ -107,11 +107,10 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
 }
 
 void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources) {
-  if (mesh.target_count == 0) return;
   for (std::size_t p = 0; p < sources.size() && !complaint_.first(); ++p) {
     const JsonView item = primitives.item(p);
     const std::size_t own = sources[p].targets.size();
-    if (own < mesh.target_count) {
+    if (own < mesh.target_count) {  // never if there are no targets
       (void)understands([&] {
         item.complain("targets", "the primitive has " + number(own) + " targets, but another one of its mesh has " +
                                      number(mesh.target_count) +
