@@ -176,16 +176,10 @@ class ReadMotion : public ZeroedObject {
       Result<NormalSampler> sampler = NormalSampler::make(motion(), options);
       if (!sampler) return sampler.error();
       count = sampler.value().output_count();
-      std::vector<double> in_a_row;
-      if (times) {
-        Result<std::vector<double>> counted = times_in_a_row(motion(), at);
-        if (!counted) return counted.error();
-        in_a_row = std::move(counted).value();
-      }
       std::vector<float> normals;
       for (std::size_t r = 0; r < rows; ++r) {
         check_interruption();
-        const Result<Pose> pose = times     ? sampler.value().at_time(at[r], in_a_row[r])
+        const Result<Pose> pose = times     ? sampler.value().at_time(at[r])
                                   : weights ? sampler.value().at_weights({at.data() + r * width, width})
                                             : Result<Pose>(sampler.value().at_rest());
         if (!pose) return pose.error();

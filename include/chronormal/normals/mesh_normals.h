@@ -52,11 +52,6 @@
 
 namespace chronormal {
 
-/// The number of evaluations per segment from which preparing curves is cheaper than recomputing normals within 1e-6
-/// rad at each evaluation. On all meshes of docs/benchmarks.md ("Frames of a segment"), curves are faster from the
-/// first or second frame on.
-inline constexpr double kCurvesFrom = 2;
-
 struct MeshNormalsOptions {
   ElementOptions elements = {};
   Weighting weighting = Weighting::kArea;  ///< must be kArea for faces and for blend shapes

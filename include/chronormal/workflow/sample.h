@@ -7,8 +7,8 @@
 ///     neither    for a mesh at rest: one keyframe and no segment
 ///
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, also for thin and small faces and faces of mixed
-/// sizes. They are computed from positions, or at times by curves of the segment if kCurvesFrom times or more are
-/// requested there (normals/mesh_normals.h). At weights the guarantee holds for positions before rounding to float32.
+/// sizes. At a time they are computed by curves of the segment, so they have the same bits whatever other times are
+/// asked for. At weights they are computed from positions. There the guarantee holds for positions before rounding to float32.
 /// Other weightings, which are not polynomials, are computed in double at each moment.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and
@@ -120,10 +120,9 @@ class NormalSampler {
   /// all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
-  /// Computes the pose at a time in seconds. `evaluations` tells how many consecutive requests, including this one, are
-  /// for times in the same segment. The sampler uses it to decide whether preparing the segment pays. Errors: those of
-  /// find_instant(); kUsage if the sampler plays steps and the time is not one of them.
-  [[nodiscard]] Result<Pose> at_time(double time, double evaluations = 1);
+  /// Computes the pose at a time in seconds. Prepares the segment of this time, unless the last request was for the same
+  /// segment. Errors: those of find_instant(); kUsage if the sampler plays steps and the time is not one of them.
+  [[nodiscard]] Result<Pose> at_time(double time);
 
   /// Computes the pose for weights. Errors: those of check_weights(); kUsage for weights with which a vertex exceeds
   /// the range of float32 and, with a scheme, for weights that are not between the base and one target.
@@ -150,8 +149,8 @@ class NormalSampler {
 
   [[nodiscard]] bool are_faces() const noexcept { return options_.elements.kind == ElementKind::kFaces; }
   [[nodiscard]] std::size_t element_count() const noexcept;
-  // Computes area-weighted normals at t, and prepares data for later moments in the same segment if this pays.
-  [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t, double evaluations);
+  // Computes area-weighted unit normals at t by the curves of the segment, which are kept for later moments.
+  [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t);
   // Computes normals for this moment only, without preparing data for others.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
   // Computes normals with the scheme. `time` is only used to report where the drift is largest.
@@ -178,10 +177,6 @@ class NormalSampler {
 /// the beginning of the next one. For targets they are weights, from 0 to 1 for each target alone. Errors: kUsage if
 /// the motion has no segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
-
-/// Returns, for each time, how many consecutive times from this one on are in the same segment. This number is the
-/// argument `evaluations` of NormalSampler::at_time(). Errors: those of find_instant().
-[[nodiscard]] Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times);
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 

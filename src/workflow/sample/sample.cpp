@@ -172,9 +172,8 @@ std::vector<float> NormalSampler::normals_of_outputs(const Pose& pose) const {
   return normals;
 }
 
-std::vector<float> NormalSampler::unit_normals(const Segment& segment, const LocalTime& t, double evaluations) {
+std::vector<float> NormalSampler::unit_normals(const Segment& segment, const LocalTime& t) {
   if (segment_ != segment.index) {
-    if (!(evaluations >= kCurvesFrom)) return normals_anew(segment, t);
     curves_ = are_faces() ? NormalCurves::of_faces(segment, {}, Threads::kAll, &curves_)
                           : NormalCurves::of_groups(segment, *groups_, {}, Threads::kAll, &curves_);
     segment_ = segment.index;
@@ -249,7 +248,7 @@ std::vector<float> NormalSampler::as_asked(std::span<const Vec3d> exact) const {
   return normals;
 }
 
-Result<Pose> NormalSampler::at_time(double time, double evaluations) {
+Result<Pose> NormalSampler::at_time(double time) {
   const Result<Instant> instant = find_instant(*motion_, time);
   if (!instant) return instant.error();
   const LocalTime t = instant.value().t;
@@ -261,8 +260,7 @@ Result<Pose> NormalSampler::at_time(double time, double evaluations) {
     if (!normals) return normals.error();
     return Pose{positions_at(segment, t), std::move(normals).value()};
   }
-  return Pose{positions_at(segment, t),
-              are_exact_units() ? unit_normals(segment, t, evaluations) : normals_anew(segment, t)};
+  return Pose{positions_at(segment, t), are_exact_units() ? unit_normals(segment, t) : normals_anew(segment, t)};
 }
 
 Result<Pose> NormalSampler::at_weights(std::span<const double> weights) {

@@ -41,15 +41,8 @@ constexpr std::array<FormatName, 4> kFormats = {{
 
 bool is_array(SampleFormat format) { return format == SampleFormat::kNpy || format == SampleFormat::kNpz; }
 
-Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments,
-                     const std::vector<double>& in_a_row, std::size_t i) {
-  if (!moments.times.empty()) {
-    // Consecutive moments form a run. The first moment of the run determines how the segment is prepared. All shards
-    // look for that first moment, so the result does not depend on the share.
-    std::size_t first = i;
-    while (first > 0 && in_a_row[first - 1] == in_a_row[first] + 1) --first;
-    return sampler.at_time(moments.times[i], in_a_row[first]);
-  }
+Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments& moments, std::size_t i) {
+  if (!moments.times.empty()) return sampler.at_time(moments.times[i]);
   if (!moments.weights.empty()) return sampler.at_weights(moments.weights[i]);
   if (const Status status = stream.hold(0, 0); !status) return status.error();
   return sampler.at_rest();
@@ -321,8 +314,6 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   Result<NormalSampler> made = NormalSampler::make(stream, options);
   if (!made) return made.error();
   NormalSampler& sampler = made.value();
-  const Result<std::vector<double>> in_a_row = times_in_a_row(motion, moments.times);
-  if (!in_a_row) return in_a_row.error();
 
   run.begin(count);
   const IndexRange share = run.share();
@@ -384,7 +375,7 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
   const IndexRange rest{share.first + written, share.count - written};
   const Status computed = run.over(stream, keys, rest, 1, [&](IndexRange one) -> Status {
     const std::size_t i = one.first;
-    const Result<Pose> pose = pose_of(sampler, stream, moments, in_a_row.value(), i);
+    const Result<Pose> pose = pose_of(sampler, stream, moments, i);
     if (!pose) return pose.error();
     const std::vector<float> normals = sampler.normals_of_outputs(pose.value());
     summary.normals += normals.size() / 3;
@@ -427,18 +418,6 @@ Result<SampleFormat> make_sample_format(std::string_view name) {
   }
   return Error{ErrorCode::kUsage, "",
                std::string("there is no format '").append(name).append("'; choose one of ").append(names)};
-}
-
-Result<std::vector<double>> times_in_a_row(const Motion& motion, std::span<const double> times) {
-  std::vector<double> counts(times.size(), 1);
-  std::size_t later = 0;  // the segment of the next time
-  for (std::size_t i = times.size(); i-- > 0;) {
-    const Result<Instant> instant = find_instant(motion, times[i]);
-    if (!instant) return instant.error();
-    if (i + 1 < times.size() && instant.value().segment == later) counts[i] += counts[i + 1];
-    later = instant.value().segment;
-  }
-  return counts;
 }
 
 std::optional<SampleFormat> find_sample_format(std::string_view path) {

@@ -29,11 +29,10 @@ SampleOptions options_of(ElementKind kind, double crease_angle = 180) {
   return options;
 }
 
-// Returns the normals that a file of samples must have at a time. `evaluations` is the number of times that are
-// evaluated in a segment.
-std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time, double evaluations = 1) {
+// Returns the normals that a file of samples must have at a time.
+std::vector<float> normals_at(const Motion& motion, const SampleOptions& options, double time) {
   NormalSampler sampler = NormalSampler::make(motion, options).value();
-  return sampler.normals_of_outputs(sampler.at_time(time, evaluations).value());
+  return sampler.normals_of_outputs(sampler.at_time(time).value());
 }
 
 SampleSummary write_good(const Motion& motion, const SampleOptions& options, const Moments& moments,
@@ -88,7 +87,7 @@ TEST(WriteSamples, npy_is_one_array_of_moments_and_outputs) {
     EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, outputs, 3}));
     std::vector<float> expected;
     for (const double time : {0.75, 0.0, 0.5}) {
-      const auto normals = normals_at(motion, options_of(kind), time, 3);
+      const auto normals = normals_at(motion, options_of(kind), time);
       expected.insert(expected.end(), normals.begin(), normals.end());
     }
     EXPECT_EQ(array.as<float>(), expected);
