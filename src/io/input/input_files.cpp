@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/twofold.h"
 #include "io/bytes/file.h"
 #include "io/bytes/scan.h"
 #include "io/input/formats.h"
@@ -116,6 +117,64 @@ Result<std::vector<std::string>> find_input_files(const InputOptions& options, c
 
 std::string file_name_of(const std::string& path) { return path == "-" ? "<stdin>" : file_name(path); }
 
+namespace {
+
+// Returns far_origin(), or the place of a mesh whose vertices are all at one place in float32. Such a mesh may be small
+// and far away.
+Origin far_origin_of_file(std::span<const float> positions) {
+  const Origin origin = far_origin(positions);
+  if (positions.size() < 3) return origin;
+  for (std::size_t i = 3; i < positions.size() && origin == Origin{}; ++i)
+    if (positions[i] != positions[i % 3]) return origin;
+  return origin == Origin{} ? Origin{positions[0], positions[1], positions[2]} : origin;
+}
+
+// Reads a mesh around wanted.origin, which was found in float32. If it is still far from there, the origin moves closer.
+Result<MeshFrame> read_around(std::string_view bytes, const std::string& file_name, const std::string& place,
+                              WantedOfMesh& wanted) {
+  constexpr int kMost = 4;  // float32 finds 24 bits of an origin at a time, and a double has 53
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name, place, wanted);
+  for (int i = 0; i < kMost && mesh; ++i) {
+    const Origin rest = far_origin_of_file(mesh.value().positions);
+    if (rest == Origin{}) break;
+    for (std::size_t axis = 0; axis < 3; ++axis) wanted.origin[axis] += rest[axis];
+    mesh = read_mesh(bytes, file_name, place, wanted);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Result<MeshFrame> read_mesh_from(std::string_view bytes, const std::string& file_name, const std::string& place,
+                                 const WantedOfMesh& wanted) {
+  Result<MeshFrame> mesh = read_mesh(bytes, file_name, place, wanted);
+  if (!mesh || far_origin_of_file(mesh.value().positions) == Origin{}) return mesh;
+  WantedOfMesh alone = wanted;
+  alone.origin = {};
+  if (wanted.origin != Origin{}) mesh = read_mesh(bytes, file_name, place, alone);
+  if (!mesh) return mesh;
+  alone.origin = far_origin_of_file(mesh.value().positions);
+  Result<MeshFrame> shifted = alone.origin == Origin{} ? mesh : read_around(bytes, file_name, place, alone);
+  if (!shifted) return shifted;
+  if (shifted.value().has_more_digits)
+    mesh = std::move(shifted);
+  else
+    alone.origin = {};
+  std::vector<float>& positions = mesh.value().positions;
+  std::vector<double> high(positions.size()), low(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Twofold sum =
+        Twofold::sum(alone.origin[i % 3], -wanted.origin[i % 3]) + Twofold{static_cast<double>(positions[i]), 0};
+    high[i] = sum.high;
+    low[i] = sum.low;
+  }
+  Motion::Keyframe keyframe;
+  keyframe.set_positions(high, low);
+  positions = std::move(keyframe.positions);
+  mesh.value().residuals = std::move(keyframe.residuals);
+  return mesh;
+}
+
 Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path, const std::string& place,
                                  ReadMotion& read) {
   const Result<FileBytes> file = FileBytes::open(path, options.resolve);
@@ -137,16 +196,19 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
   WantedOfMesh of_mesh{wanted, options.velocities, read.motion.origin};
-  Result<MeshFrame> mesh = read_mesh(bytes, file_name_of(path), place, of_mesh);
+  Result<MeshFrame> mesh = k == 0 ? read_mesh(bytes, file_name_of(path), place, of_mesh)
+                                  : read_mesh_from(bytes, file_name_of(path), place, of_mesh);
   if (!mesh) return mesh;
   if (k == 0) {
     const std::span<const float> positions = mesh.value().positions;
-    of_mesh.origin = far_origin(positions);
+    of_mesh.origin = far_origin_of_file(positions);
     if (of_mesh.origin != Origin{}) {
-      Result<MeshFrame> shifted = read_mesh(bytes, file_name_of(path), place, of_mesh);
+      Result<MeshFrame> shifted = read_around(bytes, file_name_of(path), place, of_mesh);
       if (!shifted) return shifted;
-      bool has_more_digits = shifted.value().has_more_digits;
-      for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits; ++i) {
+      const std::vector<float>& around = shifted.value().positions;
+      const bool is_point = std::equal(around.begin() + 3, around.end(), around.begin());
+      bool has_more_digits = !is_point && shifted.value().has_more_digits;
+      for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits && !is_point; ++i) {
         // Errors in these files are ignored here. They are reported when the files are read as keyframes.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
@@ -157,7 +219,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       if (has_more_digits) {
         read.motion.origin = of_mesh.origin;
         mesh = std::move(shifted);
-      } else if (std::string note = note_of_lost_digits(positions); !note.empty()) {
+      } else if (std::string note = note_of_lost_digits(positions); !note.empty() && !is_point) {
         read.notes.push_back(std::move(note));
       }
     }

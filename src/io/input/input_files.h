@@ -7,11 +7,13 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "chronormal/core/result.h"
 #include "chronormal/io/input.h"
 #include "chronormal/motion/motion.h"
+#include "io/input/formats.h"
 #include "io/mesh/mesh_frame.h"
 
 namespace chronormal::inline internal {
@@ -59,6 +61,12 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// Reads the mesh of the next keyframe like read_mesh_file(), from bytes that are in memory.
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
+
+/// Reads a mesh of a motion, whose positions are measured from wanted.origin. If the mesh is so far from this point that
+/// float32 loses digits, the mesh is read as if it were alone, and residuals keep the rest of the distance. Errors: those
+/// of read_mesh().
+[[nodiscard]] Result<MeshFrame> read_mesh_from(std::string_view bytes, const std::string& file_name,
+                                               const std::string& place, const WantedOfMesh& wanted);
 
 /// Returns the indices of the keyframes that the options select out of `count` keyframes. For a loop, the first
 /// selected index is repeated at the end. Errors: kUsage with the option as the place, if fewer than two keyframes are

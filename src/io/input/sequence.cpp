@@ -67,6 +67,7 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
 // The data of a frame other than the first.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
+  std::vector<double> residuals = {};
   std::vector<float> velocities = {};
   std::uint64_t bytes = 0;  // size of its file in bytes, or 0 if this size was already counted
 };
@@ -77,22 +78,25 @@ struct ReadFrame {
 ReadFrame read_frame(const InputOptions& options, const std::string& path, const std::string& place,
                      const ObjFaces* faces, ReadMotion* shaded, const Motion& of_first, const std::string& first_name) {
   const Result<FileBytes> file = open_frame(options, path, place);
-  if (!file) return {file.error(), {}};
+  if (!file) return {file.error()};
   const std::string_view bytes = file.value().bytes();
   const std::uint64_t counted = shaded != nullptr ? 0 : bytes.size();
   if (faces != nullptr) {
     const Format* const format = find_format(file_name_of(path), bytes);
     if (format != nullptr && format->read_mesh == read_obj)
-      if (std::optional<std::vector<float>> positions = faces->positions_of(bytes))
-        return {std::move(*positions), {}, counted};
+      if (std::optional<std::vector<float>> positions = faces->positions_of(bytes);
+          positions && far_origin(std::span<const float>(*positions)) == Origin{} &&
+          !std::equal(positions->begin() + 3, positions->end(), positions->begin()))
+        return {std::move(*positions), {}, {}, counted};
   }
-  Result<MeshFrame> mesh =
-      shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
-                        : read_mesh(bytes, file_name_of(path), place, {false, options.velocities, of_first.origin});
-  if (!mesh) return {mesh.error(), {}};
+  Result<MeshFrame> mesh = shaded != nullptr ? read_next_mesh(options, bytes, path, place, *shaded)
+                                             : read_mesh_from(bytes, file_name_of(path), place,
+                                                              {false, options.velocities, of_first.origin});
+  if (!mesh) return {mesh.error()};
   if (const Status same = check_same_topology(of_first.topology, first_name, mesh.value().topology, place); !same)
-    return {same.error(), {}};
-  return {std::move(mesh.value().positions), std::move(mesh.value().velocities), counted};
+    return {same.error()};
+  return {std::move(mesh.value().positions), std::move(mesh.value().residuals), std::move(mesh.value().velocities),
+          counted};
 }
 
 // Returns the text of the faces of an OBJ file, with which the faces of other files are compared. Returns nothing for
@@ -200,11 +204,12 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.keyframes.reserve(total);
   const auto file_of = [&](std::size_t i) -> const std::string& { return files[frames.value()[i]]; };
   const auto place = [&](std::size_t i) { return frame_place(frames.value()[i], file_name_of(file_of(i))); };
-  const auto keep = [&](std::vector<float> positions, std::vector<float> velocities) {
+  const auto keep = [&](std::vector<float> positions, std::vector<float> velocities, std::vector<double> residuals) {
     const std::size_t i = motion.keyframes.size();
     const bool closes = options.loop && i + 1 == total;
     const double time = closes ? closing_time(times.value(), frames.value()) : times.value()[frames.value()[i]];
     motion.keyframes.push_back({std::move(positions), time, file_name_of(file_of(i)), std::move(velocities)});
+    motion.keyframes.back().residuals = std::move(residuals);
     if (options.progress) options.progress(i + 1, total);
   };
 
@@ -213,7 +218,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   Result<MeshFrame> first = read_next_mesh(options, first_file.value().bytes(), file_of(0), place(0), read);
   if (!first) return first.error();
   motion.topology = std::move(first.value().topology);
-  keep(std::move(first.value().positions), std::move(first.value().velocities));
+  keep(std::move(first.value().positions), std::move(first.value().velocities), {});
 
   // Each thread reads one frame at a time. Frames are read one after the other in two cases: from a resolver, which may
   // not be thread-safe, and if normals are kept, because the normals of a frame are read only if the previous frame had
@@ -240,7 +245,7 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
         return invalid_input(place(motion.keyframes.size()),
                              has_velocities ? "the file has no velocities, but " + place(0) + " has"
                                             : "the file has velocities, but " + place(0) + " has none");
-      keep(std::move(frame.positions).value(), std::move(frame.velocities));
+      keep(std::move(frame.positions).value(), std::move(frame.velocities), std::move(frame.residuals));
     }
   }
   motion.connect_as_sequence();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
+#include "core/twofold.h"
 #include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/file.h"
@@ -73,38 +74,46 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that the limit of expansion allows the positions of another keyframe. Even a target file of a single line
+// Checks that the limit of expansion allows the positions and residuals of another keyframe. Even a target file of a single line
 // needs memory for all vertices, so a small file can ask for much.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
-  return expansion.check(keyframes * vertices * 3 * sizeof(float), place_of(path));
+  return expansion.check(keyframes * vertices * 3 * (sizeof(float) + sizeof(double)), place_of(path));
 }
 
-Result<std::vector<float>> read_deltas(const InputOptions& options, const std::string& path, ReadMotion& read) {
+Result<Motion::Keyframe> read_deltas(const InputOptions& options, const std::string& path, ReadMotion& read) {
   const Motion& motion = read.motion;
   const Result<FileBytes> file = FileBytes::open(path, options.resolve);
   if (!file) return file.error();
   if (Status is_other = check_kind(file.value().bytes(), place_of(path), "target"); !is_other) return is_other.error();
   read.bytes_read += file.value().bytes().size();
   if (const Status status = ask_for_keyframe(options, path, read); !status) return status.error();
-  std::vector<float> positions = motion.keyframes.front().positions;
-  const auto base = VectorView<const float>::packed(positions.data(), motion.topology.vertex_count());
+  const std::vector<float>& base_positions = motion.keyframes.front().positions;
+  const auto base = VectorView<const float>::packed(base_positions.data(), motion.topology.vertex_count());
   const Result<MakeHumanTarget> target = read_make_human_target(file.value().bytes(), path, base);
   if (!target) return target.error();
-  for (std::size_t i = 0; i < target.value().vertices.size(); ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      positions[3 * std::size_t{target.value().vertices[i]} + axis] += target.value().deltas[3 * i + axis];
+  std::vector<double> high(base_positions.begin(), base_positions.end()), low(high.size(), 0);
+  for (std::size_t i = 0; i < target.value().deltas.size(); ++i) {
+    const std::size_t c = 3 * std::size_t{target.value().vertices[i / 3]} + i % 3;
+    const Twofold sum = Twofold::sum(high[c], double{target.value().deltas[i]});
+    high[c] = sum.high;
+    low[c] = sum.low;
   }
-  return positions;
+  Motion::Keyframe keyframe;
+  keyframe.set_positions(high, low);
+  return keyframe;
 }
 
-Result<std::vector<float>> read_shape(const InputOptions& options, const std::string& path, ReadMotion& read) {
+Result<Motion::Keyframe> read_shape(const InputOptions& options, const std::string& path, ReadMotion& read) {
   Result<MeshFrame> mesh = read_mesh_file(options, path, place_of(path), read);
   if (!mesh) return mesh.error();
   const Status status = check_same_topology(read.motion.topology, "the base", mesh.value().topology, place_of(path));
   if (!status) return status.error();
-  return std::move(mesh).value().positions;
+  Motion::Keyframe keyframe;
+  keyframe.positions = std::move(mesh.value().positions);
+  keyframe.residuals = std::move(mesh.value().residuals);
+  return keyframe;
 }
 
 }  // namespace
@@ -138,11 +147,13 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   for (std::size_t k = 1; k < total; ++k) {
     const std::string& path = files[k - 1];
     const Format* const format = target_format(path);
-    Result<std::vector<float>> positions = format != nullptr && format->holds == Holds::kTarget
-                                               ? read_deltas(options, path, read)
-                                               : read_shape(of_base, path, read);
-    if (!positions) return positions.error();
-    motion.keyframes.push_back({std::move(positions).value(), 1, keyframe_name(path)});
+    Result<Motion::Keyframe> target = format != nullptr && format->holds == Holds::kTarget
+                                          ? read_deltas(options, path, read)
+                                          : read_shape(of_base, path, read);
+    if (!target) return target.error();
+    target.value().time = 1;
+    target.value().name = keyframe_name(path);
+    motion.keyframes.push_back(std::move(target).value());
     if (options.progress) options.progress(1 + k, total);
   }
   motion.connect_as_targets();

@@ -1,5 +1,5 @@
-// Checks that the memory and the time of an audit grow only linearly with the file, even if a small file repeats a part
-// thousands of times.
+// Checks that the memory of an audit or a bake, and the time of an audit, grow only linearly with the file, even if a
+// small file repeats a part thousands of times.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chronormal/workflow/audit.h"
+#include "chronormal/workflow/bake.h"
 #include "tests/support/allocation_counter.h"
 #include "tests/support/audit_fixture.h"
 #include "tests/support/cpu_time.h"
@@ -58,6 +59,19 @@ TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
     EXPECT_LT(static_cast<std::size_t>(counter.bytes()) / audited.value().subjects.size(), kMostPerSubject);
     EXPECT_LT(counter.peak_bytes() / audited.value().subjects.size(), 2 * kMostPerSubject);
   }
+}
+
+TEST(AuditGrowth, a_bake_takes_little_memory_for_each_clip_that_shares_its_arrays) {
+  if (!test::AllocationCounter::works()) GTEST_SKIP() << "operator new is a sanitizer's";
+  const auto peak_bytes = [](std::size_t count) {
+    const test::GltfFixture fixture(clips(count, true));
+    GltfEdit edit(*fixture);
+    const test::AllocationCounter counter;
+    EXPECT_TRUE(bake(*fixture, {}, edit).ok());
+    return counter.peak_bytes();
+  };
+  constexpr std::size_t kFew = 400, kMany = 1200, kMostPerClip = 30000;  // in bytes
+  EXPECT_LT(peak_bytes(kMany), peak_bytes(kFew) + (kMany - kFew) * kMostPerClip);
 }
 
 // Eight times as many targets must take about eight times as long, and not 64 times.
