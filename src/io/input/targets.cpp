@@ -74,8 +74,8 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that the limit of expansion allows the positions and residuals of another keyframe. Even a target file of a single line
-// needs memory for all vertices, so a small file can ask for much.
+// Checks that the limit of expansion allows the positions and residuals of another keyframe. Even a target file of a
+// single line needs memory for all vertices, so a small file can ask for much.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
