@@ -498,8 +498,8 @@ class AnimationReader {
   }
 
   // Returns the number of pieces of an interval between two keys, from `fewest` to `most`, that keeps normals behind
-  // skins within the tolerance. Counts the faces for which it does not.
-  [[nodiscard]] std::size_t pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
+  // skins within the tolerance, and the number of faces for which it does not.
+  [[nodiscard]] Pieces pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
     struct OfParts {
       std::vector<GltfSkinPieces> parts;
 
@@ -538,41 +538,63 @@ class AnimationReader {
     // If joints move so fast that most faces need more pieces than are allowed, they get as many as are allowed.
     const bool is_fast = 2 * pieces.beyond > assembly_.motion().topology.face_count();
     const std::size_t count = std::max({pieces.count, fewest, is_fast ? most : 1});
-    beyond_ += count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond;
-    return count;
+    return {count, count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond};
   }
 
-  // Returns the largest number of pieces that each interval between two keys may have behind skins: as many as
-  // --max-expansion names, or fewer if the keyframes would need more memory than is allowed. At least 1.
-  [[nodiscard]] std::size_t most_pieces_behind_skins() const {
-    std::size_t most = std::max<std::size_t>(options_.most_pieces, 1);
-    const std::size_t intervals = std::max<std::size_t>(keys_.size(), 2) - 1;
-    const auto fits = [&](std::size_t pieces) {
-      return assembly_.check_memory(keyframes_of(intervals * pieces), options_.most_bytes, weight_bytes_).ok();
+  // Sets the number of pieces of each interval between two keys, so that normals behind skins stay within the tolerance.
+  // An interval gets at most as many pieces as --max-expansion names, or fewer if all keyframes would need more memory
+  // than is allowed. Counts the faces that stay beyond the tolerance.
+  void set_pieces_behind_skins(std::vector<std::size_t>& counts) {
+    const std::vector<std::size_t> fewest = counts;
+    std::vector<Pieces> pieces(counts.size());
+    const auto set = [&](std::size_t most) {
+      for (std::size_t k = 0; k < counts.size(); ++k) {
+        if (pieces[k].count > most || counts[k] == 0)
+          pieces[k] = pieces_behind_skins(keys_[k], keys_[k + 1], fewest[k], most);
+        counts[k] = pieces[k].count;
+      }
     };
-    while (most > 1 && !fits(most)) --most;
-    return most;
+    const auto fits = [&](std::size_t most) {
+      std::size_t all = 0;
+      for (std::size_t k = 0; k < counts.size(); ++k) all += std::min(counts[k], std::max(most, fewest[k]));
+      return assembly_.check_memory(keyframes_of(all), options_.most_bytes, weight_bytes_).ok();
+    };
+    std::size_t most = std::max<std::size_t>(options_.most_pieces, 1);
+    std::fill(counts.begin(), counts.end(), 0);
+    set(most);
+    if (!fits(most)) {
+      while (most > 1 && !fits(most)) --most;
+      set(most);
+    }
+    for (const Pieces& of_interval : pieces) beyond_ += of_interval.beyond;
   }
 
   // Cuts curves into chords that stay within the tolerance. The distance between a curve and a chord is at most h^2 / 8
   // times the largest acceleration, where h is the duration of the chord.
   Status cut() {
     const double tolerance = options_.curve_tolerance * size_;
+    const std::size_t intervals = keys_.size() - 1;
+    std::vector<double> accelerations(intervals);
+    std::vector<std::size_t> counts(intervals);
+    double all = 0;
+    for (std::size_t k = 0; k < intervals; ++k) {
+      accelerations[k] = acceleration(keys_[k], keys_[k + 1]);
+      const double wanted = std::ceil((keys_[k + 1] - keys_[k]) * std::sqrt(accelerations[k] / (8 * tolerance)));
+      all += wanted;
+      if (!(all <= static_cast<double>(kMostPieces))) return too_many_pieces();
+      counts[k] = static_cast<std::size_t>(std::max(wanted, 1.0));
+    }
+    if (assembly_.has_skins()) set_pieces_behind_skins(counts);
     double curve_error = 0;
-    const std::size_t most = assembly_.has_skins() ? most_pieces_behind_skins() : 1;
-    for (std::size_t k = 0; k + 1 < keys_.size(); ++k) {
-      const double from = keys_[k], duration = keys_[k + 1] - from, a = acceleration(from, keys_[k + 1]);
-      const double wanted = a > 0 ? std::ceil(duration * std::sqrt(a / (8 * tolerance))) : 1;
-      if (!(static_cast<double>(pieces_.size()) + wanted <= static_cast<double>(kMostPieces))) return too_many_pieces();
-      auto count = static_cast<std::size_t>(std::max(wanted, 1.0));
-      if (assembly_.has_skins()) count = pieces_behind_skins(from, keys_[k + 1], count, most);
+    for (std::size_t k = 0; k < intervals; ++k) {
+      const std::size_t count = counts[k];
       if (count > kMostPieces - std::min(pieces_.size(), kMostPieces)) return too_many_pieces();
       const std::size_t keyframes = keyframes_of(pieces_.size() + count);
       if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
+      const double from = keys_[k], duration = keys_[k + 1] - from, h = duration / static_cast<double>(count);
       for (std::size_t i = 0; i < count; ++i)
         pieces_.push_back(from + duration * (static_cast<double>(i) / static_cast<double>(count)));
-      const double h = duration / static_cast<double>(count);
-      curve_error = std::max(curve_error, h * h * a / 8);
+      curve_error = std::max(curve_error, h * h * accelerations[k] / 8);
     }
     pieces_.push_back(keys_.back());
     assembly_.set_curve_error(curve_error);

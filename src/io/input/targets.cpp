@@ -74,12 +74,14 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that the limit of expansion allows the positions and residuals of another keyframe. Even a target file of a
-// single line needs memory for all vertices, so a small file can ask for much.
+// Checks that the limit of expansion allows the positions of another keyframe beside the keyframes that were read, with
+// their residuals. Even a target file of a single line needs memory for all vertices, so a small file can ask for much.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
-  return expansion.check(keyframes * vertices * 3 * (sizeof(float) + sizeof(double)), place_of(path));
+  std::uint64_t bytes = keyframes * vertices * 3 * sizeof(float);
+  for (const Motion::Keyframe& keyframe : read.motion.keyframes) bytes += keyframe.residuals.size() * sizeof(double);
+  return expansion.check(bytes, place_of(path));
 }
 
 Result<Motion::Keyframe> read_deltas(const InputOptions& options, const std::string& path, ReadMotion& read) {
