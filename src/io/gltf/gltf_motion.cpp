@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "chronormal/motion/motion.h"
@@ -583,14 +584,16 @@ class AnimationReader {
       all += wanted;
       if (!(all <= static_cast<double>(kMostPieces))) return too_many_pieces();
       counts[k] = static_cast<std::size_t>(std::max(wanted, 1.0));
+      const std::size_t keyframes = keyframes_of(static_cast<std::size_t>(all));
+      if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
     }
     if (assembly_.has_skins()) set_pieces_behind_skins(counts);
+    const std::size_t keyframes = keyframes_of(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
+    if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
     double curve_error = 0;
     for (std::size_t k = 0; k < intervals; ++k) {
       const std::size_t count = counts[k];
       if (count > kMostPieces - std::min(pieces_.size(), kMostPieces)) return too_many_pieces();
-      const std::size_t keyframes = keyframes_of(pieces_.size() + count);
-      if (Status status = assembly_.check_memory(keyframes, options_.most_bytes, weight_bytes_); !status) return status;
       const double from = keys_[k], duration = keys_[k + 1] - from, h = duration / static_cast<double>(count);
       for (std::size_t i = 0; i < count; ++i)
         pieces_.push_back(from + duration * (static_cast<double>(i) / static_cast<double>(count)));
