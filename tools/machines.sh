@@ -21,7 +21,11 @@ test_machine() {
     /usr/bin/python3 tests/machines/test_machine.py
 }
 
-part_machines() {
+part_windows() {
+  configure_and_build release chronormal_cli
+  test_machine windows wine
+}
+part_arm64() {
   configure_and_build release chronormal_cli
   run_ctest release two_files -L two_files
   compile_two_files "GCC for this machine alone" g++ "-march=native -O3" ""
@@ -30,6 +34,5 @@ part_machines() {
   compile_two_files "GCC for 64-bit ARM" aarch64-linux-gnu-g++ "" "qemu-aarch64-static -L /usr/aarch64-linux-gnu"
   # Debian's Emscripten looks for modules of Node.js in Debian's folder, as in tools/wasm.sh.
   NODE_PATH=/usr/share/nodejs EM_NODE_JS=$(command -v node) compile_two_files Emscripten em++ "" "node --no-experimental-fetch"
-  test_machine windows wine
   test_machine arm64 qemu-aarch64-static
 }
