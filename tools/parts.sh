@@ -18,8 +18,8 @@ tidy        14  clang             ^\.clang-tidy
 fuzz        26  clang             ^fuzz/
 viewers       20  web,node,wasm     ^tests/viewers/.*_page
 pipelines   18  web,node,blender  ^tests/viewers/(pipelines|blender)|^blender/
-windows     24  cross,machines          ^src/io/system/|^tools/machines|^tests/machines|^cmake/(windows|bits)
-arm64       24  cross,machines,node,web  ^src/simd/|/kernels/|^tools/(machines|two_files)|^tests/(machines|install/two_files)|^cmake/(arm64|bits)
+windows     14  cross,machines          ^src/io/system/|^tools/machines|^tests/machines|^cmake/(windows|bits)
+arm64       22  cross,machines,node,web  ^src/simd/|/kernels/|^tools/(machines|two_files)|^tests/(machines|install/two_files)|^cmake/(arm64|bits)
 exact       20  -                 ^tests/support/exact_|^src/normals/control/exact
 faults      20  -                 ^tests/faults/
 embedding   28  embedding,node    ^(capi|tests/install)/|^cmake/(install|product)|^python/setup

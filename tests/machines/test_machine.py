@@ -294,7 +294,7 @@ class Windows(Machine):
         # Only a program that has a console receives keys, so a helper starts the program in a console and presses
         # Ctrl-C.
         shown = self.in_terminal(["wine", self.helper, "break", windows_name(pathlib.Path(OTHER[-1]).resolve()), "sample",
-                                  "walk_0.obj", "walk_1.obj", "--times", "0:0.001:1", "-q", "-o", "normals.npz"])
+                                  "walk_0.obj", "walk_1.obj", "--times", "0:0.00001:1", "-q", "-o", "normals.npz"])
         self.assertIn("C000013A", shown)
         self.assertIn("chronormal: interrupted (Ctrl-C)", shown)
         self.assertEqual(sorted(os.listdir(self.folder)), ["walk_0.obj", "walk_1.obj"])
@@ -318,7 +318,7 @@ class Windows(Machine):
 class Posix(Machine):
     def test_a_signal_removes_temporary_files(self):
         self.make_walk()
-        process = subprocess.Popen([*OTHER, "sample", "walk_0.obj", "walk_1.obj", "--times", "0:0.001:1", "-o", "normals.npz"],
+        process = subprocess.Popen([*OTHER, "sample", "walk_0.obj", "walk_1.obj", "--times", "0:0.00001:1", "-o", "normals.npz"],
                                    cwd=self.folder, stderr=subprocess.PIPE, env=ENVIRONMENT)
         while process.poll() is None and not list(self.folder.glob(".chronormal-*")):
             time.sleep(0.01)

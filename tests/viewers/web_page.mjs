@@ -23,7 +23,7 @@ export async function openPages() {
   await page.setViewport(DESKTOP);
   const show = async (path) => {
     address = pathToFileURL(path).href;
-    await page.goto(address);
+    await page.goto(address, { timeout: 120_000 });
     await page.waitForSelector('[data-ready], .fault', { timeout: 60_000 });
   };
   return { page, faults, show, close: () => browser.close() };
