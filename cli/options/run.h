@@ -9,7 +9,7 @@
 ///     run->join(compare_part(...), merge_compare_parts);         // on several ranks
 ///     run->finish(text);
 ///
-/// With --resume, the file OUT.journal describes the run (version, command, options, input files with their sizes and
+/// If --resume is given, OUT.journal describes the run (version, command, options, input files with their sizes and
 /// modification times) and records the results so far. The journal stays if the run ends early for any reason, and is
 /// removed when OUT is complete.
 #ifndef CLI_OPTIONS_RUN_H_

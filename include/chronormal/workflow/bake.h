@@ -60,7 +60,7 @@ struct BakeOptions {
   std::size_t bytes_of_file = 0;
   /// The weighting of the true normals. Normals with a weighting other than area are fitted, with a stated error. By
   /// default, each mesh has the weighting that its stored base normals clearly follow (as in an audit), or else area.
-  /// With recompute_base, the default is always area.
+  /// The default is always area if recompute_base is set.
   std::optional<Weighting> weighting = {};
   bool smooth = false;        ///< true to give normals to primitives without NORMAL, which otherwise stay flat
   double crease_angle = 180;  ///< degrees; decides the hard edges of smoothed primitives and of sequences

@@ -96,7 +96,7 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        // With this swap, the flagged elements of the part need not be moved.
+        // The swap saves moving the flagged elements of the part one by one.
         std::swap(parts_[next_].flagged, curves_.flagged);
         builder_.emplace(parts_[next_], limits_);
       }

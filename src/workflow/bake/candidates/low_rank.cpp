@@ -1,5 +1,5 @@
 // Makes correction targets of low rank. They correct the errors of a mesh's own deltas along the animations of a file.
-// These errors are written as the sum of a few deltas whose weights are curves in time (docs/theory.md, section 17).
+// The errors are written as the sum of a few deltas whose weights are curves in time (docs/theory.md, section 17).
 //
 //     n(w(t)) / |n(0)|  =  N + sum_i w_i(t) D_i + sum_k s_k(t) E_k, nearly
 //

@@ -1,5 +1,5 @@
 /// The missing normals of a mesh: the errors that the deltas of its own targets leave at the instants of the file.
-/// These errors form the matrix that correction targets of low rank approximate (docs/theory.md, section 17). Private
+/// The errors form the matrix that correction targets of low rank approximate (docs/theory.md, section 17). Private
 /// to workflow.
 ///
 /// Points     A point is a set of vertices that show the same normal. They have the same element and the same stored
