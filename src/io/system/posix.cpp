@@ -368,7 +368,7 @@ void give_back_free_memory() noexcept {
 #endif
 }
 
-void end_now(int exit_code) noexcept { ::_exit(exit_code); }
+void end_now(int exit_code) { ::_exit(exit_code); }
 
 }  // namespace chronormal::inline internal
 

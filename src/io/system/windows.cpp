@@ -517,7 +517,7 @@ void watch_endings(const Endings& endings) noexcept {
 
 void give_back_free_memory() noexcept {}
 
-void end_now(int exit_code) noexcept { ::_exit(exit_code); }
+void end_now(int exit_code) { ::_exit(exit_code); }
 
 }  // namespace chronormal::inline internal
 
