@@ -140,8 +140,8 @@ Result<MeshNormalsOptions> options_of(const chronormal_options* given) {
   return options;
 }
 
-// Calls write(result, range), where `result` is the view of memory that an output describes: vectors, or spans of four
-// bytes each. Returns the number of zero normals. Errors: kUsage.
+// Calls write(result, range). `result` is a view of the memory that `given` describes: vectors of three floats, or
+// normals that are packed into four bytes each. Returns the number of zero normals, as write() does. Errors: kUsage.
 template <class Write>
 Result<std::size_t> write_to(const chronormal_output* given, std::size_t size, const Write& write) {
   if (given == nullptr) return Error{ErrorCode::kUsage, "output", "the pointer is NULL"};
@@ -319,7 +319,7 @@ chronormal_status chronormal_blend_create(const chronormal_mesh* mesh, chronorma
     for (std::size_t k = 0; k < target_count; ++k) {
       const chronormal_target& target = targets[k];
       if (target.vertices == nullptr && target.count != mesh->vertex_count)
-        return misuse("targets", "a target without vertices must have a delta for every vertex");
+        return misuse("targets", "a target without a list of vertices must have a delta for every vertex");
       const auto deltas = view_of(target.deltas, target.count, "targets");
       if (!deltas) return fail(deltas.error());
       std::vector<float> values = packed(deltas.value());

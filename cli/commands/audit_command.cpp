@@ -1,4 +1,5 @@
-// Defines the command `audit`: its options, and the output of its result or, in a shard, of its part of the result.
+// Defines the command `audit`: its options, and the output of its result. A run with --shard writes only its part of
+// the result.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,8 +42,8 @@ struct AuditArguments {
   bool json = false;
 };
 
-// The message if the user gives a tolerance but nothing in the input moves. Such an input must not pass, because an
-// export may have lost its animations.
+// The message if the user sets a limit (--tolerance or --tears) but nothing in the input moves. Such an input must not
+// pass, because an export may have lost its animations.
 constexpr const char* kNothingMoves =
     "nothing could be judged, since no target and no animation moves stored normals; export the file with normals";
 
@@ -112,7 +113,8 @@ std::vector<std::vector<Option>> tables(AuditArguments& options) {
       options.common.table(false)};
 }
 
-// Audits an input that is not a glTF file. The result is empty on a rank that has nothing to print.
+// Audits an input that is not a glTF file. If several ranks (processes of MPI) divide the work, the result is empty on
+// all but the first, which alone prints.
 Result<std::optional<Audit>> audit_motion(Input& input, const AuditArguments& options, const AuditOptions& how,
                                           CommandRun& run, AuditRun& segments) {
   const Result<MotionStream*> motion = input.stream();
@@ -219,13 +221,14 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
   if (options.poses && *options.poses != "random") inputs.push_back({"--poses", *options.poses});
   if (const Status distinct = check_distinct(outputs, inputs); !distinct) return distinct.error();
   if (options.run.shard && options.errors)
-    return misuse("--errors", "a run with --shard cannot write single errors; leave --errors or --shard out");
+    return misuse("--errors", "--errors and --shard cannot be used together; leave one of the two out");
   if (options.run.shard && options.json)
     return misuse(
         "--json",
-        "a shard cannot be written as JSON; leave --json out, and let chronormal merge make the JSON of all shards");
+        "a shard cannot be written as JSON; leave --json out, and combine the shards with 'chronormal merge', which "
+        "writes JSON");
   if (options.run.resume && options.errors)
-    return misuse("--errors", "a run with --resume cannot write single errors; leave --errors or --resume out");
+    return misuse("--errors", "--errors and --resume cannot be used together; leave one of the two out");
   how.keep_errors = options.errors.has_value();
   how.samples = options.judge.samples;
   how.animation = options.input.animation;
@@ -235,7 +238,7 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 }
 
 // Returns the sentence for an input that does not pass because of errors at samples whose faces almost vanish. `place`
-// ends the sentence.
+// names the worst of these samples, and ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
   return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}, where faces almost vanish{}",
                    error.faint_worst, *audited.limits.degrees, place);
@@ -249,11 +252,12 @@ std::string why_torn(const Audited& audited, const MotionError& error) {
 
 // Returns the sentence for an input that does not pass because the normals around some vertices cancel.
 std::string why_cancelled(const MotionError& error) {
-  return formatted("{} no true normal, since the normals of the faces around cancel, so they cannot be judged",
+  return formatted("{} no true normal and cannot be judged, since the normals of the faces around cancel",
                    counted(error.cancelled, "sample has", "samples have"));
 }
 
-// Returns the sentence that says which limit an input exceeds: the tolerance of errors, or else another limit.
+// Returns the sentence that says which limit an input exceeds: the tolerance of errors, or else the number of torn
+// edges. Each label names the place of one kind of error, and may be empty.
 std::string why_beyond(const Audited& audited, const MotionError& error, const std::string& worst_label,
                        const std::string& unlit_label, const std::string& faint_label,
                        const std::string& cancelled_label) {

@@ -25,8 +25,9 @@
 namespace chronormal::cli {
 namespace {
 
-// The largest result, in bytes, that is audited after a bake. An audit judges every target, so the user would wait too
-// long for the audit of a larger file, which gives only one line of the report.
+// The largest file, in bytes, that is audited after a bake: the input if it is a glTF file, otherwise the result. An
+// audit judges every target. For a larger file, the user would wait too long for the one line that it adds to the
+// report.
 constexpr std::size_t kMostAudited = std::size_t{64} << 20;
 
 struct BakeArguments {
@@ -98,7 +99,7 @@ Result<BakeOptions> understand(const BakeArguments& options) {
     return misuse("--json", "JSON and the result cannot both go to the standard output; write the result to a file");
   if (options.drivers) {
     if (options.drivers->empty() || *options.drivers == "-")
-      return misuse("--drivers", "the name of the file is missing");
+      return misuse("--drivers", "the name of the file is missing; give a name other than -");
   }
   if (const Status status = check_input(options.input); !status) return status.error();
   how.is_posed = options.poses.has_value();
@@ -111,7 +112,8 @@ Result<BakeOptions> understand(const BakeArguments& options) {
   return how;
 }
 
-// Returns true if a mesh has no candidate within the limits that the user gave.
+// Returns true if the user gave a limit, and the bake of a mesh exceeds it or leaves tangents that do not fit the new
+// normals.
 bool is_beyond(const BakeArguments& options, const BakeOptions& how, const GltfBake& bake) {
   if (!options.tolerance && !options.most_targets && !options.most_bytes) return false;
   return std::any_of(bake.meshes.begin(), bake.meshes.end(), [&how](const BakedMesh& mesh) {
@@ -152,7 +154,7 @@ Result<std::optional<BeforeAndAfter>> audit_both(const BakeOptions& how, const B
                                                  const GltfDocument* author, const AuditBefore& audit_before) {
   std::optional<BeforeAndAfter> result;
   if (options.no_audit || is_stream(options.common.output)) return result;
-  // A guard for the time of the audit. A user who interrupts the audit is told that the output file is complete.
+  // While an object of this class lives, a user who interrupts the program is told that the output file is complete.
   struct Stands {
     Stands() {
       say_at_end(
@@ -391,8 +393,8 @@ Result<int> run(BakeArguments options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
-  // The extension alone reveals this error, so it is reported before anything is read. Other errors about the name
-  // depend on the input.
+  // The extension of the output alone reveals this error, so it is reported before the input is read. Other errors
+  // about this name depend on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output, "bake can only write glTF; choose a name that ends in .glb, .gltf or .vrm");
@@ -451,12 +453,12 @@ Command bake_command() {
          {.rare = true}},
         {"--crease DEG",
          &options->crease_angle,
-         "make edges hard that are sharper than DEG degrees\nFor sequences, and with --smooth. The default is 180, "
+         "treat edges sharper than DEG degrees as hard\nFor sequences, and with --smooth. The default is 180, "
          "for no hard edges",
          {.rare = true}},
         {"--recompute-base",
          &options->recompute_base,
-         "replace the base normals, too, from the geometry",
+         "compute new base normals, too, from the geometry",
          {.rare = true}},
         {"--smooth", &options->smooth, "give smooth normals to primitives that have none"},
         {"--max-bytes N",

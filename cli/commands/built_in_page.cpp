@@ -4,8 +4,8 @@
 
 #ifdef CHRONORMAL_REPORT_PAGE
 
-// The assembler includes the file of the page. A compiler would have to parse an array with a number for each byte. The
-// assembler for Windows has neither .pushsection nor .hidden.
+// The assembler includes the bytes of the page. In C++, the page would be an array with a number for each byte, which
+// takes the compiler long to parse. The assembler for Windows has neither .pushsection nor .hidden.
 #ifdef _WIN32
 #define CHRONORMAL_SECTION_BEGIN ".section .rdata,\"dr\"\n"
 #define CHRONORMAL_SECTION_END ".text\n"

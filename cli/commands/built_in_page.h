@@ -1,4 +1,4 @@
-/// Gives access to the page of reports that is built into the program.
+/// Gives access to the template for pages of `report` that is built into the program.
 #ifndef CLI_COMMANDS_BUILT_IN_PAGE_H_
 #define CLI_COMMANDS_BUILT_IN_PAGE_H_
 
@@ -6,7 +6,8 @@
 
 namespace chronormal::cli {
 
-/// Returns the page that CHRONORMAL_REPORT_PAGE named when the program was built, or an empty text if it named none.
+/// Returns the template: the contents of the file that the macro CHRONORMAL_REPORT_PAGE named when the program was
+/// built. Returns an empty text if the macro was not defined.
 [[nodiscard]] std::string_view built_in_page() noexcept;
 
 }  // namespace chronormal::cli

@@ -19,9 +19,9 @@ struct BlendArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input and compares blends of its targets. If the user chooses elements, their normals follow the geometry
-/// of a glTF file instead of the stored normals. Errors: kUsage for options that exclude each other; those of reading
-/// and of compare_blends().
+/// Reads the input, and compares the normals of blended targets with exact normals. For a glTF file, these are the
+/// stored normals, or normals computed from the geometry if the user chooses elements. Errors: kUsage for options that
+/// exclude each other; those of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

@@ -1,4 +1,5 @@
-// Defines the command `compare`: its options, and the output of its result or, in a shard, of its part of the result.
+// Defines the command `compare`: its options, and the output of its result. A run with --shard writes only its part of
+// the result.
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -161,7 +162,8 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
           options.common.table(false)};
 }
 
-// Compares one motion. The result is empty on a rank that has nothing to print.
+// Compares one motion. If several ranks (processes of MPI) divide the work, the result is empty on all but the first,
+// which alone prints.
 Result<std::optional<NamedComparison>> compare_one(Input& input, const CompareArguments& options, Progress& progress,
                                                    CommandRun& run, CompareRun& segments) {
   const Result<MotionStream*> motion = input.stream();
@@ -206,8 +208,8 @@ std::string option_of_one_process(const CompareArguments& options) {
   return options.each ? "--each" : "";
 }
 
-// Compares the inputs one after the other, with only one motion in memory. The result is empty on a rank that has
-// nothing to print.
+// Compares the inputs one after the other, with only one motion in memory. The result is empty on all ranks but the
+// first.
 Result<std::vector<NamedComparison>> compare_inputs(const CompareArguments& options, Progress& progress,
                                                     CommandRun& run, CompareRun& segments) {
   std::vector<InputOptions> inputs;
@@ -371,7 +373,7 @@ Result<int> run(const CompareArguments& options) {
   if (!options.face && options.blend.rows && options.truth.every)
     return misuse("--truth", "--truth is for sequences and --blend for blend shapes; leave one of the two out");
   if (!options.face && options.blend.rows) return run_blend(options);
-  // Wrong names are reported before any long computation.
+  // Wrong names of schemes are reported before any long computation.
   for (const std::string& name : scheme_names(options)) {
     if (name.empty()) return misuse("--schemes", "the list has an empty name; remove the extra comma");
     if (const auto scheme = make_scheme(name); !scheme) return scheme.error();
@@ -400,17 +402,17 @@ Result<int> run(const CompareArguments& options) {
 
   if (options.run.shard && options.each) return misuse("--shard", "--shard divides a single motion; leave --each out");
   if (options.run.shard && options.errors)
-    return misuse("--errors", "a run with --shard cannot write single errors; leave --errors or --shard out");
+    return misuse("--errors", "--errors and --shard cannot be used together; leave one of the two out");
   if (options.run.shard && (options.json || options.csv))
     return misuse(options.json ? "--json" : "--csv",
-                  "a shard cannot be written in this format; leave this option out, and let chronormal merge make the "
-                  "JSON of all shards");
+                  "a shard cannot be written in this format; leave this option out, and combine the shards with "
+                  "'chronormal merge', which writes JSON");
   if (!options.table.empty() && (options.csv || options.run.shard))
     return misuse("--table", options.csv ? "--table and --csv cannot be used together; leave one of the two out"
                                          : "a shard cannot be printed as a table; leave --table out");
   if (options.run.resume && (options.each || options.errors))
     return misuse("--resume",
-                  "--resume cannot be used with --each or --errors, since it keeps only the sums of one motion; leave "
+                  "--resume cannot be used with --each or --errors, since it keeps only the sums of errors of one motion; leave "
                   "--resume out");
   if (options.errors) {
     if (options.each) return misuse("--errors", "--errors is only for a single motion; leave --each out");

@@ -12,7 +12,8 @@
 
 namespace chronormal::cli {
 
-/// A function that answers the question for a motion. The last argument has no effect unless takes_elements is true.
+/// A function that answers a question for a motion. The last argument has no effect unless Question::takes_elements is
+/// true.
 using Ask =
     std::function<Result<QueryAnswer>(const Motion&, const QuerySpan&, const QueryProgress&, const ElementOptions&)>;
 

@@ -203,7 +203,7 @@ Status take_hard_edges(Input& input, const std::string& what, ElementOptions& el
   return Success{};
 }
 
-// Prints the size of the task if it is large. A large task is not refused.
+// Prints a warning if the result will have 1 GB or more. Such a result is not refused.
 void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   constexpr double kMuch = 1e9;
   const std::size_t elements = kind == ElementKind::kFaces     ? topology.face_count()
@@ -212,7 +212,7 @@ void announce(const Topology& topology, ElementKind kind, std::size_t moments) {
   const double bytes = 3.0 * sizeof(float) * static_cast<double>(elements) * static_cast<double>(moments);
   if (bytes >= kMuch)
     say("sample",
-        formatted("the result will be large, {} times {} normals, which are {:.1f} GB", grouped(moments),
+        formatted("the result will be large: {} moments with {} normals each, which are {:.1f} GB", grouped(moments),
                   grouped(elements), bytes / 1e9),
         Tone::kWarning);
 }
@@ -251,7 +251,7 @@ Result<int> run(const SampleArguments& options) {
   if (const Status done = run.finish(); !done) return done.error();
   if (written.value().zeros > 0)
     say("sample",
-        formatted("{} of {} normals of {} are (0, 0, 0), since the faces around have no area", written.value().zeros,
+        formatted("{} of {} normals of {} are (0, 0, 0), since their faces have no area", written.value().zeros,
                   written.value().normals, options.elements.kind()),
         Tone::kWarning);
   if (request.sample.stepping && !options.common.quiet) {

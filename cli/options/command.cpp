@@ -32,9 +32,9 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
         cut.skins ? ", in the scene's world" : ""));
   if (cut.beyond > 0)
     warn(
-        formatted("in {} of {} cases (a face in a segment), normals are not that close to the curve, since the face "
-                  "almost vanishes between two keyframes, or would need more pieces than --max-expansion allows",
-                  grouped(cut.beyond), grouped(faces * cut.segments)));
+        formatted("in {} of {} cases (a face in a segment), normals may be more than {} degrees from the curve, since "
+                  "the face almost vanishes between two keyframes, or needs more pieces than --max-expansion allows",
+                  grouped(cut.beyond), grouped(faces * cut.segments), cut.path.tolerance));
   if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
     warn("there are only two keyframes, so vertices move straight between them, as with --path linear");
   if (is_too_sparse(cut.bend))
@@ -183,7 +183,7 @@ std::vector<Option> ElementArguments::table() {
   return {{"--elements KIND", &asked,
            formatted("which normals: {}, {} or {}", marked("faces"), marked("vertices"), marked("corners"))},
           {"--crease DEG", &crease_angle,
-           "make edges hard that are sharper than DEG degrees\nNeeds --elements corners. The angle is between two "
+           "treat edges sharper than DEG degrees as hard\nNeeds --elements corners. The angle is between two "
            "faces in the first keyframe. The default is 180, for no hard edges"},
           {"--no-weld", &no_weld, "do not merge vertices that are always at one point", {.rare = true}}};
 }
@@ -221,7 +221,7 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   const std::vector<std::string> notes = input.value().notes();
   for (std::size_t i = 0; i < std::min(notes.size(), kMostSaid); ++i) say(command, notes[i], Tone::kWarning);
   if (notes.size() > kMostSaid)
-    say(command, formatted("{} more notes like these were left out", notes.size() - kMostSaid), Tone::kWarning);
+    say(command, counted(notes.size() - kMostSaid, "more note was", "more notes were") + " left out", Tone::kWarning);
   if (fault) return *fault;
   if (options.is_curved() || input.value().cut_path().skins)
     say_of_curves(command, input.value().cut_path(), faces, progress.is_quiet());

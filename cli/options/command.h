@@ -60,8 +60,8 @@ struct ElementArguments {
 /// The options of commands that judge stored normals: --weighting, --for, --samples.
 struct JudgeArguments {
   std::string weighting;               ///< if empty, the stored base normals suggest the weighting
-  std::string viewers;                 ///< if empty, only the specification
-  std::string viewers_by_old_name;     ///< given by --host, an old name of the option that causes a warning
+  std::string viewers;                 ///< if empty, normals are judged only as the glTF specification defines them
+  std::string viewers_by_old_name;     ///< given by --host, the old name of --for, which causes a warning
   std::optional<std::size_t> samples;  ///< samples per segment
 
   /// Returns the table of these options. `of_viewers` is the help text for --for.
@@ -78,7 +78,7 @@ struct JudgeArguments {
 /// Returns the last component of a path.
 [[nodiscard]] std::string short_name(std::string path);
 
-/// Returns an error of kUsage.
+/// Returns an error of kUsage; `place` is the option or the file to blame.
 [[nodiscard]] Error misuse(std::string place, std::string message);
 
 // Return the descriptions of the commands.

@@ -21,8 +21,8 @@ constexpr std::size_t kNameColumn = 2, kTextColumn = 27;
 constexpr std::string_view kAbout = "Computes, checks and corrects normals of triangle meshes that deform.";
 
 constexpr std::array<std::pair<const char*, const char*>, 3> kOptionsOfProgram = {
-    {{"-h, --help", "explain the program, or the command before it"},
-     {"--help-all", "explain all options of the command before it"},
+    {{"-h, --help", "explain the program, or the command before --help"},
+     {"--help-all", "explain all options of the command before --help-all"},
      {"-V, --version", "print the version"}}};
 
 struct Paragraph {
@@ -120,8 +120,8 @@ std::string spelled(const Option& option) {
 // Returns the first line of the help of an option.
 std::string brief(const Option& option) { return option.help.substr(0, option.help.find('\n')); }
 
-// Returns the meaning of an option for help: the first line of its text. If `all` is true, the result has the following
-// sentences, too.
+// Returns the meaning of an option for help: the first line of its text and, if `all` is true, the sentences that
+// follow this line.
 std::string meaning(const Option& option, bool all) {
   std::string text = brief(option) + (option.rules.required ? " (required)" : "");
   if (const std::size_t end = option.help.find('\n'); all && end != std::string::npos)
@@ -315,7 +315,7 @@ std::string manual_page(const std::vector<Command>& commands) {
   page += ".SH OPTIONS\n";
   for (const auto& [names, text] : kOptionsOfProgram)
     page += formatted(".TP\n.B {}\n{}", for_manual(names), lines_for_manual(text));
-  return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 usage, 3 input invalid, 4 a tolerance was exceeded\n";
+  return page + ".SH EXIT STATUS\n0 done, 1 failed, 2 usage, 3 input invalid, 4 a limit was exceeded\n";
 }
 
 Result<std::string> completions(const std::vector<Command>& commands, std::string_view shell) {

@@ -204,7 +204,7 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
     return Success{};
   }
   if (has_weights)
-    return misuse("--weights", "weights are only for blend shapes; give --times, from " + range_of(motion));
+    return misuse("--weights", "weights are only for blend shapes; give --times instead, from " + range_of(motion));
   if (!has_times)
     return misuse("--times",
                   "the times are missing; give --times within the motion, which goes from " + range_of(motion));
@@ -264,7 +264,7 @@ Result<Moments> moments_of(Input& input, const AskedMoments& asked) {
   const Motion& motion = stream.value()->motion();
   if (asked.stepping) {
     const std::size_t steps = asked.stepping->steps, segments = motion.segments.size();
-    if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps");
+    if (segments == 0) return misuse("--step", "the mesh does not move, so there are no steps; leave --step out");
     if (steps >= kMostTimes / segments)
       return misuse("--step", "the steps are more than 1,000,000 moments; take fewer steps");
     return step_moments(motion, steps);

@@ -6,7 +6,7 @@
 ///     --weights 0.5,0,1          a weight for each target
 ///     --weights jawOpen=0.5,3=1  weights by the names or numbers of targets; all others are 0
 ///     --step 100                 every segment in 100 equal steps, each computed from the previous one
-///     --step 100:0               the same without recomputing the state in between
+///     --step 100:0               the same; no step is ever computed anew, so rounding errors add up
 ///
 /// The weight follows the last '=', so that names may contain this character. A name with a comma, or with blanks at
 /// its ends, is written in double quotes, in which "" stands for one quotation mark.

@@ -49,8 +49,8 @@ CLI::Option* add_target(CLI::App& command, const std::string& names, T* target, 
   return command.add_option(names, *target, help);
 }
 
-// Checks the value of an option that takes a number. The parser would treat an empty text as a missing option, and
-// accept "nan" as a number.
+// Returns the fault in the value of an option that takes a number, or an empty text. The parser would treat an empty
+// value as a missing option, and accept "nan" as a number.
 template <class T>
 std::string fault_of_number(const T*, const std::string& value) {
   constexpr bool is_text = std::is_same_v<T, bool> || std::is_same_v<T, std::string> ||
@@ -72,7 +72,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // The check in the table of the option comes first, because its message says more than "a number is needed".
+  // The check in the table of the option comes first, because its message says more than "'x' is not a number".
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";
@@ -161,8 +161,8 @@ std::string advice_on(std::string_view name, const Command& command, const std::
   return suggestion(name, own);
 }
 
-// Finds the first unknown option. (The parser would first report a required option that is missing.) A word after an
-// option that takes a value is its value, whatever the word looks like.
+// Finds the first unknown option. (The parser would first report a required option that is missing.) If an option takes
+// a value, the next word is its value, whatever the word looks like.
 std::optional<Error> find_unknown_option(const Command& command, const std::vector<Command>& commands,
                                          std::span<char* const> arguments) {
   std::vector<std::string> names = names_of_options(command);

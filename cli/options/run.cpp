@@ -1,5 +1,5 @@
-// Describes a run by its options and its files, compares the description with the journal, and finds the share of this
-// process.
+// Describes a run by its options and its files, compares this description with the one in the journal of an interrupted
+// run, and finds the share of the work of this process.
 #include "cli/options/run.h"
 
 #include <filesystem>
@@ -118,7 +118,7 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   run.journal = &*journal_;
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
-    say(command_, formatted("going on after {} {}, which an earlier run has finished", grouped(done), things),
+    say(command_, formatted("an earlier run has finished {} of the {}; this run does the others", grouped(done), things),
         Tone::kWarning);
   return Success{};
 }

@@ -46,13 +46,13 @@ class CommandRun {
   CommandRun& operator=(const CommandRun&) = delete;
   ~CommandRun();
 
-  /// Sets up `run` for the share of this process, with the limits of the input. `things` is the plural of what the
-  /// progress bar counts, such as "segments". Errors: kUsage for --resume and an input that is not a sequence of
-  /// keyframes.
+  /// Sets up `run`: the share of this process, the limit on memory (Input::expansion()), and the journal. `things` is
+  /// the plural of what the progress bar counts, such as "segments". Errors: kUsage for --resume with an input that is
+  /// not a sequence of keyframes.
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
   /// Sets up a `run` that records a result for each segment in the journal. write(result) returns the result as text,
-  /// and read(text, name) reads this text in a later run. Errors: those above, and those of read().
+  /// and read(text, name) reads this text in a later run. Errors: those of the function above, and those of read().
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                RecordedRun<Found>& run, std::string (*write)(const Found&), const Read& read) {
@@ -135,7 +135,7 @@ struct RunArguments {
 };
 
 /// Checks that no ranks or shares are used for a command or an input that a single process must handle. Errors: kUsage
-/// with the reason `what`, for example "it divides the segments of a sequence, and a glTF file is none".
+/// with the reason `what`, for example "only a sequence of keyframes can be divided, not a glTF file".
 [[nodiscard]] Status refuse_shares(const RunArguments& run, const char* what);
 
 }  // namespace chronormal::cli

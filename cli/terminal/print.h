@@ -26,7 +26,8 @@ void say_text(std::string_view text);
 /// Writes to stderr without changes, as many bytes as stderr takes. Safe to call in a signal handler.
 void say_raw(std::string_view text) noexcept;
 
-/// Prints "chronormal: message", at most 200 bytes, to say why the process ends now. Safe to call in a signal handler.
+/// Prints "chronormal: message", cut off after 256 bytes, to say why the process ends now. Safe to call in a signal
+/// handler.
 void say_ending(std::string_view message) noexcept;
 
 /// Returns true if this thread is writing to stderr. Safe to call in a signal handler.

@@ -3,11 +3,11 @@
 /// The columns up to the first one that is aligned to the left identify a row. If a table is wider than the output, the
 /// columns that do not fit follow below, in another table with the same rows:
 ///
-///     scheme             sum  vs linear     mean
+///     scheme             sum  vs linear  average
 ///                    degrees      ratio  degrees
 ///     linear     1,264,530.8     1.0000   2.6764
 ///
-///     scheme      rms      max
+///     scheme      rms    worst
 ///             degrees  degrees
 ///     linear   4.3540  19.6527
 ///

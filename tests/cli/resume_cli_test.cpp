@@ -52,7 +52,7 @@ class Resume : public testing::Test {
     EXPECT_FALSE(exists("out"));
     const ProcessResult done = run(command + out);
     EXPECT_EQ(done.exit_code, 0) << done.err;
-    EXPECT_NE(done.err.find("going on after "), std::string::npos) << done.err;
+    EXPECT_NE(done.err.find("an earlier run has finished "), std::string::npos) << done.err;
     EXPECT_TRUE(file("out") == file("whole"));
     EXPECT_FALSE(exists("out.journal") || exists("out.partial"));
     fs::remove(folder_ / "out");

@@ -184,7 +184,7 @@ TEST_F(SampleCli, weights_are_for_blend_shapes) {
   expect_error("--base a.obj b.obj --weights 1,0 -o n.npy", 2, "the input has 1 target, but the pose has 2 weights");
   expect_error("--base a.obj b.obj --weights 1x -o n.npy", 2, "'1x' is not a number");
   expect_error("--base a.obj b.obj --weights 1 --times 0 -o n.npy", 2, "cannot be used together");
-  expect_error("a.obj b.obj --weights 1 -o n.npy", 2, "give --times, from 0 to 1");
+  expect_error("a.obj b.obj --weights 1 -o n.npy", 2, "give --times instead, from 0 to 1");
   expect_error("a.obj --weights 1 -o n.npy", 2, "no targets");
 }
 

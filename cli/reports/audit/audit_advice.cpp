@@ -21,7 +21,7 @@ enum class Remedy {
   kTangents,
   kViewers,   // normals are right by the specification, but wrong in viewers that differ from it
   kRule,      // the requested rule is not the one that viewers use for glTF files
-  kOriginal,  // the wrong meshes were baked before; bake does not bake a mesh twice
+  kOriginal,  // the meshes with errors were baked before; bake does not bake a mesh twice
   kTargets,   // bake does not accept targets over a base
   kBake,
 };
@@ -36,7 +36,8 @@ bool was_baked(const Audited& input, const AuditSubject& subject) {
   return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
 }
 
-// Returns true if an animation drives the weight of a target. Subjects that are not targets count as driven.
+// Returns true if the subject is a target whose weight an animation drives. A subject that is not a target counts as
+// driven.
 bool is_driven(const Audited& input, const AuditSubject& subject) {
   if (subject.kind != AuditSubject::Kind::kTarget) return true;
   const auto drives = [&](const AuditSubject& other) {
@@ -115,7 +116,7 @@ std::string original_words(const Audited& input) {
     any_harmless = any_harmless || encoding == BakeEncoding::kHarmless || encoding == BakeEncoding::kSmallest;
     any_driven = any_driven || is_driven(input, *subject);
   }
-  const std::string baked = "the wrong meshes were baked before, and bake does not change them again; ";
+  const std::string baked = "the meshes with errors were baked before, and bake does not change a baked mesh; ";
   if (any_harmless && any_driven)
     return baked +
            "for smaller errors, bake the ORIGINAL file with --for VIEWER, a smaller --tolerance, or --encode exact";
@@ -124,7 +125,7 @@ std::string original_words(const Audited& input) {
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
   if (!all_single)
-    return baked + "since then they were changed, or --weighting is another; bake the ORIGINAL file again";
+    return baked + "since then they were changed, or --weighting differs; bake the ORIGINAL file again";
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";
@@ -140,8 +141,8 @@ std::string advice(const Audited& input) {
       return formatted("\nnothing to do, since no error is larger than {:g} {}\n", limit_of(input),
                        limit_of(input) == 1 ? "degree" : "degrees");
     case Remedy::kUnknown:
-      return input.audit.error.cancelled > 0 ? "\nnormals of faces cancel, so no vertex normal is right there; give "
-                                               "each side of a sheet its own vertices\n"
+      return input.audit.error.cancelled > 0 ? "\nat some vertices the normals of faces cancel, so no vertex normal is "
+                                               "right; give each side of a sheet its own vertices\n"
                                              : "\nnothing could be judged, since no face that moves has an area\n";
     case Remedy::kTangents:
       return "\nthe normals are right, but the tangents are not, and bake does not correct them; export tangents for "

@@ -13,7 +13,7 @@ namespace chronormal::cli {
 /// nothing was judged.
 [[nodiscard]] std::string advice(const Audited& input);
 
-/// Returns the verdict on a file in a few words for a table: "right", "within 2", "bake it", ...
+/// Returns the verdict on a file in a few words for a table: "right", "within the limits", "wrong, bake it", ...
 [[nodiscard]] std::string verdict(const Audited& input);
 
 }  // namespace chronormal::cli

@@ -25,7 +25,7 @@ struct AuditedFile {
   Json json;                         ///< result of audit_object(), or the members "input" and "error"
 };
 
-/// Returns the table of all files, sorted by their worst error.
+/// Returns a summary of all files, and a table with a row for each, in the given order.
 [[nodiscard]] std::string audit_files_text(const std::vector<AuditedFile>& files);
 
 /// Returns one JSON object: "files" has an entry for each file, and "passed" says whether all files passed.

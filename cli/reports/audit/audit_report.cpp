@@ -229,7 +229,8 @@ std::string offset_lines(const Audited& input) {
                    text;
 }
 
-// Names the place of the first sample that `count` counts. `place` is the member of MotionError that has this place.
+// Names the place of the first sample that is counted in the member `count` of MotionError, such as unlit. The member
+// `place`, such as unlit_at, has this place.
 std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =
