@@ -411,9 +411,10 @@ Result<int> run(const CompareArguments& options) {
     return misuse("--table", options.csv ? "--table and --csv cannot be used together; leave one of the two out"
                                          : "a shard cannot be printed as a table; leave --table out");
   if (options.run.resume && (options.each || options.errors))
-    return misuse("--resume",
-                  "--resume cannot be used with --each or --errors, since it keeps only the sums of errors of one motion; leave "
-                  "--resume out");
+    return misuse(
+        "--resume",
+        "--resume cannot be used with --each or --errors, since it keeps only the sums of errors of one motion; leave "
+        "--resume out");
   if (options.errors) {
     if (options.each) return misuse("--errors", "--errors is only for a single motion; leave --each out");
     if (const Status output = check_errors_output(*options.errors, options.common.force); !output)

@@ -118,7 +118,8 @@ Status CommandRun::prepare(const Input& input, const Motion& motion, ProgressCal
   run.journal = &*journal_;
   const std::size_t done = journal_->records().size();
   if (done > 0 && !common_.quiet)
-    say(command_, formatted("an earlier run has finished {} of the {}; this run does the others", grouped(done), things),
+    say(command_,
+        formatted("an earlier run has finished {} of the {}; this run does the others", grouped(done), things),
         Tone::kWarning);
   return Success{};
 }

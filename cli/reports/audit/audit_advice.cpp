@@ -124,8 +124,7 @@ std::string original_words(const Audited& input) {
   if (!all_single && all_fitted)
     return formatted("the errors remain because {} normals can only be approximated, and bake cannot come closer",
                      weighting_words(wrong));
-  if (!all_single)
-    return baked + "since then they were changed, or --weighting differs; bake the ORIGINAL file again";
+  if (!all_single) return baked + "since then they were changed, or --weighting differs; bake the ORIGINAL file again";
   if (any_driven)
     return baked +
            "a single delta for each target cannot be right everywhere; bake the ORIGINAL file with --encode exact";

@@ -194,7 +194,7 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
   std::string_view result;
   if (member.method == kStored) {
     if (member.size != member.packed_size)
-      return damaged("the array is damaged, since it is stored uncompressed but has two sizes");
+      return damaged("the array is damaged, since it is uncompressed but has two different sizes");
     result = packed.substr(0, static_cast<std::size_t>(std::min(most, member.size)));
   } else {
     if (member.size / kMostPerByte > packed.size() + kSlack)

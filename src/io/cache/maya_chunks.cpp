@@ -156,7 +156,7 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
   const std::string place = name + ", channels";
   std::map<std::string_view, std::uint32_t> all, left;
   for (const Points& points : list) all.emplace(points.channel, points.count);
-  if (all.empty()) return invalid_input(place, "the cache has no points");
+  if (all.empty()) return invalid_input(place, "the cache has no points; export it again");
   if (!options.channel.empty()) {
     if (all.contains(options.channel)) return options.channel;
     return invalid_input(
@@ -211,12 +211,12 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
     const std::size_t count = points.count;
     if (count == 0)
       return invalid_input(binary::place(name, points.begin),
-                           "the channel " + scan::quoted(channel) + " has no points");
+                           "the channel " + scan::quoted(channel) + " has no points; export the cache again");
     if (cache.samples.empty()) cache.vertex_count = count;
     if (count != cache.vertex_count)
-      return invalid_input(binary::place(name, points.begin), "the channel " + scan::quoted(channel) + " has " +
-                                                                  std::to_string(count) + " points here, but " +
-                                                                  std::to_string(cache.vertex_count) + " before");
+      return invalid_input(binary::place(name, points.begin),
+                           "the channel " + scan::quoted(channel) + " has " + std::to_string(count) +
+                               " points here, but " + std::to_string(cache.vertex_count) + " in earlier samples");
     PositionCache::Sample sample;
     sample.time = static_cast<double>(points.ticks) / kMayaTicksPerSecond;
     sample.positions.resize(3 * count);

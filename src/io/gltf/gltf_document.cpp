@@ -294,8 +294,9 @@ Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, 
     const std::uint64_t corners = std::uint64_t{declared.element_count} * (declared.mode == 4 ? 1 : 3);
     return bytes.expansion().check(vertices * per_vertex * (targets + 1) + sizeof(std::uint32_t) * corners, place);
   }
-  return invalid_input(place, "its " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
-                                  " targets would need more than " + std::to_string(most_bytes) + " bytes of memory");
+  return invalid_input(place, "the " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
+                                  " targets of this primitive would need more than " + std::to_string(most_bytes) +
+                                  " bytes of memory");
 }
 
 Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,

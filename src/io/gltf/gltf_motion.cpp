@@ -160,7 +160,7 @@ class Assembly {
                                                  std::to_string(most_bytes) + " bytes of memory");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
-      return invalid_input(document_.name(), "the mesh has more vertices than can be read, " +
+      return invalid_input(document_.name(), "the mesh has too many vertices; the most that can be read is " +
                                                  std::to_string(std::numeric_limits<std::uint32_t>::max() / 3));
     return Success{};
   }

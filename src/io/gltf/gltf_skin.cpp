@@ -43,7 +43,8 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
   const std::optional<std::uint32_t> index = model.nodes[node].skin;
   if (!index || *index >= model.skins.size())
     return invalid_input(state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
-                         "there is no skin with this index; the file has " + std::to_string(model.skins.size()));
+                         "there is no skin with this index; the file has " + std::to_string(model.skins.size()) +
+                             (model.skins.size() == 1 ? " skin" : " skins"));
   const gltf::SkinSource& source = model.skins[*index];
   if (source.fault) return *source.fault;
   GltfSkin skin;

@@ -263,7 +263,7 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
     Node& node = *way.back();
     const std::string& token = (*tokens)[i];
     if (!node.is_container())
-      return error("only an object or an array can take a member, but none takes '" + token + "' from");
+      return error("only an object or an array can have a member '" + token + "', and this value is neither");
     last = find_member(node, token);
     if (last != nullptr) {
       if (!last->value) last->value = std::make_unique<Node>(last->text);
@@ -271,7 +271,8 @@ Status JsonText::change(std::string_view pointer, std::string value, bool append
       continue;
     }
     if (!node.is_object())
-      return error("the array has " + std::to_string(node.members.size()) + " items, and no item " + token);
+      return error("the array has " + std::to_string(node.members.size()) +
+                   (node.members.size() == 1 ? " item, and no item " : " items, and no item ") + token);
     // If objects on the way to the value are missing, they are added together with the value as one text.
     std::string made = append ? std::string("[").append(value).append("]") : std::move(value);
     for (std::size_t k = tokens->size() - 1; k > i; --k) made = JsonObject().add((*tokens)[k], made).text();

@@ -208,7 +208,7 @@ Status ObjReader::read_vertex(std::string_view numbers) {
     float unused = 0;
     const NumberFault fault = scan::parse_float(word, unused);
     if (fault == NumberFault::kNotANumber)
-      return error("more than the position of vertex " + std::to_string(vertex_count()) + ": " +
+      return error("after the position of vertex " + std::to_string(vertex_count()) + ": " +
                    scan::describe(fault, word));
   }
   positions_.insert(positions_.end(), position.begin(), position.end());

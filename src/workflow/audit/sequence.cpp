@@ -286,8 +286,9 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
   if (const Status status = check_normals(motion, normals); !status) return status.error();
   result.span = {motion.keyframes.front().time, motion.keyframes.back().time};
   if (run.is_divided() && (motion.kind == MotionKind::kTargets || options.keep_errors))
-    return Error{ErrorCode::kUsage, "",
-                 "a run with --shard or --resume needs a sequence of keyframes, and cannot write single errors"};
+    return Error{
+        ErrorCode::kUsage, "",
+        "a run with --shard or --resume needs a sequence of keyframes, and cannot keep the error of every sample"};
   result.stored = normals.of_keyframes.size() == motion.keyframes.size();
   KeyframeChecksums seen(stream);
   if (run.shard) {

@@ -416,7 +416,7 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, Gl
   if (options.most_bytes && result.added_bytes > *options.most_bytes) {
     return invalid_input(document.name(), "the new normals need " + std::to_string(result.added_bytes) +
                                               " bytes, but --max-bytes allows only " +
-                                              std::to_string(*options.most_bytes));
+                                              std::to_string(*options.most_bytes) + "; allow more");
   }
   result.warnings = said_once(warnings);
   result.drivers = drivers_file(document, result.meshes);

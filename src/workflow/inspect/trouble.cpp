@@ -120,7 +120,7 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
       have(faces(surface.repeating_faces.count), surface.repeating_faces.count) + " the same point at two corners",
       "a triangle then has no area, and a larger face counts twice in the vertex normal");
   troubles.on_surface("concave_face", found.cut, counted(found.cut.count, "face is", "faces are") + " not convex",
-                      "they are cut into triangles that cover them once, where triangles are needed");
+                      "commands that need triangles cut such a face into triangles that do not overlap");
   std::string meaning = "shading has a seam there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
     meaning = "shading has a seam there; " + grouped(split) + " of them are hard edges in the stored normals too";

@@ -53,7 +53,8 @@ Result<ShardRows> open_rows(const std::string& path) {
   if (!place) return place.error();
   const auto [first, total] = std::pair(place.value().first, place.value().total);
   if (first > total || found.shape.front() > total - first)
-    return invalid_input(path, "the file is damaged, since its rows lie beyond the last one");
+    return invalid_input(
+        path, "the file is damaged, since its rows lie beyond the end of the whole array; make this shard again");
   return ShardRows{std::move(*file), std::move(array).value(), std::move(place).value(), path};
 }
 
@@ -83,7 +84,9 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
     if (!rows) return rows.error();
     if (const Status status = known.add(path, rows.value().place.checksums); !status) return status;
     if (!all.empty() && !rows.value().is_like(all.front()))
-      return Error{ErrorCode::kUsage, path, "this file belongs to another array than " + all.front().name};
+      return Error{
+          ErrorCode::kUsage, path,
+          "this file belongs to another array than " + all.front().name + "; give only the shards of one array"};
     all.push_back(std::move(rows).value());
   }
   std::stable_sort(all.begin(), all.end(), [](const ShardRows& a, const ShardRows& b) {

@@ -125,7 +125,7 @@ MotionError read_error(const JsonView& list) {
     if (bin >= kAuditFineBins)
       list.complain("the list has an unknown bin of errors, " + std::to_string(bin) + "; make this shard again");
     else if (count > FineBins::kMostCount - error.counts[bin])
-      list.complain("bin " + std::to_string(bin) + " has a count that is too large");
+      list.complain("bin " + std::to_string(bin) + " has a count that is too large; make this shard again");
     else
       error.counts.add(bin, count);
   }
@@ -278,7 +278,7 @@ ComparisonShard read_comparison(const JsonView& part) {
   c.span = read_span(part);
   c.cut = read_cut(part);
   shard.checksums = read_task_checksums(part);
-  if (c.segments == 0) part.complain("segment_count", "the shard has no segments");
+  if (c.segments == 0) part.complain("segment_count", "the shard has no segments; make it again");
   const bool is_sequential = part.flag("sequential"), is_certified = part.flag("certified");
   bool has_linear = false;
   each_item(part, "schemes", [&](const JsonView& name) {
@@ -296,11 +296,13 @@ ComparisonShard read_comparison(const JsonView& part) {
   const std::size_t tallies = c.schemes.size() + (has_linear ? 0 : 1);
   each_item(part, "segments", [&](const JsonView& segment) {
     ComparedSegment found = read_compared(segment);
-    if (found.schemes.size() != tallies) segment.complain("the segment must have sums for each scheme, and for linear");
+    if (found.schemes.size() != tallies)
+      segment.complain("the segment must have sums of errors for each scheme and for linear; make this shard again");
     shard.found.push_back(std::move(found));
   });
-  if (c.schemes.empty()) part.complain("the shard has no schemes");
-  if (c.tolerance && !is_certified) part.complain("tolerance_degrees", "the shard has a tolerance, but no bounds");
+  if (c.schemes.empty()) part.complain("the shard has no schemes; make it again");
+  if (c.tolerance && !is_certified)
+    part.complain("tolerance_degrees", "the shard has a tolerance, but no bounds of errors; make it again");
   return shard;
 }
 

@@ -179,7 +179,7 @@ Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t>
        {"whole_sphere", "cones that cover the whole sphere", number(whole)},
        {"empty", "empty cones, of faces that never have an area", number(empty)},
        {"mean_half_angle", "degrees, average half-angle of all other cones", narrow == 0 ? 0 : sum / number(narrow)},
-       {"largest_half_angle", "degrees, largest half-angle of these", largest}},
+       {"largest_half_angle", "degrees, largest half-angle of these cones", largest}},
       {{"",
         "cones that contain every normal of a face, half-angles in degrees",
         {{"segment", std::move(segments)},

@@ -299,7 +299,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
                                               const Moments& moments, const SampleOutput& output, SegmentRun& run) {
   Journal* const journal = run.journal;
   if (journal != nullptr && output.format != SampleFormat::kNpy)
-    return Error{ErrorCode::kUsage, output.path, "a later run can only go on with a .npy file"};
+    return Error{ErrorCode::kUsage, output.path,
+                 "an interrupted run can only be continued if the output is a .npy file"};
   const Motion& motion = stream.motion();
   const std::size_t count = moments.count(), vertices = motion.topology.vertex_count();
   const ElementKind kind = options.elements.kind;
@@ -452,7 +453,8 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
   } else if (!is_array(output.format) && count > 1) {
     return Error{ErrorCode::kUsage, output.path,
                  "the result is " + std::to_string(count) +
-                     " meshes, but the standard output can only take one; name a file with %d"};
+                     " meshes, but the standard output can only take one; name numbered files with -o, such as "
+                     "mesh_%d.obj"};
   }
   // Files of other shards may exist, so only the files of this shard are checked.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};

@@ -54,7 +54,7 @@ TEST(ReadMayaPoints, a_channel_must_be_the_only_one_that_can_be_meant) {
   EXPECT_EQ(error_text(read_maya_points(bytes, "a.mc", {1, 3, "head"})),
             "a.mc, channels: the cache has no channel 'head'; choose one of 'body' (3), 'other' (1)");
   EXPECT_EQ(error_text(read_maya_points(test::MayaWriter(false).header(0), "a.mc")),
-            "a.mc, channels: the cache has no points");
+            "a.mc, channels: the cache has no points; export it again");
 }
 
 TEST(ReadMayaPoints, errors_say_where_and_what) {
@@ -84,9 +84,9 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
             "a.mc, byte 156, channel 'a', point 0: the coordinate is too large for float32");
   EXPECT_EQ(error_with(writer.points<float>("a", {1, 2, 3}) + writer.points<float>("a", {1, 2, 3, 4, 5, 6}),
                        writer.header(0)),
-            "a.mc, byte 136: the channel 'a' has 2 points here, but 1 before");
+            "a.mc, byte 136: the channel 'a' has 2 points here, but 1 in earlier samples");
   EXPECT_EQ(error_with(writer.points<float>("a", {}), writer.header(0)),
-            "a.mc, byte 92: the channel 'a' has no points");
+            "a.mc, byte 92: the channel 'a' has no points; export the cache again");
   std::string bytes = test::small_maya<float>(true);
   bytes.replace(8, 8, "\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF");
   EXPECT_NE(error_text(read_maya_points(bytes, "a.mc")).find("the chunk 'FOR8' should have 9223372036854775807 bytes"),

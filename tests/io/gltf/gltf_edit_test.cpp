@@ -287,8 +287,8 @@ TEST(GltfEdit, change_that_is_not_possible_is_an_error_with_the_pointer) {
     return bytes.error().message;
   };
   EXPECT_EQ(error_of("/meshes/0/name/x", "1", false),
-            "only an object or an array can take a member, but none takes 'x' from");
-  EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 items, and no item 1");
+            "only an object or an array can have a member 'x', and this value is neither");
+  EXPECT_EQ(error_of("/meshes/1", "{}", false), "the array has 1 item, and no item 1");
   EXPECT_EQ(error_of("/meshes/0/name", "1", true), "a value can only be added to an array, but this is not one");
   EXPECT_EQ(error_of("meshes", "1", false), "this is not a JSON pointer; write one like /meshes/0/extras");
   EXPECT_EQ(error_of("", "{}", false), "the whole document cannot be replaced; name a member of it");

@@ -166,11 +166,11 @@ struct Case {
 TEST(GltfSkin, every_fault_is_told_with_its_place) {
   const std::string attributes = "a.gltf, /meshes/0/primitives/0/attributes";
   const std::vector<Case> cases = {
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1 skin",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = 1; }},
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 1 skin",
        [](Skinned& s) { s.builder.json["nodes"][0]["skin"] = "first"; }},
-      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 0",
+      {"a.gltf, /nodes/0/skin: there is no skin with this index; the file has 0 skins",
        [](Skinned& s) { s.builder.json["skins"] = Json::object(); }},
       {"a.gltf, /skins/0: the value must be an object, not a number",
        [](Skinned& s) { s.builder.json["skins"] = {5}; }},

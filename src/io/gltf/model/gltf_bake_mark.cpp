@@ -55,7 +55,7 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");
-  if (!factors || factors->size() != 2) return item.complain("factors", "factors must be a list of two");
+  if (!factors || factors->size() != 2) return item.complain("factors", "factors must be a list of two items");
   std::array<std::optional<std::size_t>, 2> targets;  // no value stands for "base"
   for (std::size_t n = 0; n < 2; ++n) {
     const Json& factor = value["factors"][n];

@@ -179,7 +179,7 @@ void Parser::parse_view(const JsonView& item, BufferView& view) {
   const std::size_t available = model_.buffers[view.buffer].byte_length;
   if (view.offset > available || view.length > available - view.offset)
     return item.complain("the buffer view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
-                         std::to_string(view.buffer) + " has only " + std::to_string(available));
+                         std::to_string(view.buffer) + " has only " + std::to_string(available) + " bytes");
   if (const std::optional<JsonView> extensions = item.object("extensions")) {
     for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
       const std::optional<JsonView> meshopt = extensions->object(name);
@@ -220,7 +220,7 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const std::size_t available = model_.buffers[result.buffer].byte_length;
   if (result.offset > available || result.length > available - result.offset)
     item.complain("the compressed data end at byte " + std::to_string(result.offset + result.length) + ", but buffer " +
-                  std::to_string(result.buffer) + " has " + std::to_string(available));
+                  std::to_string(result.buffer) + " has only " + std::to_string(available) + " bytes");
   const bool of_attributes = result.mode == Mode::kAttributes;
   const bool stride_ok =
       of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
@@ -276,7 +276,7 @@ void Parser::parse_sparse(const JsonView& item, Accessor& accessor) {
   sparse.count = item.required_count("count", kMostBytes);
   if (sparse.count == 0 || sparse.count > accessor.count)
     item.complain("count", "count is " + std::to_string(sparse.count) + ", but must be from 1 to " +
-                               std::to_string(accessor.count) + ", the elements of the accessor");
+                               std::to_string(accessor.count) + ", the number of elements of the accessor");
   const std::optional<JsonView> indices = item.object("indices"), values = item.object("values");
   if (!indices || !values) return item.complain("a sparse accessor must have indices and values");
   sparse.indices_view = indices->required_index("bufferView", model_.views.size(), "buffer views").value_or(0);
@@ -342,8 +342,8 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
   const auto vector = [](const double* v) { return Vec3d{v[0], v[1], v[2]}; };
   if (has_matrix) {
     if (has_translation || has_rotation || has_scale)
-      return item.complain(
-          "matrix", "the node has a matrix beside translation, rotation or scale, but only one of both is allowed");
+      return item.complain("matrix",
+                           "the node has a matrix as well as translation, rotation or scale; remove one of the two");
     const double* m = matrix.data();
     model_.placements.emplace_back(index, AffineTransform{{vector(m), vector(m + 4), vector(m + 8)}, vector(m + 12)});
   } else if (has_translation || has_rotation || has_scale) {
@@ -369,7 +369,7 @@ void Parser::check_nodes(const JsonView& root) {
     if (node.mesh && mesh >= model_.meshes.size())
       complaint_.add(node_pointer(i) + "/mesh", "the node refers to mesh " + std::to_string(mesh) +
                                                     ", but the file has " + std::to_string(model_.meshes.size()) +
-                                                    " meshes");
+                                                    (model_.meshes.size() == 1 ? " mesh" : " meshes"));
     else if (!node.weights.empty())
       check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
   }
@@ -412,7 +412,7 @@ void Parser::connect_nodes() {
     const std::string pointer = node_pointer(parent) + "/children";
     if (child >= count)
       return complaint_.add(pointer, "the node refers to node " + std::to_string(child) + ", but the file has " +
-                                         std::to_string(count) + " nodes");
+                                         std::to_string(count) + (count == 1 ? " node" : " nodes"));
     if (model_.nodes[child].parent)
       return complaint_.add(pointer, "node " + std::to_string(child) +
                                          " is listed as a child more than once, but a node has at most one parent");

@@ -132,9 +132,9 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
       std::count_if(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.has_none; });
   report.without_normals = static_cast<std::size_t>(without);
   if (encoding == BakeEncoding::kExact && freed > 0)
-    report.warnings.push_back(std::to_string(freed) +
-                              " normals need a morph target for keyframe 0, whose weight is 1 at rest, since their "
-                              "faces have no area there, or much less than later");
+    report.warnings.push_back(std::to_string(freed) + (freed == 1 ? " normal needs" : " normals need") +
+                              " a morph target for keyframe 0, whose weight is 1 at rest, since the faces around have "
+                              "no area in this keyframe, or much less than later");
 }
 
 // Adds the targets of the encoding exact to the file, and records which segments bend. If the elements may still
@@ -317,8 +317,8 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
                        "; use --encode harmless for these viewers");
   if (without_room > 0)
     warnings.push_back(
-        std::to_string(without_room) +
-        " normals turn so far from keyframe 0 that compressors change them; check the compressed file with audit");
+        std::to_string(without_room) + (without_room == 1 ? " normal turns" : " normals turn") +
+        " so far from keyframe 0 that compressors change such normals; check the compressed file with audit");
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
       warnings.push_back(std::to_string(targets) + " targets are too many for " + std::string(viewer.title) + "; " +

@@ -95,6 +95,7 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings) {
   const std::string tolerance = rounded_text(options.tolerance.value_or(kHarmlessTolerance));
+  const std::string within = tolerance + (tolerance == "1" ? " degree" : " degrees");
   if (baked.left_tangents > 0) {
     warnings.push_back({label_of(mesh, baked),
                         (baked.left_tangents == 1
@@ -113,9 +114,9 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
         names.append(names.empty() ? "" : ", ")
             .append(viewer.title)
             .append(" (" + std::to_string(viewer.bits) + " bits)");
-    warnings.push_back({label_of(mesh, baked),
-                        "the errors are within " + tolerance + " degrees before compression, but reach " +
-                            rounded_text(rounded_up(chosen->rounded)) + " degrees after compression by " + names});
+    warnings.push_back({label_of(mesh, baked), "the errors are within " + within + " before compression, but reach " +
+                                                   rounded_text(rounded_up(chosen->rounded)) +
+                                                   " degrees after compression by " + names});
     return;
   }
   if (baked.already_baked) {
@@ -134,7 +135,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
     remedies.emplace_back("if some viewers are enough, name them with --for");
   remedies.emplace_back("choose a larger --tolerance");
-  std::string text = "bake could not bring all errors within " + tolerance + " degrees" +
+  std::string text = "bake could not bring all errors within " + within +
                      (chosen->skinned ? " with the skin applied" : "") + ", so the closest result was written; ";
   for (std::size_t n = 0; n < remedies.size(); ++n)
     text += (n == 0 ? "" : n + 1 < remedies.size() ? ", " : ", or ") + remedies[n];
@@ -185,30 +186,28 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
          " not an object, so only the mesh says how to drive the correction targets");
   }
   if (baked.rescaled > 0) {
-    warn(std::to_string(baked.rescaled) +
-         " stored base normals are longer than 1e10 or shorter than 1e-10, to which viewers cannot add deltas; their "
-         "length is now 1");
+    warn(counted(baked.rescaled, "stored base normal is", "stored base normals are") +
+         " longer than 1e10 or shorter than 1e-10, so that viewers could not add deltas; the length is now 1");
   }
   if (baked.stilled > 0) {
     warn(std::to_string(baked.stilled) + (baked.stilled == 1 ? " target turns" : " targets turn") +
          " normals without moving positions; these normals now stay as they are, since the surface does not change");
   }
   if (baked.without_stored > 0) {
-    warn(std::to_string(baked.without_stored) +
-         " stored base normals are (0, 0, 0) or nearly so, and stay wrong; add --recompute-base to replace them");
+    warn(counted(baked.without_stored, "stored base normal is", "stored base normals are") +
+         " (0, 0, 0) or nearly so, which bake does not change; add --recompute-base to replace all base normals");
   }
   if (plan.encoding == BakeEncoding::kSmallest && options.bytes_of_file > 0) {
     const double times = 1 + static_cast<double>(baked.bytes) / static_cast<double>(options.bytes_of_file);
     if (times > kLargeTimes || (times > kLargeTimesOfMany && baked.extras.size() > kFewExtras)) {
-      warn(std::to_string(baked.extras.size()) + " correction targets make the file " +
+      warn(counted(baked.extras.size(), "correction target makes", "correction targets make") + " the file " +
            rounded_text(rounded_up(times)) +
            " times as large; for a smaller file leave --tolerance out, or choose from --plan");
     }
   }
   if (baked.without_base > 0) {
-    warn(
-        std::to_string(baked.without_base) +
-        " vertices have faces without area in the base; their normals are wrong at weights near 0 and right otherwise");
+    warn(counted(baked.without_base, "vertex has", "vertices have") +
+         " only faces without area in the base; normals there are wrong at weights near 0 and right otherwise");
   }
   // The viewers that an option can name support more targets, but other viewers support only this number.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
@@ -217,9 +216,9 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
          "--max-targets");
   }
   if (shading.split_by_crease > 0) {
-    warn(std::to_string(shading.split_by_crease) +
-         " vertices lie on edges sharper than --crease, but can only have one normal; split these edges in the file to "
-         "make them hard");
+    warn(counted(shading.split_by_crease, "vertex lies", "vertices lie") +
+         " on edges sharper than --crease, but can only have one normal; split these edges in the file to make them "
+         "hard");
   }
 }
 
