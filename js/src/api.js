@@ -1,5 +1,5 @@
-// Defines the functions of the package, which write true normals for meshes that deform. They take bytes, and return
-// bytes and reports. They touch neither a file system nor the network. index.d.ts has the types.
+// Defines the functions of the package: audit, inspect, compare, bake and sample. They take bytes, and return bytes and
+// reports. They touch neither a file system nor the network. index.d.ts has the types.
 import { ChronormalError } from './error.js';
 import { readNpy } from './npy.js';
 import { flagsOf } from './options.js';
@@ -19,8 +19,8 @@ const bytesOf = (data) => {
 // Returns a name for an input without one. A GLB is recognised by its first bytes, and other bytes are taken for JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
-// Performs a task in a worker, which ends with the task. Its memory is then freed, and the task can be stopped at any
-// time. The memory of the files moves to the worker and is not copied.
+// Performs a task in a worker. The worker ends with the task, which frees its memory, and can be stopped at any time.
+// The memory of the input files moves to the worker and is not copied.
 async function inWorker(platform, task, { signal, onProgress }) {
   const module = await compile(platform); // compiled once for all workers
   signal?.throwIfAborted();
@@ -31,7 +31,8 @@ async function inWorker(platform, task, { signal, onProgress }) {
       settle(value);
     };
     const stop = () => end(reject, signal.reason);
-    // Passes errors that `work` throws to the caller. In an event handler, no one else would catch them.
+    // Calls work(). If it throws an error, the promise of the caller is rejected with this error, because nobody else
+    // catches errors of an event handler.
     const guarded = (work) => {
       try {
         work();

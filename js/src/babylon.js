@@ -1,9 +1,9 @@
 // Drives baked files in Babylon.js. Before a scene is drawn, the weights of correction targets are computed from the
 // weights that the application or an animation has set for the mesh's own targets. Babylon.js gives access to the
-// extras of nodes, but not of meshes.
+// extras of nodes, but not of meshes, so the formulas of the weights are read from the nodes.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-// The key is a scene, and the value is {observer, driven}.
+// The scenes that are driven. The key of an entry is a scene, and its value is {observer, driven}.
 const attached = new WeakMap();
 
 // Returns an entry for each MorphTargetManager to drive, with the meshes that use the manager. The weights belong to

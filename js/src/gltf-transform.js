@@ -115,7 +115,7 @@ export function chronormal({ onReport, ...options } = {}) {
 const OPTIONS = [
   ['for', '--for <VIEWERS>', 'the viewers that the result is made for, such as three,godot, or all'],
   ['tolerance', '--tolerance <DEGREES>', 'the largest error allowed', Number],
-  ['encode', '--encode <HOW>', 'smallest, harmless, exact or endpoint'],
+  ['encode', '--encode <HOW>', 'how corrections are encoded: smallest, harmless, exact or endpoint'],
   ['weighting', '--weighting <RULE>', 'how much each face counts in a vertex normal'],
   ['maxTargets', '--max-targets <N>', 'at most N morph targets for each mesh', Number],
   ['maxBytes', '--max-bytes <N>', 'at most N bytes of normals for each mesh', Number],

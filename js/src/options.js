@@ -26,7 +26,7 @@ const isObject = (value) => typeof value === 'object' && value !== null;
 const isBytes = (value) => value instanceof ArrayBuffer || ArrayBuffer.isView(value);
 const CALL = {
   name: TEXT,
-  resources: [(value) => isObject(value) && Object.values(value).every(isBytes), 'an object of bytes (a Uint8Array, for example) by their names'],
+  resources: [(value) => isObject(value) && Object.values(value).every(isBytes), 'an object that maps names of files to bytes, such as a Uint8Array'],
   signal: [(value) => isObject(value) && typeof value.throwIfAborted === 'function', 'an AbortSignal'],
   onProgress: [(value) => typeof value === 'function', 'a function'],
   worker: FLAG,

@@ -3,7 +3,7 @@
 // extras, but the resource of a container keeps the JSON of its file.
 import { formulasOf, markOf, weightOf } from './drive.js';
 
-// The key is an application, and the value is {update, driven}.
+// The applications that are driven. The key of an entry is an application, and its value is {update, driven}.
 const attached = new WeakMap();
 
 // Returns the mark of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the file.

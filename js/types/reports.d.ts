@@ -53,9 +53,12 @@ export interface MotionError {
   /** The number of samples without a true normal, although the faces around have an area. Each one exceeds any tolerance. */
   cancelled: number;
   unlit: number;
-  /** The average number of edges per sample over which errors jump by more than 10, 20 and 40 degrees. Only for glTF files. */
+  /**
+   * The number of edges over which errors jump by more than 10, 20 and 40 degrees, on average over all samples. Only
+   * for glTF files.
+   */
   torn_edges?: [number, number, number];
-  /** The largest number of edges at one moment over which errors jump by more than 10 degrees. */
+  /** The number of edges over which errors jump by more than 10 degrees, at the moment with the most such edges. */
   most_torn_edges?: number;
 }
 
@@ -176,7 +179,7 @@ export interface ShownErrors {
   mean_degrees: number;
   most_degrees: number;
   worst_degrees: number;
-  /** The average number of edges per pose over which errors jump by more than 10, 20 and 40 degrees. */
+  /** The number of edges over which errors jump by more than 10, 20 and 40 degrees, on average over all poses. */
   torn_edges: [number, number, number];
 }
 
@@ -431,7 +434,10 @@ interface FoundVertices {
   first_vertex: number | null;
 }
 
-/** The faces with a problem, and pairs of a face with a keyframe or a segment in which the problem occurs. */
+/**
+ * The number of faces with a problem, and the number of pairs of such a face and a keyframe or segment in which it has
+ * the problem.
+ */
 export interface FacePlaces<Place> {
   faces: number;
   pairs: number;

@@ -22,7 +22,8 @@ export function faceOfNumber(part, number) {
 
 const vectorAt = (array, v) => [array[3 * v], array[3 * v + 1], array[3 * v + 2]];
 
-// Returns the position of vertex v at keyframe k. Later keyframes may store only their differences from the first one.
+// Returns the position of vertex v at keyframe k. Later keyframes may store only the vertices that differ from the
+// first one.
 function keyframeAt(keyframes, k, v) {
   const keyframe = keyframes.positions[k];
   if (ArrayBuffer.isView(keyframe)) return vectorAt(keyframe, v);

@@ -2,7 +2,7 @@
 // normal (docs/theory.md, sections 1, 8 and 9), with the offsets and polygons of a file's author (docs/formats.md). All
 // arithmetic is in double, and a step allocates no memory.
 
-/** The element of a vertex that belongs to no element: a vertex of a flat primitive, or a vertex without a face. */
+/** The number in place of an element for a vertex that has none: a vertex of a flat primitive, or without a face. */
 export const NONE = 0xffffffff;
 
 // The share of its terms below which a sum is treated as zero. Terms that cancel leave only a rounding error, which has
@@ -119,7 +119,7 @@ function elementsOfCorners({ element, elements, triangles, backs }, corners, ter
 
 /**
  * Returns a function that sums face normals over elements.
- * @param part of a report
+ * @param part a part of a report
  * @param sums the `truth` of the part, to sum the author's polygons; by default the triangles are summed
  * @returns {(positions: Float64Array, normals: Float64Array, sizes: Float64Array) => void} writes the sum n of each element, not
  *   normalised, and the sum of the sizes of its terms, which bounds the rounding error; both arrays have one more element, for
@@ -200,7 +200,7 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
 /**
  * Returns a function that computes the true normals of a part that has `truth`. They are the normals that the author of
  * the file sees.
- * @param part of a report, of a glTF file
+ * @param part a part of a report on a glTF file
  * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void}
  *   writes the true normal of each element into `right`. An element without a true normal gets its vector from
  *   `normals`, the result of normalsOf(part)

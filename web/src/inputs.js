@@ -1,6 +1,6 @@
 // Groups the files that a person drops into inputs, and explains which files the program cannot read.
 
-// The limit in bytes. The browser holds several copies of a file in 4 GB of memory.
+// The largest file, in bytes, that the page accepts. The browser holds several copies of a file in 4 GB of memory.
 const MOST = 256 * 1024 * 1024;
 
 const OWN = /\.(glb|vrm|npz|md2)$/i, GLTF = /\.gltf$/i;

@@ -12,7 +12,8 @@ import { makeViewer } from './viewer.js';
 
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
-// Each is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings, within}}.
+// Each input is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings,
+// within}}.
 const inputs = [];
 const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;

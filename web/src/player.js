@@ -11,8 +11,8 @@ const TOUR = 3; // seconds for which a motion without times plays
 /**
  * Makes a player.
  * @param report from readContainer()
- * @param {(what: 'part' | 'motion' | 'step') => void} onChange is called with the kind of a change. A change of "part"
- *   is followed by "motion", and "motion" by "step"
+ * @param {(what: 'part' | 'motion' | 'step' | 'viewer' | 'play') => void} onChange is called with the kind of each
+ *   change. A change of the part also changes the motion, and a change of the motion also makes a step
  */
 export function makePlayer(report, onChange) {
   const surfaces = new Map();

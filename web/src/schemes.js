@@ -30,8 +30,8 @@ function lagrange(intervals) {
   return { intervals, evaluate: each(rule) };
 }
 
-// Interpolates along the great circle (section 4.4). Equal ends give the same vector; opposite ends turn about a
-// perpendicular axis.
+// Interpolates along the great circle (section 4.4). If the ends are equal, the result is their vector. If they are
+// opposite, many great circles lead from one to the other, and the result has no meaning.
 function alongArc(a, i, b, j, t, result, at) {
   const d = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2];
   const x = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1], y = a[i + 2] * b[j] - a[i] * b[j + 2], z = a[i] * b[j + 1] - a[i + 1] * b[j];
@@ -100,7 +100,7 @@ export const SCHEMES = {
   cubic: { ...lagrange(3), title: 'cubic: through 4 exact normals' },
   'decasteljau:4': { ...deCasteljau(4), title: 'decasteljau:4: a spherical curve of 4 exact normals' },
   circle: { ...circle(false), title: 'circle: the circle through 3 exact normals' },
-  'circle:timed': { ...circle(true), title: 'circle:timed: the same, in the middle at t = 1/2' },
+  'circle:timed': { ...circle(true), title: 'circle:timed: the same, with the middle normal at t = 1/2' },
   polynomial: { ...polynomial, title: 'polynomial: exact, three control normals' },
 };
 

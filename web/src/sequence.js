@@ -4,7 +4,7 @@
 import { NONE, copy, degreesBetween, normalsOf, unitAt } from './geometry.js';
 import { schemeOf } from './schemes.js';
 
-// Returns all numbers of a keyframe, which may store only its differences from the first keyframe.
+// Returns all numbers of a keyframe, which may store only the vertices that differ from the first keyframe.
 function whole(values, first) {
   if (!values.indices) return values;
   const result = first.slice();
@@ -47,7 +47,7 @@ function offsetBy(geometry, stored, allowed, direction) {
 
 /**
  * Makes the surface of a sequence.
- * @param part of a report, of kind "sequence" or "targets"
+ * @param part a part of a report, of kind "sequence" or "targets"
  * @returns the arrays that are drawn, as makeSurface() of surface.js returns them, and the function pose(segment, t,
  *   scheme, least), which fills them
  */
@@ -149,8 +149,8 @@ export function makeSequence(part) {
     }
   }
 
-  /** Fills all arrays for a moment. `scheme` is a name in schemes.js, or "stored" to interpolate the stored normals of
-   * both keyframes. */
+  /** Fills all arrays for a moment. `scheme` is a name in schemes.js. If the keyframes store normals, the scheme linear
+   * interpolates these. */
   surface.pose = (number, t, scheme, least) => {
     enter(number);
     const { intervals, evaluate } = schemeOf(scheme);

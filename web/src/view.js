@@ -62,7 +62,7 @@ export function makeView(stage, onPoint, onPick) {
   let part, surface, attributes = [], meshes = [], radius = 1, marked = -1, pending = false, flight = 0;
   const labels = [0, 1].map(() => element(stage, 'label')), markers = [0, 1].map(() => element(stage, 'marker'));
   const handle = element(stage, 'wipe');
-  Object.assign(handle, { tabIndex: 0, role: 'slider', ariaLabel: 'Where the picture changes from one side to the other' });
+  Object.assign(handle, { tabIndex: 0, role: 'slider', ariaLabel: 'Dividing line between the left and the right view' });
 
   // Returns the rectangle of each side in CSS pixels from the top left, and the part of the rectangle that is visible.
   function panes() {

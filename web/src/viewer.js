@@ -44,8 +44,8 @@ export function makeViewer(root, report, compute) {
   const scale = h('select', { 'aria-label': 'where the scale ends', onchange: () => setScale() },
     h('option', { value: 'auto' }, 'scale: auto'), SCALES.map((end) => h('option', { value: end }, `0 to ${end}°`)));
   const legend = h('div', { className: 'legend' }, low, bar, high, scale);
-  const drawings = [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between both (3)']];
-  const modes = segmented('what is drawn', drawings, setMode), layouts = segmented('how both are shown', [['side', 'Side by side'], ['wipe', 'Wipe']], setLayout);
+  const drawings = [['lit', 'Lit', 'Lit (1)'], ['normals', 'Normals', 'Normals as colours (2)'], ['error', 'Error', 'The angle between the rendered and the true normals (3)']];
+  const modes = segmented('what is drawn', drawings, setMode), layouts = segmented('how the two pictures are arranged', [['side', 'Side by side'], ['wipe', 'Wipe']], setLayout);
   const plot = makePlot(plotBox, (x) => (player.pause(), player.goTo(x)));
   let visited = -1;
 
