@@ -35,7 +35,7 @@ glTF2ImportUserExtension = baked.RecogniseBakedFiles
 
 if bpy.app.version >= (4, 2, 0):
     # Since version 4.2, the exporter calls draw_export() of add-ons that define a class glTF2ExportUserExtension.
-    # Earlier versions of Blender show a panel.
+    # In earlier versions, export.py shows the settings in a panel of its own.
     glTF2ExportUserExtension = export.NoFurtherHooks
     draw_export = export.draw_in_exporter
 

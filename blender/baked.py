@@ -118,7 +118,8 @@ class CHRONORMAL_OT_make_idle(bpy.types.Operator):
         return context.object is not None and context.object.type == "MESH" and mark_of(context.object.data) is not None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        self.report({"INFO"}, f"{make_idle(context.object.data)} correction keys are muted and named \"{IDLE} ...\"")
+        count = make_idle(context.object.data)
+        self.report({"INFO"}, f"{count} correction key{' is' if count == 1 else 's are'} muted and named \"{IDLE} ...\"")
         return {"FINISHED"}
 
 

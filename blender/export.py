@@ -143,7 +143,7 @@ def draw_settings(layout: bpy.types.UILayout) -> None:
     column.active = preferences.use
     column.column(align=True).prop(preferences, "viewers", expand=True)
     if not preferences.viewers:
-        _hint(column, "With none chosen: right in the first four, no worse in the other two")
+        _hint(column, "If no viewer is chosen: right in the first four, no worse in the other two")
     column.separator()
     column.prop(preferences, "tolerance")
     column.prop(preferences, "most_targets")
@@ -189,7 +189,7 @@ class CHRONORMAL_PT_export(bpy.types.Panel):
 
 
 def draw_in_exporter(_context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-    """Draws the settings in the export dialog, for exporters since 4.2."""
+    """Draws the settings in the export dialog of Blender 4.2 and later."""
     header, body = layout.panel("CHRONORMAL_export", default_closed=False)
     header.prop(settings.get(), "use")
     if body is not None:
@@ -197,7 +197,8 @@ def draw_in_exporter(_context: bpy.types.Context, layout: bpy.types.UILayout) ->
 
 
 class NoFurtherHooks:
-    """Tells exporters since 4.2 that this add-on extends them, so that they call draw_export()."""
+    """An empty glTF2ExportUserExtension (see __init__.py). Because an add-on defines such a class, the exporter of
+    Blender 4.2 and later calls the add-on's draw_export()."""
 
 
 def register() -> None:

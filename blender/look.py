@@ -23,7 +23,7 @@ MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
 # The smallest distance between listed places, as a share of the object's size.
 APART = 0.1
-# The errors below this number of degrees are not listed.
+# Errors below this number of degrees are not listed.
 VISIBLE = 0.1
 
 

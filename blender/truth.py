@@ -150,13 +150,13 @@ class Subject:
         mesh.loops.foreach_get("vertex_index", vertices)
         of_corners, of_file = groups[vertices], groups[len(in_blender):]
 
-        # The lists contain pairs of a corner and a vertex at the same place. The pairs of corner c are first[c] ...
-        # first[c + 1].
+        # The arrays `corner` and `vertex` list all pairs of a corner and a vertex at the same place. The pairs of
+        # corner c begin at index first[c] and end before first[c + 1].
         order = numpy.argsort(of_file, kind="stable")
         begins = numpy.searchsorted(of_file[order], of_corners, side="left")
         counts = numpy.searchsorted(of_file[order], of_corners, side="right") - begins
         if (counts == 0).any():
-            raise Refused("The exported file has vertices at other places than the mesh, so they cannot be compared.")
+            raise Refused("The exported file has vertices at other places than the mesh, so their normals cannot be compared.")
         first = numpy.concatenate([[0], numpy.cumsum(counts)])
         corner = numpy.repeat(numpy.arange(len(of_corners)), counts)
         vertex = order[numpy.arange(first[-1]) - numpy.repeat(first[:-1] - begins, counts)]

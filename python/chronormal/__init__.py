@@ -417,8 +417,8 @@ def errors(source: _Source = None, *, scheme: str | None = None, samples: int | 
            animation: str | int | None = None, path: str = "linear", loop: bool = False, strict: bool = False) -> list[ErrorTable]:
     """Return every error, for each vertex at each sample: a list of ErrorTable, one for each mesh.
 
-    scheme  None: the errors of the stored normals, as in an audit; or a name, such as "linear": the errors of a way
-            to interpolate, for any elements
+    scheme  None: the errors of the stored normals, as in an audit; or the name of a scheme of interpolation, such as
+            "linear": the errors of this scheme, for any elements
     source  as for audit() and compare(); sample, base, fps, animation, path, loop, strict: as for read()
     """
     opened = _source(source, sample, base, fps, animation, path=path, loop=loop, strict=strict)
@@ -455,7 +455,7 @@ def collapse(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None
     lower, upper    bounds of t at the collapse, in [0, 1]
     time            the time of the collapse in the motion
     turns_over      True if the normal after the collapse is opposite to the normal before
-    before, after   (rows, 3) the limits of the unit normal on both sides
+    before, after   (rows, 3) the unit normal just before and just after the collapse
     always_segment, always_face   faces that have no area in a whole segment
     """
     return _chronormal.query_collapse(*_keyframes(positions, faces, times), start, end)
@@ -470,7 +470,7 @@ def facing(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, 
     positions, faces, times, start, end   as for collapse()
     direction    (3,) the camera is infinitely far away in this direction; or
     eye, eye_to  (3,) the camera is at eye, and moves straight to eye_to over all times; None: stands still
-    silhouettes  True: also list edges between a front and a back
+    silhouettes  True: also list silhouette edges, between a face that shows its front and one that shows its back
     elements, crease, weld   as for curves(): "vertices" and "corners" are judged by their own normals, seen from their places
 
     The arrays of the result are:
@@ -517,9 +517,10 @@ def cones(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None, *
 
     The arrays of the result are:
     segment, face     the place
-    axis, sine        (rows, 3) and (rows,) float32; the sine of the half-angle. Along a direction d away from the eye, of
-                      length 1, nothing of the face is seen from its front where d @ axis >= sine. The whole sphere is the
-                      axis 0 with the sine 1, and a face that never has an area the axis 0 with the sine 0
+    axis, sine        (rows, 3) and (rows,) float32: the unit vector of the axis, and the sine of the half-angle. If
+                      d @ axis >= sine for a unit vector d from the eye to the face, the eye cannot see the front of the
+                      face. A cone that covers the whole sphere has the axis 0 and the sine 1. A face that never has an
+                      area has the axis 0 and the sine 0
     half_angle        degrees
     meshlet_segment, meshlet_index, meshlet_center, meshlet_radius, meshlet_cone_apex, meshlet_cone_axis, ...
                       bounds as in meshoptimizer, valid at every instant of the interval within the segment
@@ -539,7 +540,7 @@ def shutter(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None,
     segment, face   the place; vertex or corner in place of face for these elements
     mean            (rows, 3) mean of n(t), whose length is twice the area of a triangle
     mean_unit       (rows, 3) mean of the unit normal
-    error           the largest distance of mean_unit to the exact mean
+    error           the largest possible length of the difference between mean_unit and the exact mean
     length          the length of mean_unit: 1 where normals stay the same, 0 where they cancel
     half_angle      degrees, the half-angle of a cone that contains all normals
     ends, ends_off  (rows, 3) the mean direction of interpolation between the end normals, and its error in degrees

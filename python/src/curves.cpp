@@ -266,15 +266,15 @@ threads  1: the calling thread; 0: all cores where there is enough to do; k: at 
 
 The GIL is released. Raises ValueError for shapes that do not fit.)")
       .def("errors", &Curves::errors, py::arg("t"), py::arg("normals"), py::arg("threads") = 1,
-           R"(Return how far normals are from the exact ones, in degrees: (n,) or (T, n) float32.
+           R"(Return the angles between given normals and the exact ones, in degrees: (n,) or (T, n) float32.
 
-normals  (n, 3) or (T, n, 3) float32, of any length: what something shows at t
+normals  (n, 3) or (T, n, 3) float32: the normals at t that are judged; their lengths do not matter
 NaN      where the exact normal or the given one has no direction)")
       .def("next", &Curves::next, py::arg("p0"), py::arg("p1"),
            R"(Prepare the next segment of the same mesh in the same memory; p0 and p1 are (V, 3) float32.)")
       .def_property_readonly(
           "control_normals", &Curves::control_normals,
-          R"((n, 3, 3) float32, made anew each time: n0, m and n1 of each normal, of a tolerance of 1e-6.
+          R"((n, 3, 3) float32, made anew each time: n0, m and n1 of each normal; only for a tolerance of 1e-6.
 
 n(t) is (1 - t)**2 * n0 + 2 * t * (1 - t) * m + t**2 * n1; the unit normal is n(t) / |n(t)|.)")
       .def_property_readonly("bytes", &Curves::bytes, "Memory that the curves keep, in bytes.")
@@ -298,7 +298,7 @@ Made by chronormal.blend(). len() is the number of normals n: faces, vertices or
 weights  (K,), one for each target: the result is (n, 3) float32; or (T, K): (T, n, 3)
 out, threads  as for Curves.unit_normals())")
       .def_property_readonly("targets", &Blend::targets, "The number K of targets.")
-      .def_property_readonly("bytes", &Blend::bytes, "Memory that the terms take, in bytes.")
+      .def_property_readonly("bytes", &Blend::bytes, "Memory that the blend keeps, in bytes.")
       .def("__len__", &Blend::size)
       .def("__repr__", &Blend::text);
 }

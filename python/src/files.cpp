@@ -232,7 +232,7 @@ py::tuple ReadMotion::state() const {
 
 ReadMotion::ReadMotion(const py::tuple& state) {
   require(state.size() == 10 && state[0].cast<int>() == kStateVersion, "state",
-          "another version of chronormal has made this pickle");
+          "another version of chronormal has made this pickle; make it again with this version");
   name_ = bytes_of_text(state[1]);
   Motion m;
   const auto offsets = state[3].cast<std::vector<std::uint32_t>>();
@@ -480,14 +480,14 @@ void add_files(py::module_& module) {
                       [](const py::tuple& state) { return std::make_unique<ReadMotion>(state); }))
       .def_property_readonly("positions", &ReadMotion::positions, "(T, V, 3) float32; the same array each time.")
       .def_property_readonly("origin", &ReadMotion::origin,
-                             "[x, y, z] from which positions count: 0, but where a file has more digits than float32 "
-                             "far from the origin.")
+                             "[x, y, z], the point from which positions are measured: 0, 0, 0, unless a file has more "
+                             "digits far from there than float32 can hold.")
       .def_property_readonly(
           "faces", &ReadMotion::faces,
           "(F, k) uint32 where all faces have k corners, else (offsets, corners); curves() takes both.")
       .def_property_readonly("velocities", &ReadMotion::velocities,
                              "(T, V, 3) float32 per second, where every keyframe of the file has them; else None.")
-      .def_property_readonly("times", &ReadMotion::times, "(T,) float64: seconds; of targets, their weight.")
+      .def_property_readonly("times", &ReadMotion::times, "(T,) float64: seconds, or the weight for targets.")
       .def_property_readonly("names", &ReadMotion::names, "The name of each keyframe: a file, a target, or \"\".")
       .def_property_readonly("segments", &ReadMotion::segments,
                              "(S, 2) int64: the keyframes at both ends of each segment.")

@@ -74,7 +74,7 @@ class SignalTest(unittest.TestCase):
         deltas = positions[1:] - positions[:1]
         glb, _ = cn.bake(sample="twist", encode="endpoint")
         many = np.linspace(0, 1, 2 * 10**5)
-        out = np.empty((len(many), len(curves), 3), np.float32)  # writes to the memory row by row
+        out = np.empty((len(many), len(curves), 3), np.float32)  # takes memory only as rows are written
         for name, call in {
                 "audit": lambda: cn.audit(glb, samples=10**6, viewers="all"),
                 "compare": lambda: cn.compare(sample="eversion", samples=10**6),

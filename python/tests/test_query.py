@@ -1,4 +1,4 @@
-"""Tests queries about whole intervals: answers on arrays equal those of the program, and are checked by hand."""
+"""Tests queries about whole intervals of time against answers found by hand, and against samples in float64."""
 
 import unittest
 
