@@ -20,7 +20,8 @@ struct FacingOptions {
   bool silhouettes = false;
 };
 
-// Parses numbers between commas, within the range of float32.
+// Parses a list of numbers between commas, each within the range of float32. Errors: kUsage, with `option` as the
+// place.
 Result<std::vector<double>> parse_numbers(const std::string& option, std::string_view list) {
   std::vector<double> values;
   for (;;) {

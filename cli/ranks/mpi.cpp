@@ -51,7 +51,7 @@ bool was_started_as_rank() {
                      [](const char* name) { return std::getenv(name) != nullptr; });
 }
 
-// Receives a message of this kind from the rank `from`, if one has arrived. Returns true if it received a message.
+// Receives a message of the given kind from the rank `from`, if one has arrived. Returns true if it received a message.
 bool take_signal(int from, int kind) {
   int is_there = 0;
   MPI_Iprobe(from, kind, MPI_COMM_WORLD, &is_there, MPI_STATUS_IGNORE);

@@ -22,9 +22,10 @@ struct TableColumns {
 /// ratio of this sum to that of linear.
 [[nodiscard]] std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs);
 
-/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes. One has the sums with
-/// their ratios to linear, the other the operations at random times and in sequence. The tables need no LaTeX package;
-/// in names, characters outside of ASCII become question marks.
+/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes. The first has the sums
+/// of the errors, and their ratios to the sum of linear. The second has the numbers of operations of an evaluation, at
+/// random times and in sequence. The tables need no LaTeX package; in names, characters outside of ASCII become
+/// question marks.
 [[nodiscard]] std::string compare_latex(const std::vector<NamedComparison>& inputs);
 
 /// Returns CSV: a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted

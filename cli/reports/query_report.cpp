@@ -54,7 +54,7 @@ std::string text_of(const QueryTable& table) {
   return text;
 }
 
-// Formats a count in groups of three, and any other value with six digits.
+// Formats a whole number with its digits in groups of three, and any other value with six digits.
 std::string text_of(double value) {
   return value >= 0 && value < 1e15 && value == std::floor(value) ? grouped(static_cast<std::size_t>(value))
                                                                   : formatted("{:.6g}", value);

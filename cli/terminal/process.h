@@ -16,9 +16,9 @@
 
 namespace chronormal::cli {
 
-/// Opens closed standard streams, so that no other file gets their numbers and receives their text. Reading and writing
-/// these streams still fails. Installs the signal handlers. Makes the floating-point unit of this thread, and of
-/// threads that it starts, round to nearest. Must be called before everything else.
+/// Opens closed standard streams, so that no other file gets their descriptors (0 to 2) and receives their text.
+/// Reading and writing these streams still fails. Installs the signal handlers. Makes the floating-point unit of this
+/// thread, and of threads that it starts, round to nearest. Must be called before everything else.
 void prepare_process() noexcept;
 
 /// Sets a text that is printed after the line about a signal or lack of memory. The text includes its line feed;

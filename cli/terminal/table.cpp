@@ -59,7 +59,7 @@ std::string Table::text_of(const std::vector<std::size_t>& chosen, const std::ve
       column += gap;
       text.append(gap, ' ');
       const std::string blanks(widths[c] - std::min(width, widths[c]), ' ');
-      if (width > widths[c])  // names that are longer have their own line
+      if (width > widths[c])  // a name that is wider than its column
         text.append(cell).append("\n").append(column + widths[c], ' ');
       else if (c == chosen.back() && columns_[c].align == Align::kLeft)
         text.append(broken(cell, column, columns));

@@ -128,7 +128,7 @@ class MotionTest(unittest.TestCase):
                 broken = cn.Motion.__new__(cn.Motion)
                 with self.assertRaises((ValueError, TypeError, RuntimeError)):
                     broken.__setstate__((*state[:i], wrong, *state[i + 1:]))
-                    # Some members accept every value of their type.
+                    # Some members accept every value of their type, which is as good as a refusal.
                     raise ValueError
 
 

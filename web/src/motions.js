@@ -27,7 +27,7 @@ export function neighbour({ at: values }, at, step) {
   return Math.min(Math.max(next, 0), last);
 }
 
-// The segment of a sample whose keyframes were left out of the report.
+// The number in place of a segment for a sample whose keyframes were left out of the report.
 const LEFT_OUT = 0xffffffff;
 
 /** Returns the segment and t of a place in a motion of keyframes. If the keyframes of the place were left out, the

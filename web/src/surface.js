@@ -57,9 +57,9 @@ function half(value) {
   return Math.sign(value) * Math.floor(Math.abs(value) / step + 0.5) * step;
 }
 
-// Returns, for each vertex, the smallest rotation from the true normal of the base to the stored normal. A rotation is
-// its axis, whose length is the sine of the angle, and the cosine. If the two normals are on opposite sides, the axis
-// belongs to the opposite normal, and the cosine is negative.
+// Returns, for each vertex, the smallest rotation from the true normal of the base to the stored normal, as four
+// numbers: its axis, whose length is the sine of the angle, and the cosine of the angle. If the angle is above 90
+// degrees, the axis is that of the rotation to the negated stored normal, and the cosine is negative.
 function turnsOf({ element, normals }, base) {
   const turns = new Float64Array(4 * element.length);
   for (let v = 0; v < element.length; ++v) {
@@ -178,7 +178,8 @@ export function makeSurface(part) {
       right[at + 2] = rz;
       const limit = least && e < least.length ? least[e] : 0;
       if (!judged[v]) degrees[v] = 0;
-      // If weights are NaN or infinite, the sizes are NaN or infinite too, and the rendered normal cannot be lit.
+      // If weights are NaN or infinite, the sizes are NaN or infinite too. The rendered normal cannot be lit then, so
+      // this condition also holds for a size that is NaN.
       else if (unlit && !(sizes[e] <= limit)) degrees[v] = 180;
       else if (!(size > limit)) degrees[v] = -1;
       else degrees[v] = degreesBetween(Math.fround(sx), Math.fround(sy), Math.fround(sz), rx, ry, rz);

@@ -1,5 +1,5 @@
-/// Recommends a remedy for an audited file: a command for this very file, but never a command that was already run or
-/// that cannot help.
+/// Recommends a remedy for an audited file, as a command for this very file if possible. Never recommends a command
+/// that was already run or that cannot help.
 #ifndef CLI_REPORTS_AUDIT_ADVICE_H_
 #define CLI_REPORTS_AUDIT_ADVICE_H_
 

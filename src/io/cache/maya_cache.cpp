@@ -193,7 +193,8 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
   if (described.has_file_per_frame) {
     if (resolve)
       return Error{ErrorCode::kUsage, name,
-                   "the cache has a file for each frame, and these can only be found in a folder on disk"};
+                   "the cache has a file for each frame, and these can only be found in a folder on disk; name the "
+                   "description file there"};
     Result<std::vector<std::string>> found = list_frame_files(path.parent_path(), stem, described.extension);
     if (!found) return found.error();
     files = std::move(found).value();

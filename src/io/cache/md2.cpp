@@ -66,7 +66,7 @@ class Md2Reader {
     const std::uint64_t frame_size = kFrameHeaderSize + std::uint64_t{4} * vertex_count_;
     if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
       return error(16, "the size of a frame is " + std::to_string(field(16)) + " bytes in the header, but " +
-                           std::to_string(vertex_count_) + " vertices take " + std::to_string(frame_size));
+                           std::to_string(vertex_count_) + " vertices take " + std::to_string(frame_size) + " bytes");
     if (Status status = read_table(32, 52, kTriangleSize, 1, "triangles", triangles_); !status) return status;
     return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frames", frames_);
   }

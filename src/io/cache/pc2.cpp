@@ -56,8 +56,8 @@ Result<std::string> pc2_header(const Motion& motion, double frames_per_second) {
     const double frame = double{first} + static_cast<double>(k) * double{step};
     if (!(std::fabs(frame - frame_of(k)) <= 1e-3 * double{step}))
       return Error{ErrorCode::kUsage, "",
-                   "PC2 needs keyframes at equal steps of time, which keyframe " + std::to_string(k) +
-                       " is not; write .mdd or .npz instead"};
+                   "PC2 needs keyframes at equal steps of time, but keyframe " + std::to_string(k) +
+                       " is not at such a step; write .mdd or .npz instead"};
   }
 
   std::string bytes(kFirstWord);

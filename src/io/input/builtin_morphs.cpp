@@ -20,7 +20,7 @@ constexpr std::array kMorphs = {
     BuiltinMorph{"bend", "a tube bent by a quarter turn, 44,700 faces"},
     BuiltinMorph{"twist", "a square column twisted by 120 degrees, 15,200 faces"},
     BuiltinMorph{"eversion", "a sphere that collapses and turns inside out, 21,000 faces"},
-    BuiltinMorph{"soup", "independent random triangles at both ends, 5,000 faces"},
+    BuiltinMorph{"soup", "separate triangles that move between random positions, 5,000 faces"},
 };
 
 constexpr std::array kBlendShapes = {

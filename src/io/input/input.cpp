@@ -291,8 +291,8 @@ Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::stri
   const Result<std::vector<std::string>> meshes = find_frames(of_mesh);
   if (!meshes) return meshes.error();
   if (meshes.value().size() != 1)
-    return misuse(mesh_input,
-                  "a cache needs exactly one mesh, but this names " + std::to_string(meshes.value().size()) + " files");
+    return misuse(mesh_input, "a cache needs exactly one mesh, but this input names " +
+                                  std::to_string(meshes.value().size()) + " files");
   const std::string& mesh_path = meshes.value().front();
   ReadMotion read;
   Result<FileBytes> file = FileBytes::open(mesh_path, options.resolve);

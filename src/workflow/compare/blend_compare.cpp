@@ -402,7 +402,9 @@ Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOpt
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();
   if (options.active > targets)
-    return misuse("", std::string("the input has only ").append(std::to_string(targets)).append(" targets"));
+    return misuse("", std::string("the input has only ")
+                          .append(std::to_string(targets))
+                          .append(targets == 1 ? " target" : " targets"));
   if (const Status status = check_memory("", options.rows, targets); !status) return status.error();
 
   Subject subject;

@@ -70,7 +70,7 @@ QueryAnswer answer_of(std::size_t segments, const std::vector<std::int32_t>& win
        {"points", "points", count(inside.size())},
        {"inside", "points that are inside at the first instant", count(std::count(inside.begin(), inside.end(), 1))},
        {"crossings", "times a point crosses the surface", count(all.size())},
-       {"inward", "times it goes inward", count(std::count(inward.begin(), inward.end(), 1))}},
+       {"inward", "times a point crosses it inward", count(std::count(inward.begin(), inward.end(), 1))}},
       {{"crossing",
         "crossings, by point and time",
         {{"point", std::move(points)},

@@ -126,7 +126,7 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse(
-        "normals can be twice the area of their faces long only with the weighting area; choose this weighting, or the "
+        "the length area, twice the area of the faces, is only for the weighting area; choose this weighting, or the "
         "length unit");
   if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name one");
   if (!options.scheme.empty()) {

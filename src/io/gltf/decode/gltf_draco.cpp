@@ -128,7 +128,7 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
     return invalid_input(place, std::string("the Draco data cannot be decoded; the decoder says: ").append(reason));
   if (mesh->num_points() != vertex_count)
     return invalid_input(place, "the Draco data have " + std::to_string(mesh->num_points()) +
-                                    " vertices, but its accessors declare " + std::to_string(vertex_count));
+                                    " vertices, but the accessors declare " + std::to_string(vertex_count));
   return mesh;
 }
 

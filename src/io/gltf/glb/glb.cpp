@@ -26,7 +26,7 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
     return error(4, "version " + std::to_string(word(4)) + " of GLB cannot be read; export the file as glTF 2.0");
   if (word(8) != bytes.size())
     return error(8, "the header says that the file has " + std::to_string(word(8)) + " bytes, but it has " +
-                        std::to_string(bytes.size()));
+                        std::to_string(bytes.size()) + "; copy or export it again");
 
   GlbChunks chunks;
   for (std::size_t at = kHeaderSize, chunk = 0; at < bytes.size(); ++chunk) {

@@ -285,8 +285,10 @@ Result<std::vector<float>> write_keys(const Motion& motion, const SequenceNormal
     const double t = static_cast<double>(at - s * kKeySteps) / kKeySteps;
     times.push_back(static_cast<float>((1 - t) * double{keyframes[s]} + t * double{keyframes[s + 1]}));
     if (k > 0 && !(times[k] > times[k - 1]))
-      return invalid_input("keyframe " + std::to_string(s),
-                           "the next keyframe is so close in time that no key fits between them in float32");
+      return invalid_input(
+          "keyframe " + std::to_string(s),
+          "the next keyframe is so close in time that no key fits between the two in float32; leave one of "
+          "them out");
     if (at % kKeySteps != 0) ++report.keys->in_between;
     if (k == 0) continue;
     const Result<KeyPose> pose = key_pose(normals, at);

@@ -151,8 +151,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(options.is_posed ? "no animation drives the targets, and correction targets would not improve the given "
                             "poses; each target is right at weight 1"
                           : "no animation drives the targets, so the file is only right at rest and with one slider at "
-                            "a time; add --poses if a program mixes several sliders, which then has to drive "
-                            "correction targets (chronormal/three, /babylon and /playcanvas do)");
+                            "a time; if a program mixes several sliders, add --poses, and let the program drive the "
+                            "correction targets (as chronormal/three, /babylon and /playcanvas do)");
   }
   if (plan.is_driven && !plan.products_fit && is_harmless) {
     warn(
