@@ -303,7 +303,7 @@ class _Looking:
 
 
 class CHRONORMAL_OT_look(_Looking, bpy.types.Operator):
-    """Colour the mesh by how far the normals of a viewer are from those that Blender shows"""
+    """Colour the mesh by the angles between the normals of a viewer and those that Blender shows"""
 
     bl_idname = "chronormal.look"
     bl_label = "Check shape-key normals"

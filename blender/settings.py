@@ -32,8 +32,8 @@ class Preferences(bpy.types.AddonPreferences):
     )
     viewers: bpy.props.EnumProperty(
         name="Viewers",
-        description="The viewers that the file is made for. With none, it is made for three.js, Babylon.js, PlayCanvas and Bevy, "
-                    "and gets worse in no other",
+        description="The viewers that the file is made for. If none is chosen, it is made for three.js, Babylon.js, PlayCanvas "
+                    "and Bevy, and gets worse in no other",
         items=[(name, title, what, 1 << n) for n, (name, title, what) in enumerate(VIEWERS)],
         options={"ENUM_FLAG"},
         default=set(),

@@ -439,7 +439,7 @@ Command bake_command() {
         {"--encode HOW", &options->encode,
          "how the new normals are stored (default: smallest)\nsmallest: the smallest errors in a file of at most 2.5 "
          "times "
-         "the size, or with --tolerance the fewest bytes that keep it. harmless: unit normals that "
+         "the size, or with --tolerance the fewest bytes whose errors stay within it. harmless: unit normals that "
          "look the same in every viewer and after any compression. exact: correction targets that make normals "
          "exact in viewers that add up targets as glTF says. endpoint: the best single delta for each target, "
          "without correction targets. keys, only for sequences: the fewest keys that stay within the tolerance at "

@@ -21,7 +21,7 @@ struct MergeArguments {
 };
 
 Result<int> run(const MergeArguments& options) {
-  if (options.parts.empty()) return misuse("", "the shards are missing; name the files that --shard wrote");
+  if (options.parts.empty()) return misuse("", "the shards are missing; name the files that runs with --shard wrote");
   if (const Status output = check_output(options.common.output, options.common.force); !output) return output.error();
   std::vector<NamedFile> read;
   for (const std::string& path : options.parts)

@@ -196,7 +196,7 @@ Result<ElementOptions> ElementArguments::options() const {
     return misuse("--crease", "only corners can have hard edges; add --elements corners");
   if (no_weld && found.value() == ElementKind::kFaces)
     return misuse("--no-weld",
-                  "normals of faces do not depend on merging; leave --no-weld out, or add --elements vertices");
+                  "normals of faces do not depend on merged vertices; leave --no-weld out, or add --elements vertices");
   return ElementOptions{found.value(), !no_weld, crease_angle};
 }
 

@@ -213,7 +213,8 @@ Result<Path> make_path(std::string_view text) {
     if (code != std::errc{} || last != end || !(path.tolerance > 0 && path.tolerance <= 45) || !path.is_curved())
       return wrong_path(
           std::string("'").append(text) +
-          "' must be the name of a curve, a colon, and a tolerance in degrees, greater than 0 and at most 45");
+          "' must be the name of a curve, a colon, and a tolerance in degrees, greater than 0 and at most 45, "
+          "such as catmull-rom:0.1");
     return path;
   }
   return wrong_path(std::string("there is no path '").append(name).append("'; choose linear, catmull-rom or hermite"));

@@ -138,9 +138,10 @@ std::string group_words(const Audited& input, const Group& group) {
                        counted(found.count, "correction target", "correction targets"));
     case Kind::kEmptied:
       return formatted(
-          "{}: {} of an earlier bake lost normals, since another program has computed new ones; bake the ORIGINAL file "
-          "again",
-          who, counted(found.count, "correction target", "correction targets"));
+          "{}: {} no effect any more, since another program has computed new normals; bake the ORIGINAL file again",
+          who,
+          counted(found.count, "correction target of an earlier bake has",
+                  "correction targets of an earlier bake have"));
     case Kind::kSequenceTargets:
       return formatted("{}: {} keyframes of a baked sequence, so only animations were judged", who,
                        counted(found.count, "target is one of the", "targets are"));

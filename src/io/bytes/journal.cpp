@@ -35,7 +35,7 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
   if (!status) return failure(path, errno);
   const Error foreign{
       ErrorCode::kFailed, path,
-      "this file is in the way of the journal, but is not one; remove the file, or choose another output"};
+      "the journal of --resume needs this name, but this file is no journal; remove it, or choose another output"};
   if (!status->is_file()) return foreign;
   // On a file system without locks, two runs that write the same output do not notice each other.
   if (!lock_file(file) || !(status = status_of(file)) || status->is_removed)

@@ -148,10 +148,10 @@ Result<FaceFigure> face_figure(const Motion& motion, const FaceFigureOptions& op
   const auto misused = [](std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; };
   if (options.segment >= motion.segments.size())
     return misused("there is no segment " + std::to_string(options.segment) +
-                   "; segments are counted from 0, and the motion has " + std::to_string(motion.segments.size()));
+                   "; segments are counted from 0, and their number is " + std::to_string(motion.segments.size()));
   if (options.face >= motion.topology.face_count())
     return misused("there is no face " + std::to_string(options.face) +
-                   "; faces are counted from 0, and the mesh has " + std::to_string(motion.topology.face_count()));
+                   "; faces are counted from 0, and their number is " + std::to_string(motion.topology.face_count()));
   if (options.samples < 2) return misused("the number of samples must be at least 2");
   const std::vector<std::string> names = options.schemes.empty() ? default_schemes() : options.schemes;
   for (const std::string& name : names) {

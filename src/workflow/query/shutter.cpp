@@ -181,9 +181,9 @@ Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span, c
     Rows whole;
     whole.add(whole_of(motion, parts.value(), found), 0);
     answer.facts.push_back(
-        {"span_mean_ends_off", "degrees, average of this angle for one exposure of the whole time", mean_off(whole)});
-    answer.facts.push_back({"span_largest_ends_off",
-                            "degrees, largest of this angle for one exposure of the whole time", whole.largest_off});
+        {"span_mean_ends_off", "degrees, average of such angles for one exposure of the whole time", mean_off(whole)});
+    answer.facts.push_back(
+        {"span_largest_ends_off", "degrees, largest such angle for one exposure of the whole time", whole.largest_off});
     answer.tables.push_back(
         std::move(whole).table("span", "average normals over the whole time", elements.kind, false));
   }

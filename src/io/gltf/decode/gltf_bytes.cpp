@@ -102,7 +102,7 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
     if (origin_.bin->size() - declared.byte_length > 3)
       return invalid_input(place(pointer + "/byteLength"),
                            "the BIN chunk has " + std::to_string(origin_.bin->size()) +
-                               " bytes, but may have at most 3 more than byteLength says");
+                               " bytes, but may have at most 3 bytes more than byteLength says");
     return origin_.bin->substr(0, declared.byte_length);
   }
   if (is_data_uri(*declared.uri)) {
