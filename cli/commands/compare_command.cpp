@@ -115,7 +115,7 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
   return {input_table(options.input),
           {{"--each", &options.each,
             "compare several motions side by side\nEvery INPUT and every --sample is a motion of its own"},
-           {"--schemes A,B,...", &options.schemes, "which schemes, in this order (listed below)"},
+           {"--schemes A,B,...", &options.schemes, "the schemes to compare, in this order (listed below)"},
            {"--samples N",
             &options.samples,
             "how many moments of each segment are compared\nBoth ends are included. The default is 21",
@@ -128,7 +128,8 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
             {.rare = true}},
            {"--access KIND",
             &options.access,
-            "compute each moment alone, or from the one before\nThe first is random (default), the second sequential",
+            "how moments are computed: random or sequential\nrandom (default) computes each moment alone, sequential "
+            "from the one before",
             {.check = check_access, .rare = true}}},
           {{"--certify",
             &options.certify,
@@ -136,7 +137,7 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
             {.rare = true}},
            {"--tolerance DEG", &options.tolerance,
             "find the cheapest scheme that is always within DEG degrees\nIts bound is certified at every time. The "
-            "exit code is 4 if there is none"}},
+            "exit code is 4 if there is no such scheme"}},
           options.blend.table(),
           options.truth.table(),
           {{"--face N",
@@ -155,8 +156,8 @@ std::vector<std::vector<Option>> tables(CompareArguments& options) {
            {"--csv", &options.csv, "print comma-separated values, a line for each scheme", {.excludes = "--json"}},
            {"--table KIND",
             &options.table,
-            "print another kind of table\nOne of text (default), operations, with the cost of an evaluation, and "
-            "latex, both tables of the paper for your meshes",
+            "print another kind of table\nOne of text (default), operations (which adds the cost of an evaluation) "
+            "and latex (both tables of the paper, for your meshes)",
             {.excludes = "--json", .check = check_table, .rare = true}},
            {"--no-times", &options.no_times, "leave out measured times, so that output repeats", {.rare = true}}},
           options.common.table(false)};

@@ -207,7 +207,7 @@ Result<Input> open_input(const char* command, InputOptions options, Progress& pr
   Result<Input> input = chronormal::open_input(options);
   progress.clear();
   if (!input) return input;
-  // Reading the motion behind skins may find more notes.
+  // Curved and skinned motions are read here, before the notes are printed, because reading them may add notes.
   std::optional<Error> fault;
   std::size_t faces = 0;
   if (options.is_curved() || (options.skins && input.value().document() != nullptr)) {

@@ -6,7 +6,7 @@
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
 ///     no memory for an object                     the same as SIGBUS; destructors do not run (not all are safe)
 ///     SIGABRT                                     the same: the C library aborts if it gets no memory for a thread
-///     an exception that nothing can catch         removes temporary files, and exit code 1
+///     an exception that nothing can catch         the same
 ///
 /// If results get lost because nobody reads them, as in front of `head`, SIGPIPE ends the program, as usual. If nobody
 /// reads stderr, messages get lost, and the program goes on. If SIGPIPE was ignored when the program started, it stays
