@@ -101,7 +101,7 @@ export const SCHEMES = {
   'decasteljau:4': { ...deCasteljau(4), title: 'decasteljau:4: a spherical curve of 4 exact normals' },
   circle: { ...circle(false), title: 'circle: the circle through 3 exact normals' },
   'circle:timed': { ...circle(true), title: 'circle:timed: the same, with the middle normal at t = 1/2' },
-  polynomial: { ...polynomial, title: 'polynomial: exact, three control normals' },
+  polynomial: { ...polynomial, title: 'polynomial: the exact normals, from three control normals' },
 };
 
 export const schemeOf = (name) => SCHEMES[name];

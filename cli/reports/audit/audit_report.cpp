@@ -92,9 +92,10 @@ std::string headline(const Audited& input) {
         "vertices.\n  They count as errors whatever --tolerance is. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
-    text +=
-        formatted("  {} of these still have a direction, with errors of up to {} degrees, which --tolerance counts\n",
-                  grouped(audit.error.faint), degrees(audit.error.faint_worst));
+    text += formatted(
+        "  {} a direction where the faces have almost no area; errors there reach {} degrees, which "
+        "--tolerance counts\n",
+        counted(audit.error.faint, "sample still has", "samples still have"), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
     text += formatted(
         "  the normals of {} would be zero, infinite or NaN in a viewer, and count as errors of 180 degrees. The first "
