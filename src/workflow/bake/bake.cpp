@@ -82,7 +82,7 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
       "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
 }
 
-// Returns for each part of a mesh if it gets new base normals.
+// Returns for each part of a mesh true if the part gets new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)
@@ -91,7 +91,8 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
 }
 
 // Finds the true normals. If the options give a weighting, they are sums by this weighting; otherwise they are the
-// normals that the author intended. Recomputed base normals have no author.
+// normals that the author intended. If base normals are recomputed, the author's normals do not count, and area is the
+// weighting unless the options give one.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);
@@ -168,8 +169,8 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// Reports the progress of a bake. Each target of a mesh counts twice: when its candidate is chosen, and when it is
-// written.
+// The progress of a bake, which the caller wants to know. Each target of a mesh counts twice: when the candidate for
+// its mesh is chosen, and when the target is written.
 class Course {
  public:
   using Tell = std::function<void(std::size_t done, std::size_t total)>;

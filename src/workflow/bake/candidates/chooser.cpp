@@ -24,7 +24,7 @@ constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
 // A glance measures a candidate in only a few of the poses. If a candidate has kHopeless times the mean error of the
 // best candidate in a glance, the candidate is not examined further. If the best candidate meets all criteria except
-// the tolerance, kFarther times the mean error is enough, for candidates that are beyond the tolerance as well.
+// the tolerance, a candidate that is also beyond the tolerance is given up at kFarther times the mean error.
 constexpr double kHopeless = 2, kFarther = 1.25;
 // A file may become larger by more bytes if it gets at most kFewExtras correction targets. A correction target takes
 // about kBytesOfExtra bytes for each vertex.
@@ -54,7 +54,7 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has become larger than is allowed, or the number of torn edges has at one of the first
+// Returns true if an error has grown more than is allowed, or if the number of torn edges has, beyond one of the first
 // `thresholds` angles. A mean error may grow up to the tolerance, and single normals may turn by the tolerance. For
 // each hundred torn edges, one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
@@ -69,7 +69,8 @@ bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance
 // A candidate, and how the chooser has judged it.
 struct Judged {
   BakedCandidate choice;
-  // Numbers of named viewers where it is better, and of others where it is no worse.
+  // The number of named viewers in which the candidate is better than the stored deltas, and the number of other
+  // viewers in which it is no worse.
   std::size_t better = 0, unharmed = 0;
   bool is_affordable = true, is_bearable = true;
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
@@ -214,7 +215,7 @@ class Chooser {
  private:
   static bool is_rounding(const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; }
 
-  // Returns the errors that decide which candidate is better.
+  // Returns the errors in one viewer that decide which candidate is better.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     JudgedErrors all;
     for (std::size_t k = 0; k < kPoseKinds; ++k)
@@ -285,8 +286,8 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // The stored deltas lose to any candidate that is better in some viewer. An exception are stored deltas within the
-    // tolerance if the smallest file is preferred.
+    // The stored deltas lose to any candidate that is better in some viewer. There is one exception: stored deltas
+    // within the tolerance win if the smallest file is preferred.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);

@@ -30,7 +30,7 @@ namespace chronormal::inline internal {
 /// The candidate that was chosen, and facts about all candidates that were tried.
 struct ChosenCandidate {
   Candidate candidate;
-  /// Errors in each viewer before and after; first the named viewers, then the others.
+  /// Errors in each viewer before and after the bake; first in the named viewers, then in the others.
   std::vector<ViewerChange> viewers;
   std::vector<BakedCandidate> candidates;  ///< all candidates that were tried
 };

@@ -5,7 +5,7 @@
 //
 // N is the stored normal, and D_i are the deltas of the mesh's own targets. The missing normals are the difference
 // between n(w) and N + sum_i w_i D_i. Their leading left singular vectors are the curves s_k, and the right singular
-// vectors are the deltas E_k. Points count more if n(w) gets short there. If a point still has a large error, its own
+// vectors are the deltas E_k. A point counts more if its n(w) gets short. If a point still has a large error, its own
 // E_k are fitted again by least squares of the angles. In this fit the length of n(w) is free at every instant, and
 // instants with large errors count more.
 //
@@ -42,8 +42,9 @@ constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
 // least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// A number of correction targets is enough if two conditions hold: its error is at most kNoGain times the smallest
-// error, and kManyMore times as many targets were tried.
+// If no tried number of correction targets reaches the tolerance, the first number is taken whose error is at most
+// kNoGain times the smallest error of all tried numbers, provided that at least kManyMore times as many targets were
+// tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
 // Positions in a gap between keys, from 0 to 1, at which a fit is checked. The fit does not use these positions.
@@ -72,7 +73,7 @@ struct ShortShares {
 
 struct LowRank {
   std::vector<VertexVectors> own;     // deltas of each target of the mesh
-  std::vector<VertexVectors> extras;  // deltas of correction targets, of any length, for weights from -1 to 1
+  std::vector<VertexVectors> extras;  // deltas of correction targets, of any length; their weights are from -1 to 1
   TrackCurves curves;                 // weights of the correction targets over time, for each track
   PoseList rest;                      // weights of the correction targets in the poses that the file stores
   double worst = 0;                   // largest error of all points at the fitted instants, in degrees
@@ -355,7 +356,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Computes the values of the curves at all nodes.
+  // Computes the weights of correction targets at all nodes of the curves.
   const std::size_t extras = fit.extras();
   std::vector<double> curves(instants.poses.size() * extras);
   std::vector<char> is_row(instants.poses.size(), 0);

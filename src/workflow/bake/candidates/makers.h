@@ -78,8 +78,8 @@ inline constexpr double kPartOfTracks = 0.2;
 [[nodiscard]] std::vector<VertexVectors> end_deltas(const GltfShading& shading, const NormalTerms& terms,
                                                     const RightNormals& rights, Lengths lengths);
 
-/// Counts the pairs of targets that are active together and that both move some normal. A target with itself is a pair
-/// too. Stops counting at `most` + 1.
+/// Counts the pairs of targets that are active together and move the same normal. A target with itself is a pair too.
+/// Stops counting at `most` + 1.
 [[nodiscard]] std::size_t count_products(const Making& making, std::size_t most);
 
 /// Makes the candidate with products of weights, for the poses of the file or of the rig. Vertices whose error is at
@@ -92,7 +92,7 @@ inline constexpr double kPartOfTracks = 0.2;
 /// Fits correction targets to the errors that new own deltas leave. Makes as many as the tolerance needs, within the
 /// limit. Vertices whose error is a small part of the tolerance are left out. If only animations count and lengths are
 /// free, own deltas are fitted to the animations too. Computes the true normals at all nodes of the curves; at most 480
-/// nodes are fitted, and they take 700 MB of memory.
+/// nodes are fitted, and their normals take at most about 700 MB of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
 // Correction targets whose weights are quadratics of the weights, for a mesh that nothing drives (quadratics.cpp).

@@ -396,8 +396,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // The sum of squares and the largest angle of each entry. These numbers are added up afterwards in a fixed order, so
-  // that the result does not depend on threads.
+  // The sum of squared angles and the largest angle of each entry of `extra`. These numbers are added up afterwards in
+  // a fixed order, so that the result does not depend on threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));

@@ -25,7 +25,7 @@ void set_vector(std::vector<float>& all, std::size_t vertex, const Vec3f& vector
   VectorView<float>::packed(all.data(), all.size() / 3).set(vertex, vector);
 }
 
-// Returns the number of bytes by which tracks grow to drive the correction targets.
+// Returns the number of bytes added to the animation tracks that drive the correction targets.
 std::size_t bytes_of_tracks(const MeshWeights& weights, const ExtraDrivers& drivers) {
   std::size_t bytes = 0;
   for (std::size_t t = 0; t < weights.tracks.size() && drivers.size() > 0; ++t) {

@@ -24,8 +24,8 @@ struct Candidate {
   std::vector<VertexVectors> extras;  ///< deltas of each correction target
   ExtraDrivers drivers;               ///< the data that drive the correction targets
   std::size_t left_out = 0;  ///< the number of correction targets that a limit excluded; they would have helped least
-  double track_error = 0;    ///< radians: the largest error of straight pieces between keys
-  double fit_error = 0;      ///< radians: a bound of the error of single targets
+  double track_error = 0;    ///< radians: the largest angle by which straight pieces between keys turn normals
+  double fit_error = 0;      ///< radians: a bound of the error of normals with the deltas of one target
   bool animations_only = false;  ///< if true, the deltas are right only in animations, and not for a target alone
 };
 
@@ -57,8 +57,8 @@ struct Candidate {
 [[nodiscard]] TargetDeltas extra_deltas(const GltfShading& shading, const Candidate& candidate, std::size_t extra);
 /// Returns true if a candidate has other deltas than the file, or has correction targets.
 [[nodiscard]] bool changes(const GltfShading& shading, const Candidate& candidate);
-/// Estimates the bytes that a candidate takes in the file. They are the bytes of its arrays of deltas and of the
-/// drivers of its correction targets, and the bytes by which tracks grow that drive these targets.
+/// Estimates the bytes that a candidate takes in the file. They are the bytes of its arrays of deltas, of the drivers
+/// of its correction targets, and the bytes added to the animation tracks that drive these targets.
 [[nodiscard]] std::size_t bytes_of(const GltfShading& shading, const MeshWeights& weights, const Candidate& candidate);
 
 }  // namespace chronormal::inline internal

@@ -1,6 +1,6 @@
 // Computes the deltas of vertices. Every delta starts as a term of the quadratic form n(w) of an element (terms.h), or
-// as the best single delta that is computed from its linear and its square term. The delta is then turned and scaled
-// for each vertex that shows the element, to fit the stored normal of the vertex.
+// as the best single delta that is computed from the linear and the square term of a target. The delta is then turned
+// and scaled for each vertex that shows the element, to fit the stored normal of the vertex.
 #include "workflow/bake/deltas/deltas.h"
 
 #include <cmath>
@@ -29,7 +29,8 @@ VertexTerms terms_of_vertex(const DeltaSource& source, std::uint32_t element, st
   return {source.terms.base_of(element), source.plan.largest[element], stored_normal(source.base_normals, vertex)};
 }
 
-// Returns the largest error of the best single delta at the weights of a file, in radians.
+// Returns the largest angle, in radians, between the true normal and the normal that the best single delta gives, over
+// all weights in a range.
 double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
   if (range.low == 0 && range.high == 1) return best.error;
   const Vec3d base = unit_normal_at(normals, 0).vector;
@@ -38,7 +39,7 @@ double error_within(const WeightRange& range, const ControlNormals& normals, con
   return largest_line_error(normals_between(normals, range.low, range.high), from, to);
 }
 
-// The results for a block of vertices: tells if any delta is not zero, and has the largest error in radians.
+// The results for a block of vertices: true if any delta is not zero, and the largest error of a normal in radians.
 struct Found {
   bool any = false;
   double error = 0;

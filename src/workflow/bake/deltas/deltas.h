@@ -1,7 +1,8 @@
 /// Computes the base normals and the deltas that a bake writes for one mesh, and their errors. The results depend only
 /// on the mesh that was read and on the plan. write_mesh.h puts the arrays into the file. Private to workflow.
 ///
-/// Shapes     V is the number of vertices of the shading, part after part. The vertices of a part follow each other.
+/// Shapes     V is the number of vertices in all parts of the shading. An array has the vertices of the first part,
+///            then those of the second part, and so on.
 /// Threads    Uses all cores. The results have the same bits on any number of cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
@@ -40,7 +41,7 @@ struct NewBaseNormals {
 
 /// The numbers of vertices that cannot be rendered right with any delta.
 struct BaseFaults {
-  std::size_t without_base = 0;    ///< vertices whose faces have no area in the base
+  std::size_t without_base = 0;    ///< vertices whose normal by geometry is zero or nearly zero in the base
   std::size_t without_stored = 0;  ///< vertices whose stored base normal is zero or nearly zero
 };
 
@@ -50,16 +51,16 @@ struct BaseFaults {
 struct TargetDeltas {
   /// (vertices, 3) for each part. The list is empty if no normal changes.
   std::vector<std::vector<float>> of_parts;
-  double error = 0;  ///< a bound, in radians, of the error that is left at the weights of the file
+  double error = 0;  ///< radians: a bound of the error of normals that is left at the weights of the file
 };
 
-/// Returns the deltas of one of the mesh's own targets. They are the sum of the target's own terms at weight 1, or the
-/// best single delta if the plan requires this. If the target moves no vertex, there are no deltas. The error does not
-/// include fitted lines, which have their own error.
+/// Returns the deltas of one of the mesh's own targets. A delta is the sum of the linear and the square term of the
+/// target, or the best single delta if the plan requires this (MeshPlan::is_line). If the target moves no vertex, there
+/// are no deltas. The error does not include the error of fitted lines (FittedLines::largest_error()).
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
-/// Returns the deltas of the correction target for two targets. If both are the same target, returns the deltas of the
-/// term that is zero at the weights 0 and 1 (docs/theory.md, eq. 45).
+/// Returns the deltas of the correction target for the pair of targets in `extra`. If both are the same target, the
+/// deltas belong to the term that is zero at the weights 0 and 1 of this target (docs/theory.md, eq. 45).
 [[nodiscard]] TargetDeltas extra_target_deltas(const DeltaSource& source, const ExtraWeight& extra);
 
 }  // namespace chronormal::inline internal

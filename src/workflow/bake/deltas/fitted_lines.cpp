@@ -15,8 +15,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The largest number of rounds of a fit. A viewer scales the sum to length 1, so the sum may have any length. Each
-// round fits the sum to the length that is nearest to the length after the last round.
+// The largest number of rounds of a fit. A viewer scales the sum of a normal and its deltas to length 1, so the sum may
+// have any length. Each round fits the sum to the length that is nearest to the length after the last round.
 constexpr int kRounds = 12;
 // A round is the last one if its squared error is more than this part of the squared error of the round before.
 constexpr double kStandstill = 0.99;
@@ -25,15 +25,17 @@ constexpr double kStandstill = 0.99;
 constexpr double kLeastPart = 0.1;
 // If the length of a normal is below this part of its longest term, the normal is not judged.
 constexpr double kLeastLine = 1e-4;
-// kRidge is the strength of the pull towards the best delta of each target alone, relative to the average information
-// in the weights. The pull decides if the weights of two targets differ by only a thousandth, because their deltas then
-// cannot be told apart. Weights below kLeastWeight tell nothing about a delta.
+// A fit pulls each delta towards the best delta that its target has alone. kRidge is the strength of this pull,
+// relative to the mean diagonal entry of the normal equations. The pull decides where the weights of two targets differ
+// by only a thousandth in all poses, because the poses then do not tell the two deltas apart. Weights below
+// kLeastWeight tell nothing about a delta.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
 // An element whose error is below this, in radians, is not fitted. Directions are rounded to a third of this error.
 constexpr double kLeastError = 1e-4;
 // If more targets than this move an element, each target keeps the best delta that it has alone.
 constexpr std::size_t kMostTargets = 64;
-// kSums is the largest number of weighted deltas that a round adds up. The other constants limit the number of poses.
+// kSums is the largest number of weighted deltas that a round adds up, over all elements and poses. The other constants
+// limit the number of poses.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
 // The largest number of poses in which the final error is measured. If there are few elements, these poses include all
 // keys.
@@ -98,8 +100,8 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // Searches better deltas, beginning with the best delta of each target alone. If the best deltas of all rounds are
-  // better, writes them to `deltas` and returns true.
+  // Searches for deltas with a smaller error than the best delta of each target alone. If some round finds such deltas,
+  // writes the best ones to `deltas` and returns true.
   bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
@@ -117,7 +119,7 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
-  /// Returns the largest angle that is left, in radians.
+  /// Returns the largest angle that is left between a rendered and a true normal, in radians.
   [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:

@@ -34,8 +34,9 @@ class FittedLines {
   /// Writes the fitted delta of a target for an element. Returns true if there is such a delta.
   [[nodiscard]] bool find(std::size_t target, std::uint32_t element, Vec3d& delta) const;
   /// Returns the largest angle between rendered and true normals, in radians. The angle is measured at all keys, and at
-  /// fifteen times between neighbouring keys. If these are too many, it is measured at fewer times. If the keys alone
-  /// are more than 4,000 to 100,000, it is measured at some of the keys.
+  /// fifteen times between neighbouring keys. If these times are too many, it is measured at fewer times. If even the
+  /// keys are too many, it is measured at some of the keys; the limit depends on the size of the mesh, and is never
+  /// above 100,000 keys.
   [[nodiscard]] double largest_error() const noexcept { return largest_error_; }
   /// Returns the number of elements that have fitted deltas.
   [[nodiscard]] std::size_t elements() const noexcept { return elements_; }

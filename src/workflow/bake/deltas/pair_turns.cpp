@@ -15,8 +15,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kHeldNormals is the largest number of normals in memory at a time. If a mesh has more, kSomeElements of its elements
-// are handled together.
+// kHeldNormals is the largest number of normals in memory at a time. If the elements have more normals in all poses,
+// only kSomeElements of the elements are in memory at a time.
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
 // The number of entries of terms that are in memory at a time.
 constexpr std::size_t kHeldEntries = 1000000;
@@ -121,9 +121,9 @@ void PosedNormals::hold(std::size_t first) {
 struct PairMeter::Candidate {
   ExtraWeight extra;
   BlendTerm term;      // without elements that no vertex shows; freed after the measurement
-  double aside = 0;    // length of the largest part across a normal, relative to the normal
-  double size = 0;     // length of the largest value, relative to the normal
-  double tangent = 0;  // the tangent of the largest angle
+  double aside = 0;    // length of the largest part of the term across a normal, relative to the normal
+  double size = 0;     // length of the largest value of the term, relative to the normal
+  double tangent = 0;  // the tangent of the largest angle by which a normal turns without the term
   std::vector<std::pair<double, std::uint32_t>> poses;  // the factor of the term, and its pose; the largest first
 };
 
@@ -136,8 +136,8 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       longest_base_(longest_base_normal(shading, terms)),
       normals_(shading, terms, poses) {}
 
-// The first test takes little time and decides for most normals, because its limit is at least as high as the limit of
-// the second test.
+// Returns true if a normal of this length is long enough to have a direction that counts. The first test takes little
+// time, and its limit is at least as high as the limit of the second test. It decides for most normals.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -253,7 +253,8 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // The normals of these elements in all poses without the terms that are left out, (elements, poses).
+      // The vectors that must be added to the normals of these elements in all poses if the terms are left out,
+      // (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);
       const std::size_t begin = first + range.first;

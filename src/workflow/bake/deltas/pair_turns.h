@@ -41,7 +41,8 @@ class PosedNormals {
   PosedNormals(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses);
 
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the number of elements in memory. hold(first) computes the elements [first, first + chunk()).
+  /// Returns the number of elements whose normals are in memory at a time. hold(first) computes the normals of the
+  /// elements [first, first + chunk()).
   [[nodiscard]] std::size_t chunk() const noexcept { return chunk_; }
   /// Computes the normals of the elements from `first` on, unless they are in memory already.
   void hold(std::size_t first);
@@ -67,8 +68,8 @@ class PairMeter {
   PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,
             const std::vector<bool>& is_shown, std::vector<double>& largest);
 
-  /// Measures pairs (i, j) with i <= j, and leaves out pairs that have no term. Raises `largest` to the lengths of
-  /// their terms where these are longer.
+  /// Measures pairs (i, j) with i <= j, and leaves out pairs that have no term. If a term of a pair is longer than the
+  /// entry of its element in `largest`, raises this entry to the length of the term.
   [[nodiscard]] std::vector<MeasuredPair> measure(std::span<const Pair> pairs);
   /// Returns the largest angle in radians by which a normal turns if all of these correction targets are left out.
   [[nodiscard]] double turn_without(std::span<const ExtraWeight> extras);

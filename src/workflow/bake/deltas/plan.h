@@ -29,7 +29,7 @@ struct MeshPlan {
   std::vector<ExtraWeight> extras;  ///< the correction targets, in ascending order of (i, j)
   std::vector<bool> is_shown;       ///< for each element, true if some vertex shows it
   std::vector<double> largest;      ///< for each element, the length of its largest term
-  double left_out = 0;              ///< degrees: the angle by which a normal turns without the pairs that were left out
+  double left_out = 0;              ///< degrees: the largest angle by which a normal turns because pairs were left out
 };
 
 /// Returns the requested encoding, or kSmallest if none was requested.

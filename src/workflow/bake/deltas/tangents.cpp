@@ -10,9 +10,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr double kStale = 1;            // degrees
+constexpr double kStale = 1;            // degrees by which a tangent may lean more than in the base
 constexpr double kThinnest = 1e-12;     // squared sine of the smallest angle between two edges that carry a tangent
-constexpr double kLeastUpright = 1e-6;  // length of the shortest part across the normal that a tangent may have
+constexpr double kLeastUpright = 1e-6;  // shortest part of a tangent across the normal, relative to the tangent
 
 Vec3d tangent_of(const GltfShading& shading, std::size_t vertex) {
   const float* const t = shading.tangents.data() + 4 * vertex;
@@ -42,8 +42,8 @@ std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) 
   return result;
 }
 
-// Returns a vector in the plane of two edges after the edges have changed. Returns zero if the face between the edges
-// is too thin.
+// Moves a vector in the plane of two edges with these edges, as they change from `from` to `to`. Returns zero if the
+// face between the edges is too thin.
 Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::array<Vec3d, 2>& to) {
   const double aa = dot(from[0], from[0]), ab = dot(from[0], from[1]), bb = dot(from[1], from[1]);
   const double determinant = aa * bb - ab * ab;

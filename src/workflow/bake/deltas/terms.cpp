@@ -1,5 +1,5 @@
-// Computes the terms of a mesh. By area, they follow from products of positions. By other weightings, they are fitted
-// to samples.
+// Computes the terms of a mesh. If normals are weighted by area, the terms are computed from products of positions. For
+// other weightings, the terms are fitted to true normals at some weights.
 #include "workflow/bake/deltas/terms.h"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kTermsBlock = 256;
-// The number of weights of a target, up to 1, at which its terms are computed. The terms are fitted at the weights 1/2
-// and 1, and the fit is checked at the others.
+// The number of weights of a target, up to 1, at which true normals are computed. The terms are fitted at the weights
+// 1/2 and 1, and the fit is checked at the other weights.
 constexpr std::size_t kSamples = 8;
 
 void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {

@@ -20,8 +20,9 @@
 namespace chronormal::inline internal {
 
 /// The true normals of all elements as a quadratic form in the weights. If normals are weighted by area, the form is
-/// exact. If not, the true normal is no polynomial, and the form is fitted to it. The fitted form has the true
-/// direction, and the length by area, if one target has the weight 0, 1/2 or 1, or if two targets have the weight 1.
+/// exact. If not, the true normal is no polynomial, and the form is fitted to it. At some weights, the fitted form has
+/// the true direction and the length that the normal has by area: if one target has the weight 0, 1/2 or 1, or if two
+/// targets have the weight 1, and all other weights are 0.
 class NormalTerms {
  public:
   /// Fits the terms of all targets, if the true normals are not weighted by area. The shading and its truth must
@@ -32,7 +33,8 @@ class NormalTerms {
   [[nodiscard]] Vec3d base_of(std::uint32_t element) const {
     return base_.empty() ? by_area_.base_of(element) : base_[element];
   }
-  /// Return the linear term A_i of a target and the term C_ij of a pair (docs/theory.md), without rounding noise.
+  /// Return the linear term A_i of a target and the term C_ij of a pair (docs/theory.md), without bounds of their
+  /// rounding errors.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
   /// Return terms as functions, which compute or find the value of one element at a time.
@@ -109,9 +111,9 @@ class NormalTerms::Term {
 /// Returns the control normals from weight `from` to weight `to`. `normals` are the control normals from 0 to 1.
 [[nodiscard]] ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept;
 
-/// Turns and scales the terms of an element for a vertex that shows the element. Divides a term by |n(0)|, multiplies
-/// it by the length of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is nearly zero,
-/// this division is impossible. The terms then become so long that N hardly matters in the sum.
+/// The map from the terms of an element to deltas of a vertex that shows this element. Divides a term by |n(0)|,
+/// multiplies it by the length of the stored normal N, and applies the smallest rotation from n(0) to N. If n(0) is
+/// nearly zero, this division is impossible. The terms then become so long that N hardly matters in the sum.
 class VertexTerms {
  public:
   /// Creates the map. base is n(0) of the element, `largest` the length of its largest term, and stored the stored

@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t kPointBlock = 16;  // the number of points that one task handles
 constexpr std::size_t kSampledPoints = 1500;
 // A point counts in the fit by 1 / length. length is the 2 % quantile of the lengths of its normals, but at least
-// kShortest, and at least kPartOfLack times the length of its missing vectors. The limits prevent that a few points
-// with very short normals dominate all others, although the angle of an error is bounded.
+// kShortest, and at least kPartOfLack times the length of its missing vectors. Without the two limits, a few points
+// with very short normals would dominate all others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
@@ -103,8 +103,8 @@ void LowRankFit::take_weights(std::span<const double> vectors, std::size_t colum
     for (std::size_t k = 0; k < extras; ++k) weights_[r * padded_ + k] = static_cast<float>(vectors[r * columns + k]);
 }
 
-// Computes the deltas of all points. The columns of weights are orthonormal, so a delta is an inner product with a
-// column.
+// Computes the deltas of all points. The columns of weights are orthonormal, so each delta is the inner product of the
+// missing normals with a column.
 void LowRankFit::project() {
   deltas_.assign(missing_.points() * 3 * padded_, 0.0F);
   parallel_blocks(missing_.points(), kPointBlock, [&](IndexRange points) {

@@ -71,8 +71,8 @@ class MissingNormals {
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
   /// Returns the inner products of the missing normals of each two rows, (rows, rows). A product is a sum over every
-  /// step-th point, multiplied by the importance of the point. It is computed in float32 for a few points, and in
-  /// double for all together.
+  /// step-th point. Each missing normal in it is multiplied by the importance of its point. The sum over a few points
+  /// is computed in float32, and these sums are added up in double.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
   /// Adds vectors (3, stride) to the sums of a point, and subtracts them from its missing vectors.

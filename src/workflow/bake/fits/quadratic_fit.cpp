@@ -30,7 +30,7 @@ constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
 // The shortest length that counts, relative to n(0). Shorter normals count as if they had this length, because they can
 // hardly be fitted.
 constexpr float kLeastCounted = 0.1F;
-// The part of all terms that may be left out (root mean square).
+// The part of the root mean square of a weight that may be lost because terms are left out.
 constexpr double kPartOfTerms = 0.02;
 constexpr double kRidgeOfTerms = 1e-5, kLeastRidge = 1e-12;
 

@@ -79,7 +79,7 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
   return {first, first + stride, first + 2 * stride};
 }
 
-// The sums of one vertex in many poses.
+// The sums of the normal and the weighted deltas of one vertex, in many poses.
 class Sums {
  public:
   // Adds up the normal and its deltas in `count` poses, beginning with pose `first`. The normal and the deltas must be
@@ -125,8 +125,8 @@ class Sums {
     }
   }
 
-  // Compares the sums with the right normals, which are given in three planes. Writes angles in degrees, and the errors
-  // as planes.
+  // Compares the sums with the right normals, which are given in three planes. Writes the angles between them in
+  // degrees, and the differences of the unit vectors as planes.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
@@ -231,7 +231,7 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
 std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
-  // Deltas as viewers store them, if these differ from the given deltas.
+  // The deltas as each kind of viewer stores them, for viewers that change the deltas of the candidate.
   std::vector<std::pair<Viewer, VertexColumns>> of_viewers;
   const auto kept_by = [&](const Viewer& viewer) -> const VertexColumns& {
     if (viewer.normals == NormalRule::kSum && !viewer.keeps_halves()) return columns;

@@ -89,11 +89,11 @@ class Judge {
   struct KnownSet {
     PoseSet set;
     std::vector<std::uint32_t> numbers;  // the vertices that are judged in this set
-    std::vector<SurfaceEdge> edges;      // ends as indices into `numbers`; the second may be beyond the end
+    std::vector<SurfaceEdge> edges;      // ends as indices into `numbers`; beyond the end if a vertex is not judged
     std::vector<float> right;  // (vertices, 3, poses); unit vectors, or (0, 0, 0) if the right normal is not known
   };
 
-  // The differences between rendered and right unit normals, for the vertices of a set.
+  // The differences between rendered and right unit normals, for all vertices of a set in all its poses.
   struct Differences {
     std::vector<float> planes;   // (vertices, 3, poses), x, y and z in planes
     std::vector<float> largest;  // (vertices), the largest length of a difference

@@ -49,7 +49,7 @@ std::size_t pieces_of_spline(const WeightTrack& track) {
   return pieces;
 }
 
-// The values of all columns at one key of a spline, and their slopes before and after the key, per second.
+// The weights of all targets at one key of a spline, and their slopes before and after the key, per second.
 struct SplineKey {
   double time = 0;
   std::vector<double> in, value, out;

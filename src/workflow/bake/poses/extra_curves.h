@@ -74,8 +74,9 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 
 /// Extends a track by curves. A LINEAR track stays LINEAR if `pieces` has numbers of pieces for its gaps
 /// (straight_track), and otherwise becomes a cubic spline. A cubic spline gets more keys at the ends of the curves'
-/// pieces. The weights that it had play as before, and the curves are exact. If all this takes more than most_keys
-/// keys, the result has no values, but the number of keys that it would have.
+/// pieces. The weights that the track had are played as before, and the weights of correction targets follow the curves
+/// exactly. If all this takes more than most_keys keys, the result has no values, but the number of keys that it would
+/// have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());

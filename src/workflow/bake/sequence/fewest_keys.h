@@ -29,22 +29,23 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kKeySteps = 64;  ///< the number of steps in a segment
 
 /// The largest distance of a vertex from the straight line at a keyframe that gets no key, as a share of the diagonal
-/// of the motion.
+/// of the box around the whole motion.
 inline constexpr double kKeyPositionShare = 1e-6;
 
 struct SequenceKeys {
   std::vector<std::size_t> at;  ///< the keys in steps, ascending; keyframe k is at step k kKeySteps
   /// Radians: the largest error of any normal at any instant, except of normals counted in `beyond`.
   double largest_error = 0;
-  std::size_t beyond = 0;  ///< (normal, segment) pairs for which even lines of one step exceed the tolerance
+  std::size_t beyond = 0;  ///< the number of (normal, segment) pairs whose error is beyond the tolerance even on lines
+                           ///< of one step
   /// The number of keys if all keyframes stay, and all segments are split into the same number of pieces, at most
   /// kKeySteps.
   std::size_t even = 0;
 };
 
 /// Chooses keys. tolerance is in radians, and must be above 0. progress() receives the segment that was reached. Reads
-/// all keyframes three times. Has in memory the keyframes between two keys and a few keyframes around them; key_pose()
-/// has three keyframes in memory. Errors of both functions: from reading keyframes.
+/// all keyframes three times. Keeps in memory the keyframes between two keys and a few keyframes around them;
+/// key_pose() keeps three keyframes. Errors of both functions: from reading keyframes.
 [[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                                const std::function<void(std::size_t segment)>& progress);
 

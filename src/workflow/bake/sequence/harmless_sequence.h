@@ -30,8 +30,8 @@ struct HarmlessElements {
 /// Examines all segments to find the base normals. Errors: from reading keyframes.
 [[nodiscard]] Result<HarmlessElements> harmless_elements(const SequenceNormals& normals);
 
-/// The directions of all elements at both keys of a segment. If an element has no direction at a key, the direction of
-/// the last key is used.
+/// The directions of all elements at both keys of a segment. If an element has no direction at a key, it has the
+/// direction of the key before.
 struct SegmentEnds {
   std::vector<Vec3d> from, to;
 };

@@ -4,7 +4,7 @@
 //
 //     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
 //     SequenceNormals                 normals at keys, and their bends between, from a stream       sequence_normals
-//     sequence_elements               base normals, and those that the first key cannot have        sequence_deltas
+//     sequence_elements               base normals, and which of them key 0 cannot have sequence_deltas
 //     *_deltas, each_exact_segment    the deltas of each target, as arrays                          sequence_deltas
 //     unit_*                          deltas that every viewer renders alike                        harmless_sequence
 //     fewest_keys                     the instants that need keys                                   fewest_keys
@@ -116,7 +116,8 @@ std::size_t count_crossing(const Topology& topology, const std::vector<float>& p
   return count;
 }
 
-// Returns the largest error bound of the fits of a weighting, in degrees. Returns 0 if normals are weighted by area.
+// Returns the largest error bound of the normals that were fitted to a weighting, in degrees. Returns 0 if normals are
+// weighted by area.
 double largest_bound(const SequenceNormals& normals) {
   double largest = 0;
   for (const std::vector<double>& bounds : normals.bounds()) {
@@ -182,7 +183,8 @@ Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>&
   return Success{};
 }
 
-// Adds the targets of the encoding endpoint to the file. Returns the largest angle that is left, in degrees.
+// Adds the targets of the encoding endpoint to the file. Returns the largest angle that is left between rendered and
+// true normals, in degrees.
 Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               const Step& step, SequenceFile& file) {
   EndDeltas end{std::vector<Vec3d>(elements.size()), 0};
@@ -237,7 +239,7 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
 }
 
 // Adds the targets of the encoding harmless to the file, and records which segments bend. Returns the largest angle
-// that is left, in degrees.
+// that is left between rendered and true normals, in degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
@@ -373,7 +375,8 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  // Exact checks deltas while it writes, and fits are checked when they are made.
+  // The encoding exact checks its deltas while it writes them. If there are fits, the deltas were checked before the
+  // fits were made.
   if (!is_exact && normals.bounds().empty()) {
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }

@@ -20,8 +20,8 @@ inline constexpr Vec3d kAnyNormal{0, 0, 1};
 struct SequenceElement {
   Vec3d normal;             ///< N, a unit vector in float32
   double scale = 1;         ///< the number by which the element's normals are divided
-  bool frees_base = false;  ///< if true, N is not its normal at key 0, so key 0 needs a target
-  bool has_none = true;     ///< true if it has no area in the whole sequence
+  bool frees_base = false;  ///< if true, N is not the element's normal at key 0, so key 0 needs a target
+  bool has_none = true;     ///< true if the element has no normal at any time of the sequence
 };
 
 /// Examines all segments to find the data of elements. check_deltas() must have been called. Errors: from reading
@@ -41,9 +41,9 @@ struct ExactSegment {
 };
 
 /// Calls body(segment, values) for every segment in order, until it returns an error. Has the keys of one segment in
-/// memory at a time. If the elements may still change, returns false as soon as a segment shows that
-/// sequence_elements() would return different elements. Errors: kInvalidInput if a delta is too large for float32;
-/// errors of body, and of the stream.
+/// memory at a time. If are_final is false, the elements may be those of the first segments only. The function then
+/// returns false as soon as a segment shows that sequence_elements() would return different elements. Errors:
+/// kInvalidInput if a delta is too large for float32; errors of body, and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
     const SequenceNormals& normals, std::span<const SequenceElement> elements, bool are_final,
     const std::function<Status(std::size_t segment, const ExactSegment& values)>& body);

@@ -120,7 +120,7 @@ class SequenceFile {
   void begin(std::span<const float> base, std::span<const SequenceElement> elements);
   [[nodiscard]] Target target(std::string name, std::size_t positions, std::span<const float> normals);
   [[nodiscard]] std::size_t add_positions(std::span<const float> of_motion);
-  // Returns the accessor of zeros that all targets share which move no vertex.
+  // Returns the accessor of zeros. All targets that move no vertex share it.
   [[nodiscard]] std::size_t zero_positions();
   [[nodiscard]] std::span<const float> rounded(std::span<const Vec3d> of_elements);
 

@@ -209,7 +209,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(counted(baked.without_base, "vertex has", "vertices have") +
          " only faces without area in the base; normals there are wrong at weights near 0 and right otherwise");
   }
-  // The viewers that an option can name support more targets, but other viewers support only this number.
+  // Each target morphs two attributes. The viewers that options can name support more attributes, but other viewers may
+  // support only kMorphedAttributes.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) +
          " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "

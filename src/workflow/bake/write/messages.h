@@ -28,8 +28,8 @@ struct MeshWarning {
 
 /// Adds a warning if primitives of the mesh stay flat.
 void warn_of_flat(const GltfMesh& mesh, const BakedMesh& baked, std::vector<MeshWarning>& warnings);
-/// Adds a warning if float32 cannot hold the weights of a mesh's correction targets. `error` is the error of the mesh's
-/// tracks in radians.
+/// Adds a warning if float32 cannot hold the weights of a mesh's correction targets. `error` is the mesh's entry in
+/// WrittenTracks::errors, in radians.
 void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, std::vector<MeshWarning>& warnings);
 /// Adds a warning if no candidate for a mesh is within the tolerance and the limits.
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,

@@ -31,9 +31,9 @@ class ZeroVectors {
   std::map<std::size_t, std::size_t> accessors_;
 };
 
-/// Writes targets one by one, so that only the arrays of one target are in memory. All targets of a primitive must have
-/// the same attributes (section 3.7.2.2 of the specification). If one target has an attribute, the other targets get
-/// zeros.
+/// The writer of one mesh. It writes targets one by one, so that only the arrays of one target are in memory. All
+/// targets of a primitive must have the same attributes (section 3.7.2.2 of the specification). If one target has an
+/// attribute, the other targets get zeros.
 class MeshWriter {
  public:
   /// Prepares a mesh for writing. `smooth` must be the value with which the shading was read. All arguments must

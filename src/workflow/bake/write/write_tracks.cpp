@@ -30,7 +30,7 @@ std::size_t index_at(const GltfEdit& edit, const std::string& pointer) {
   return is_number ? static_cast<std::size_t>(value) : 0;
 }
 
-// Returns the number of items in an array of the file, which is named by its JSON pointer.
+// Returns the number of items in an array of the file. `list` is the JSON pointer of the array.
 std::size_t size_of(const GltfEdit& edit, const std::string& list) {
   std::size_t beyond = 1;
   while (edit.has(item(list, beyond - 1))) beyond *= 2;
@@ -233,7 +233,7 @@ class TrackWriter {
   GltfEdit& edit_;
   WrittenTracks written_;
   std::map<std::size_t, std::size_t> place_of_mesh_;  // from the index of a mesh to its index in meshes_
-  // By animation, keys, and index in meshes_.
+  // The samplers that were written, by animation, keys of the track, and index of the mesh in meshes_.
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;
 };
 
