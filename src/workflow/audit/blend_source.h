@@ -55,8 +55,8 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Turn sums of face normals into true normals, at the placed moment or at the given weights, by adding the angle
-  /// between the author's normals and the geometry.
+  /// Turn sums of face normals into true normals, at the placed moment or at the given weights, by rotating them as the
+  /// author's normals are rotated from the geometry's.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
   /// Adds up the stored normals as they are rendered at the placed moment, and finds how the skin transforms them.
@@ -108,7 +108,8 @@ class BlendSource {
   double t_ = 0;
   std::vector<double> now_, start_, end_;
   StoredSums sums_;
-  // Sums at the moment, the start and the end, (outputs, 3).
+  // The sums of stored normals and their weighted deltas, at the placed moment, and at the start and the end of its
+  // segment, (outputs, 3).
   std::span<const float> shown_now_, shown_start_, shown_end_;
 };
 

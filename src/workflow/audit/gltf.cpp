@@ -146,7 +146,7 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
   if (mesh.rule != AuditRule::kFlat)
-    // Folds between facets are intended by the rule flat, so edges are not examined for them.
+    // By the rule flat, folds between facets are intended, so edges are not examined for tears.
     part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());
   return part;
 }

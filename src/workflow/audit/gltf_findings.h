@@ -1,4 +1,4 @@
-/// Finds faults of the mesh of a glTF file, and notes about it, as an audit reports them. Private to workflow.
+/// Finds the faults and the notes that an audit reports about a mesh of a glTF file. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_GLTF_FINDINGS_H_
 

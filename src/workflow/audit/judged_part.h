@@ -19,7 +19,8 @@ namespace chronormal::inline internal {
 /// The number of elements or outputs that one task handles.
 inline constexpr std::size_t kRange = 4096;
 
-/// A share of the sum of the sizes of some terms. A shorter sum consists only of rounding errors and has no direction.
+/// If a sum of vectors is shorter than this share of the sum of their sizes, it consists only of rounding errors and
+/// has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
 /// Returns a bound of the change of a polygon's normal if the coordinates of its corners are rounded to float32.
@@ -27,7 +28,7 @@ inline constexpr double kRoundingOfTerms = 1e-13;
 /// of d p[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
-  // Change of a vector, relative to its largest coordinate.
+  // The length by which rounding changes a vector at most, relative to its largest coordinate.
   constexpr double kOfVector = 1.7320508075688772 / (1 << 24);
   double sum = 0;
   for (std::size_t c = 0; c < corners; ++c) {

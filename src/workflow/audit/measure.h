@@ -25,9 +25,9 @@
 
 namespace chronormal::inline internal {
 
-/// A share of an element's largest control normal. A shorter normal does not count in any sum, because where a surface
-/// nearly collapses, its shading mostly follows from the normals around it. If the caller sets a limit of the error
-/// (--tolerance), such a normal is still judged as long as it has a direction.
+/// If the normal of an element is shorter than this share of its largest control normal, the error of the normal is not
+/// judged. The surface nearly collapses there, and its shading mostly follows from the normals around it. If the caller
+/// sets a limit of the error (--tolerance), such a normal is still judged as long as it has a direction.
 inline constexpr double kVanished = 1e-4;
 
 /// The value that stands for the error of a sample whose faces have an area but whose normals cancel each other.
@@ -111,9 +111,12 @@ void finish(Audit& result);
 //     at(segment, t, output)         returns the place as a message names it
 //
 // Segments tell where to measure. They have these functions:
-//     look_over(look)                calls look(segment) for segments that determine the largest normals; a Status
-//     maximize(numbers)              replaces each number by the largest of all processes that have other segments
-//     over(subject, work)            adds work(segment), the errors of each measured segment, to the subject; a Status
+//     look_over(look)                calls look(segment) for segments that determine the largest normals; returns a
+//                                    Status
+//     maximize(numbers)              replaces each number by the largest value that any process has, if processes share
+//                                    the segments
+//     over(subject, work)            adds work(segment), the errors of each measured segment, to the subject; returns a
+//                                    Status
 
 /// The positions and normals of a part at the moment at which the source was placed last.
 struct PlacedPart {
@@ -335,7 +338,7 @@ template <class Source, class Shown>
 struct KeptErrors {
   ErrorTable* table = nullptr;  ///< nullptr if errors are not kept
   std::size_t subject = 0;
-  bool are_watched = false;  ///< tells whether each_sample uses the outputs
+  bool are_watched = false;  ///< tells whether each_sample() needs the error of each output
 
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };

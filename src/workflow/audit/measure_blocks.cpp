@@ -77,8 +77,8 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// Replaces the length of each element by its largest length in these segments, like largest_control_normals() in
-// measure.h.
+// Raises each entry of `largest` to the length of the largest control normal that its element has in these segments,
+// like largest_control_normals() in measure.h.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
@@ -196,7 +196,7 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
                       AuditSubject& subject) {
   const Motion& motion = segments.stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
-  // Lengths of the elements of each block; an element between two blocks is in both.
+  // For each block, the length of the largest control normal of each element; an element between two blocks is in both.
   std::vector<std::vector<double>> largest;
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::size_t kSkinnedBlock = 1024;
 
-// Returns the error of one vertex in degrees, or nothing if one of the two normals vanishes.
+// Returns the angle in degrees between the true normal `before`, as the skin transforms it, and `after`, the normal of
+// the skinned surface. Returns nothing if `after` vanishes.
 std::optional<double> degrees_at(const MeshSkin& skin, std::size_t vertex, const Vec3d& before, const Vec3d& after) {
   const AffineTransform matrix = skin.of_vertex(vertex);
   const NormalMatrix exact = normal_matrix(matrix);

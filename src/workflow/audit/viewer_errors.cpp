@@ -45,7 +45,7 @@ double size_of(const GltfShading& shading) noexcept {
   return length(high - low);
 }
 
-// Returns the largest distance of a vertex between two lists of positions.
+// Returns the largest distance between the positions of the same vertex in two lists.
 double largest_distance(std::span<const Vec3d> a, std::span<const Vec3d> b) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, length(a[i] - b[i]));
@@ -87,7 +87,7 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
     // Viewers that play the same weights and store normals in the same way render the same normals. One of them is
-    // judged for all of them. This list has the errors that are known already.
+    // judged for all of them. For each entry of kept_, this list has the error that is known already, or nullptr.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;

@@ -63,7 +63,7 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// Checks that an answer stays within the limit while it grows, for answers whose length is not known before. The
+/// The check that an answer stays within the limit while it grows, for answers whose length is not known before. The
 /// written answer may be slightly larger, so the writer checks the size once more.
 class RowsInBounds {
  public:

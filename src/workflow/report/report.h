@@ -56,7 +56,8 @@ struct ReportOptions {
 
 /// A vertex at the moment of its largest error.
 struct ReportPlace {
-  /// In Report::parts, in the part, in the motion, in the part.
+  /// Indices of the part in Report::parts, of the motion in the part, of the sample in the motion, and of the vertex in
+  /// the part.
   std::size_t part = 0, motion = 0, sample = 0, vertex = 0;
   double degrees = 0;
   std::string label;   ///< the name of the vertex, such as "mesh 0, primitive 1, vertex 5051"
@@ -87,7 +88,7 @@ struct Report {
 /// of audit(); kInvalidInput if no motion can be judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
-/// The mark that a template contains exactly once, and that the report replaces.
+/// The mark that a template contains exactly once, and that the data of the report replace.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
 /// Checks that a template contains the mark exactly once. Errors: kInvalidInput if it does not.

@@ -53,7 +53,8 @@ struct ModelOffset {
   bool is_other_side = false;                  ///< true if the author shows the side opposite to the sum
   std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: each edge leads from the element to a neighbour
   std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
-  std::array<double, 6> turned = {};           ///< z and x of the base, if there is no reference
+  std::array<double, 6> turned = {};           ///< the directions z and x of the base (truth/offset_frame.h), if there
+                                               ///< is no reference
   std::array<float, 2> base = {};
 };
 

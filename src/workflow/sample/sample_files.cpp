@@ -367,7 +367,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  std::vector<OutputFile> meshes;  // get their names when all are complete, since these may be names of keyframes
+  std::vector<OutputFile> meshes;  // complete files get their names only at the end, since a name may be that of a
+                                   // keyframe's file
   run.skip(written);
   const auto keys = [&](std::size_t i) {
     return moments.times.empty() ? Motion::SegmentKeys{}

@@ -48,7 +48,7 @@ class KeyframeChecksums {
   std::map<std::size_t, std::uint32_t> of_keyframe_;
 };
 
-/// The version of all parts, and the message for a part whose checksum is wrong.
+/// The version of the format of parts, and the message for a part whose checksum is wrong.
 inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
     "the shard is damaged, since its checksum is wrong; run this shard again";

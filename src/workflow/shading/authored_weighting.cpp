@@ -146,7 +146,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   Distances all;
   const Stored sorted(stored);
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
-  // The results of blocks take memory, so only some blocks are examined together.
+  // The results of blocks take memory, so only kAtOnce blocks are examined at a time.
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < blocks; first += kAtOnce) {
     std::vector<Distances> found(std::min(kAtOnce, blocks - first));

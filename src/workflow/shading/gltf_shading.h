@@ -57,8 +57,8 @@ struct GltfShading {
   /// (V) The place of each vertex, numbered like points, except that both sides of a sheet are one place. The list is
   /// empty if the mesh has no such sides.
   std::vector<std::uint32_t> place_of_vertex;
-  /// For each corner, true if its face is on the back of the side whose normal the vertex shows. Elements leave these
-  /// corners out. The list is empty if no corner is on the back.
+  /// For each corner, true if its face belongs to one side of a sheet, but its vertex shows the normal of the other
+  /// side. Elements leave these corners out. The list is empty if no corner is on the back.
   std::vector<bool> at_the_back;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) if the primitive has no normals
   /// The stored deltas of each target, (V, 3); empty if no primitive stores deltas for the target.

@@ -27,7 +27,7 @@ using SurfaceEdge = std::array<std::uint32_t, 2>;
 /// corners).
 [[nodiscard]] std::vector<SurfaceEdge> surface_edges(const GltfShading& shading);
 
-/// Counts the pairs of vertices with a tear beyond 10, 20 and 40 degrees.
+/// The numbers of pairs of vertices with a tear beyond 10, 20 and 40 degrees.
 struct TearCounts {
   static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
 

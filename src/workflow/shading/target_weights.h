@@ -27,8 +27,8 @@ struct WeightTrack {
 
   [[nodiscard]] std::size_t size() const noexcept { return keys.times.size(); }
   [[nodiscard]] double value(std::size_t key, std::size_t target) const noexcept;
-  /// Returns a tangent of a cubic spline: the change of the weight in each second. Returns the tangent after the key if
-  /// out is true, and before the key otherwise.
+  /// Returns a tangent of a cubic spline: the change of the weight per second. Returns the tangent after the key if out
+  /// is true, and before the key otherwise.
   [[nodiscard]] double tangent(std::size_t key, bool out, std::size_t target) const noexcept;
   /// Returns the weight from a key to the next key as a cubic in Bernstein form. In a STEP track the cubic is constant.
   /// key + 1 must be less than size().

@@ -13,7 +13,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// In degrees; in degrees; as a share of the distance of area.
+// The limits of author_rule.h: kTells and kFollowsRule are angles in degrees, and kClear is a share of the distance of
+// triangles by area.
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;
 constexpr double kOff = 0.001;        // degrees: a normal that is farther from its sum does not follow the rule
 constexpr double kNothingLeft = 180;  // degrees: the distance if both sides of a sheet add up to zero
@@ -74,11 +75,13 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
   return edges;
 }
 
-// The angles between candidates and stored normals, in degrees.
+// Angles in degrees at the stored normals that tell candidates apart: `told` has the angle between each candidate and
+// the stored normal, and `spread` the largest angle between a candidate and triangles by area.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // normals that do not tell, and those among them that follow no candidate
+  std::size_t silent = 0, silent_off = 0;  // the numbers of normals that do not tell, and of those among them that no
+                                           // candidate is near
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -97,7 +100,7 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// Changes a rule around normals that do not follow the rule. A change is made only if these normals then follow the
+// The changes of a rule around normals that do not follow it. A change is made only if these normals then follow the
 // changed rule.
 class Mending {
  public:
@@ -273,7 +276,7 @@ class Mending {
   // Returns by how many more elements would follow their sums if a run of triangles were one polygon. Elements that
   // only come nearer to their sums do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
-    // Polygons that the run takes apart: first triangle, count.
+    // The first triangle and the number of triangles of each polygon that the run takes apart.
     std::vector<std::pair<std::size_t, std::size_t>> before;
     for (std::size_t t = first; t < first + count; t = before.back().first + before.back().second)
       before.emplace_back(polygons_.of_triangle(t), polygons_.triangle_count(polygons_.of_triangle(t)));
@@ -529,7 +532,8 @@ class Candidates {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<AuthorSums> of_kinds_;
-  std::vector<std::size_t> sums_of_kind_;  // if no point has several elements, a whole point is the same as own corners
+  std::vector<std::size_t> sums_of_kind_;  // for each kind, the index of its sums in of_kinds_; if no point has several
+                                           // elements, a whole point is the same as own corners
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
   // For each key, the elements that are examined to see if all of them follow a rule.

@@ -6,8 +6,8 @@
 /// apart.
 ///
 ///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
-///     tells        a stored normal tells if two candidates differ there by more than 0.1 degrees; at all other
-///                  normals the candidates agree
+///     tells        a stored normal tells if some candidate is more than 0.1 degrees from triangles by area there; at
+///                  all other normals the candidates hardly differ
 ///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored normal
 ///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
 ///                  triangles by area, even if much of the mesh was bent by hand; among several such candidates, the
@@ -37,7 +37,8 @@ struct AuthorRule {
   bool any_whole_point = false;  ///< true if some elements add up more than the corners that show them
   std::size_t telling = 0;       ///< the number of stored normals that tell rules apart
   double distance = 0;           ///< the median distance of the candidate that was found, in degrees
-  double spread = 0;             ///< the median, in degrees, of the largest angle between candidates at these normals
+  double spread = 0;             ///< degrees: the median, over these normals, of the largest angle between a candidate
+                                 ///< and triangles by area
 
   [[nodiscard]] bool is_plain() const noexcept {
     return weighting == Weighting::kArea && !any_polygons && !any_whole_point;

@@ -213,8 +213,9 @@ class AuthorTruth::Finder {
   std::vector<char> off_;
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // for each frame, its element
-  std::vector<PlaneOffset> base_offsets_;  // for each edge, the offset in the base
-  // For each edge, how far offsets differ from the base's; -1 if the edge cannot be used.
+  std::vector<PlaneOffset> base_offsets_;  // for each edge, the base's offset with the azimuth measured from it
+  // For each edge, the sum over keys of the squared distance between the offset at the key and the base's, with
+  // azimuths measured from this edge; -1 if the edge cannot be used.
   std::vector<double> differences_;
 };
 

@@ -36,8 +36,8 @@ class StaleKeys {
   /// Judges all targets that store normals. Compares their normals with the given sums of elements, or, if `sums` is
   /// nullptr, with sums by area around each vertex. Takes O(corners) for each target, on all cores.
   explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
-  /// Compares the result with another one. A target then is stale on a part of the mesh only if `others` finds it stale
-  /// there as well.
+  /// Keeps only those results that `others` shares: a target is then stale on a part of the mesh only if it is stale
+  /// there in `others` as well.
   void keep_common(const StaleKeys& others);
 
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {

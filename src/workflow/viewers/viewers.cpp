@@ -82,8 +82,8 @@ Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({std::round(o.x * most) / most, std::round(o.y * most) / most});
 }
 
-// Returns the first axis of Frisvad's frame of a unit vector, here for a frame whose y axis points up. The viewer
-// applies the formula also to vectors of other lengths, so this function does the same.
+// Returns the first axis of Frisvad's frame of a unit vector, here for a frame whose y axis points up. Viewers that
+// store frames (Viewer::by_frame) apply the formula also to vectors of other lengths, so this function does the same.
 Vec3d first_axis(const Vec3d& n) noexcept {
   constexpr double kDown = -1 + 1.0 / (1 << 23);
   if (n.y < kDown) return {-1, 0, 0};
