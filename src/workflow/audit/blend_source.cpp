@@ -14,8 +14,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 2048;
-// The least number of morph targets for which the sum of all deltas takes longer than an interpolation between both
-// ends of a segment.
+// The smallest number of morph targets for which adding up all deltas takes longer than interpolating between the
+// positions at both ends of a segment.
 constexpr std::ptrdiff_t kManyTargets = 8;
 
 }  // namespace

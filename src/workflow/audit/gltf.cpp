@@ -359,7 +359,8 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
 // result.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  // A curve is known by the animation, the track's same_keys_as, and the skin of the node.
+  // The key under which the result of a track is stored: the animation, the track's same_keys_as, and the skin of the
+  // node. Tracks with the same key have the same result.
   using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
   std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {

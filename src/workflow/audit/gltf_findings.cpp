@@ -25,8 +25,8 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
   return first != moved.end() && *first < part.first_vertex + part.vertex_count;
 }
 
-// Finds stale tangents of a target. A tangent is stale if at weight 1 it is farther from perpendicular to the true
-// normal than in the base.
+// Finds stale tangents of a target. A tangent is stale if its angle to the true normal at weight 1 is farther from a
+// right angle than in the base.
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const AuthorTruth& truth, AuditRule rule,
                                            std::size_t k, const JudgedPart& part, std::span<const std::size_t> involved,
                                            const Weights& weights) {

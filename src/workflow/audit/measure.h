@@ -25,12 +25,13 @@
 
 namespace chronormal::inline internal {
 
-/// If the normal of an element is shorter than this share of its largest control normal, the error of the normal is not
-/// judged. The surface nearly collapses there, and its shading mostly follows from the normals around it. If the caller
-/// sets a limit of the error (--tolerance), such a normal is still judged as long as it has a direction.
+/// If the normal of an element is shorter than this share of its largest control normal, its error does not count in
+/// the sums of errors. The surface nearly collapses there, and its shading mostly follows from the normals around it.
+/// If the caller sets a limit of the error (--tolerance), the limit applies to such a normal as long as the normal has
+/// a direction.
 inline constexpr double kVanished = 1e-4;
 
-/// The value that stands for the error of a sample whose faces have an area but whose normals cancel each other.
+/// The value that stands for the error of an output whose faces have an area, but whose face normals cancel each other.
 inline constexpr double kCancels = -3;
 
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
@@ -60,8 +61,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 }
 
 /// Returns a lower bound, in degrees, of the angle between the rendered and the true normal. The bound is the computed
-/// angle minus the angle by which rounding may have turned the true normal, which has this length and a rounding error
-/// of this size. Returns kNotJudged if rounding may give the true normal any direction.
+/// angle minus the angle by which rounding may have turned the true normal. `length` is the length of the true normal,
+/// and `rounding` a bound of its rounding error. Returns kNotJudged if rounding may give the true normal any direction.
 [[nodiscard]] double faint_degrees(const Vec3d& shown, const Vec3d& right, double length, double rounding) noexcept;
 
 /// Returns the unit normal that a viewer renders by this rule between two stored normals. Returns (0, 0, 0) if the
@@ -171,7 +172,7 @@ template <class Source, class Segments>
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {
-  double sum = 0, sum_of_squares = 0, worst = 0;  // local variables, so that they stay in registers
+  double sum = 0, sum_of_squares = 0, worst = 0;  // copies of the members of `result`, so that they stay in registers
   std::size_t judged = 0;
   std::array<std::uint32_t, kAuditFineBins> counts{};  // counts of at most kRange outputs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
@@ -218,8 +219,8 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 struct RightOutput {
   Vec3d direction;          ///< the direction that source.right() returns
   bool is_hidden = false;   ///< the result of source.hides()
-  bool has_normal = false;  ///< tells whether the normal is so long that it can be judged
-  bool has_area = false;    ///< tells whether a face around the output has an area; faces without area are not drawn
+  bool has_normal = false;  ///< true if the normal is long enough to be judged (kVanished)
+  bool has_area = false;    ///< true if a face around the output has an area; faces without area are not drawn
 };
 
 /// The true normals of all placed outputs, in 25 bytes each.
@@ -258,7 +259,7 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
       const JudgedOutput& output = outputs[range.first + k];
       const Vec3d& normal = placed.normals.elements[output.element];
       const double least = kVanished * largest[output.element];
-      // The first test decides for most normals.
+      // The first of the two tests takes less time, and decides for most normals.
       const bool has_normal = max_abs(normal) > least || length(normal) > least;
       result.set(range.first + k,
                  {some[k], source.hides(output, normal), has_normal, placed.normals.sizes[output.element] > least});

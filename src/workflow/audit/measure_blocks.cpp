@@ -28,7 +28,8 @@ constexpr std::size_t kMostSamples = 128;
 // A block: some outputs, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
-  std::vector<std::uint32_t> corners;           // three vertices of the mesh for each face of the block
+  std::vector<std::uint32_t> corners;           // for each face of the block, the indices of its three vertices in the
+                                                // mesh
   std::vector<std::uint32_t> faces, face_ends;  // faces of each element, as numbered in the block
 };
 

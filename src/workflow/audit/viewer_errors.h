@@ -50,7 +50,8 @@ class ViewerErrors {
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  std::vector<StoredSums> kept_;            // normals and deltas as some viewers keep them
+  std::vector<StoredSums> kept_;            // the sums of normals and deltas, one entry for each way in which viewers
+                                            // store them
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
   RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them
   double size_ = 0;                         // diagonal of the box around the mesh

@@ -25,9 +25,10 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
 constexpr std::size_t kRowsPerTarget = 16;  // rows of weights per target, to which deltas are fitted by least squares
-// The most weights of all rows together, which are in one list.
+// The largest number of weights in all rows together. One list in memory has all of these weights.
 constexpr std::size_t kMostWeights = std::size_t{1} << 27;
-// Bytes of precomputed terms; if they need more, normals come from positions.
+// The largest number of bytes for the precomputed terms of n(w). If the terms take more, normals are computed from
+// blended positions.
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr std::size_t kChunk = 512;
 
@@ -134,7 +135,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// Measures the errors at rows of weights, one row after the other.
+// The measurement of errors at rows of weights, one row after the other.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)

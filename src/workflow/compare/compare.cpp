@@ -127,7 +127,8 @@ class Elements {
   }
   // Returns the time that the control normals of faces take for a segment in one thread, in nanoseconds per element.
   [[nodiscard]] double shared_ns() const noexcept { return shared_ns_; }
-  // Computes control normals. If the weighting is not area, the control normals are fitted to normals at three times.
+  // Computes the control normals of a range of elements. If the weighting is not area, the control normals are fitted
+  // to the normals at t = 0, 1/2 and 1.
   void control_normals(const Segment& segment, IndexRange range, std::span<ControlNormals> result) const {
     if (!by_area()) {
       for (std::size_t i = 0; i < range.count; ++i) {
@@ -152,7 +153,7 @@ class Elements {
       };
     return block;
   }
-  // Returns bounds of the errors of the control normals.
+  // Returns bounds of the errors that rounding makes in the control normals. The list is empty for faces.
   [[nodiscard]] std::vector<ControlErrors> control_errors(const Segment& segment, IndexRange range) const {
     std::vector<ControlErrors> errors;
     if (!groups_) return errors;
@@ -197,11 +198,12 @@ class Elements {
   std::optional<NormalGroups> groups_;
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
-  std::size_t samples_ = 0;  // set only for groups
+  std::size_t samples_ = 0;  // the number of samples; set only for groups
   // The number of corners above which the normal of a face is computed once for all groups that contain the face. These
   // stored normals take less than 400 bytes for each corner.
   std::size_t many_corners_ = 0;
-  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // for groups, by segment: control normals of faces
+  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // for groups, by segment: what groups share: control
+                                                                 // normals of faces
   std::vector<std::uint32_t> large_;           // for groups: faces with more than many_corners_ corners
   std::map<std::size_t, SharedFaces> shared_;  // for groups, by segment
   std::map<std::size_t, std::vector<ReferenceArea>> of_large_;  // by segment: areas of large_ at each sample

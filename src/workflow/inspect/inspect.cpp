@@ -53,7 +53,7 @@ enum Mark : std::uint8_t {
 
 using FaceMarks = std::vector<std::atomic<std::uint8_t>>;
 
-// Counts the faces with one problem at a keyframe or in a segment, and remembers the first of them.
+// The number of faces with one problem at a keyframe or in a segment, and the first of these faces.
 struct FaceTally {
   std::size_t count = 0, first_face = 0;
   double first_t = 0;
@@ -209,7 +209,7 @@ Box box_of(VectorView<const float> positions, IndexRange vertices) {
 
 void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& tally) {
   const SegmentEnd from = SegmentEnd::from(segment), to = SegmentEnd::to(segment);
-  double most_of_square = 0;  // a vector with a smaller square is not longer than the longest one before
+  double most_of_square = 0;  // a vector with a smaller squared length is shorter than the longest vector so far
   for (std::size_t v = vertices.first; v < vertices.end(); ++v) {
     const Vec3d step = to.way_from(from, v, v);
     if (max_abs(step) == 0) continue;

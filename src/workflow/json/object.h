@@ -26,8 +26,8 @@ using Json = nlohmann::ordered_json;  // keeps fields in the order of the docume
 [[nodiscard]] std::string with_items(std::string text, const std::string& name, std::size_t count,
                                      const std::function<Json(std::size_t)>& item, bool is_indented);
 
-/// Writes which curves were cut into how many pieces, and the largest angle by which they bend. Writes nothing if no
-/// curve was cut.
+/// Writes how the curved paths of vertices were cut: the kind of path, the number of straight pieces, and how much the
+/// paths bend (CutPath::bend). Writes nothing if no path was cut.
 void put_path(Json& json, const std::optional<CutPath>& cut);
 
 template <class T>

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this number
 
-// Reads the numbers of a list, one after the other.
+// A reader of the numbers of a list, one after the other.
 class Numbers {
  public:
   explicit Numbers(JsonView list) : list_(std::move(list)) {}
@@ -188,7 +188,7 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
-// Writes into how many pieces curves were cut, in the format of parts.
+// Writes how the curved paths of vertices were cut into straight pieces, in the format of parts.
 void put_cut(Json& json, const std::optional<CutPath>& cut) {
   if (!cut) return;
   json["path"] = path_name(cut->path.kind);

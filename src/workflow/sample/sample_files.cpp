@@ -175,7 +175,8 @@ class ArrayFile {
   std::string storage_;
 };
 
-// Removes a partial output that has no rows when the run ends, because such a file has no work to continue.
+// A guard that removes a partial output at the end of the run if the output has no rows. A later run could not continue
+// anything in such a file.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;

@@ -29,7 +29,7 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// Finds the elements that have offsets, the edges from which their azimuths are measured, and stale keys.
+// The search for elements that have offsets, for the edges from which their azimuths are measured, and for stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)

@@ -90,9 +90,9 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // This viewer takes the values of a single target for a spline with three values per key. It uses the first third
-    // of the array, which has in-tangents, as if these were the keys. Beyond the end of the array there are no values,
-    // so the weight is 0.
+    // By the rule kSplinesMisread, a viewer takes only the in-tangents of a target, which are a third of the target's
+    // numbers. It reads them as if they were an in-tangent, a value and an out-tangent for each key. For later keys no
+    // numbers are left, so the weight is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

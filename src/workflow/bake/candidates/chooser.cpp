@@ -26,8 +26,8 @@ constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
 // best candidate in a glance, the candidate is not examined further. If the best candidate meets all criteria except
 // the tolerance, a candidate that is also beyond the tolerance is given up at kFarther times the mean error.
 constexpr double kHopeless = 2, kFarther = 1.25;
-// A file may become larger by more bytes if it gets at most kFewExtras correction targets. A correction target takes
-// about kBytesOfExtra bytes for each vertex.
+// A file may grow by more bytes if it gets at most kFewExtras correction targets than if it gets more of them. A
+// correction target takes about kBytesOfExtra bytes for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
 // A candidate is better than the stored deltas if its mean error is at most this part of theirs.
 constexpr double kBetter = 0.95;
@@ -76,7 +76,7 @@ struct Judged {
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
-// Compares candidates one after the other, and keeps the best.
+// The comparison of candidates. It takes them one after the other, and keeps the best.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -264,8 +264,9 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      // If a candidate is requested by name, it counts as better under two conditions: its mean error is smaller, in
-      // the poses of the file or in all poses, and it tears no edge.
+      // If the caller has requested an encoding, a candidate is better under two conditions. Its mean error must be
+      // smaller, in the poses of the file or in all poses. In addition, it must not tear more edges, or none of its
+      // errors may have grown.
       const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
@@ -474,7 +475,7 @@ BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights
     played.is_driven = true;
   }
   BakeOptions without_alone = options;
-  without_alone.animations_only = true;  // judges no correction target alone
+  without_alone.animations_only = true;  // leaves out the poses with one target alone
   Chooser chooser(source, played, without_alone, 0);
   return chooser.take().candidates.front();
 }

@@ -76,7 +76,7 @@ struct LowRank {
   std::vector<VertexVectors> extras;  // deltas of correction targets, of any length; their weights are from -1 to 1
   TrackCurves curves;                 // weights of the correction targets over time, for each track
   PoseList rest;                      // weights of the correction targets in the poses that the file stores
-  double worst = 0;                   // largest error of all points at the fitted instants, in degrees
+  double worst = 0;                   // degrees: the largest error of any point at the fitted instants
 };
 
 struct LowRankLimits {

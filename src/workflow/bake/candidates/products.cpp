@@ -35,7 +35,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// Lengths that are tried for a sum of unit normals, from the longest down. Each next length is kNextSum times the last.
+// Lengths that are tried for a sum of unit normals, from the longest down. Each length is kNextSum times the one
+// before.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
 constexpr int kTriedSums = 31;  // the shortest sum has a length of a tenth
 // kPartOfPairs is the error that a single correction target of a pair may leave half-way to its pose, as a part of the
@@ -130,7 +131,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// Makes the corrections of products, one after the other.
+// The maker of corrections. It makes one correction after the other, and adds them to the Products.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
@@ -239,7 +240,7 @@ class Corrector {
   struct PairCorrection {
     Vec3d one;
     std::array<Vec3d, 2> two;
-    double error_of_one = 0, error_of_two = 0;  // errors half-way, in radians
+    double error_of_one = 0, error_of_two = 0;  // radians: errors half-way to the pose
   };
 
   [[nodiscard]] PairCorrection pair_correction(const Asked& asked, const Vec3d& half_of_element,
@@ -261,7 +262,7 @@ class Corrector {
       if (right_half == Vec3d{}) return 0.0;
       return max_abs(now) > 0 ? angle_between(now, right_half) : std::numbers::pi;
     };
-    // If the normal needs no correction in the pose, it stays as it is there.
+    // A normal that needs no correction in the pose keeps its direction in this pose.
     const bool is_right = max_abs(shown) > 0 && angle_between(shown, right) < kRight;
     result.error_of_one = result.error_of_two = error_with({});
     if (is_right && result.error_of_two < kRight) return result;

@@ -36,7 +36,7 @@ struct Candidate {
 /// Returns for each target the normal deltas that the file stores. Leaves out zeros, and vertices that show no normal.
 [[nodiscard]] std::vector<VertexVectors> stored_deltas(const GltfShading& shading);
 
-/// Returns the arrays of deltas of one target as a column.
+/// Converts the arrays of deltas of one target to a column, which has only the deltas that are not zero.
 [[nodiscard]] VertexVectors as_column(const GltfShading& shading, const TargetDeltas& deltas);
 
 /// Returns the vertices that a bake judges: those whose normal some target may turn, by its faces or by its stored

@@ -79,7 +79,7 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// Fits the deltas of one element.
+// The fit of the deltas of one element.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -130,8 +130,8 @@ class Fit {
   };
   struct Row {
     Vec3d right, alone, shown;         // the true direction, the sum of single deltas, and the present sum
-    std::size_t first = 0, count = 0;  // its range in active_
-    double part = 0;                   // its weight in the fit, by which small errors become angles
+    std::size_t first = 0, count = 0;  // the range of the row in active_
+    double part = 0;                   // the weight of the row in the fit, which converts small errors to angles
   };
   [[nodiscard]] std::span<const Active> active(const Row& row) const {
     return std::span(active_).subspan(row.first, row.count);
@@ -194,7 +194,7 @@ class Fit {
   double worst_ = 0;
 };
 
-// Finds the elements whose targets are active at the same time in some pose.
+// The search for elements that are moved by several targets which are active at the same time in some pose.
 class Together {
  public:
   Together(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use)
@@ -212,7 +212,7 @@ class Together {
     }
   }
 
-  // Returns the elements whose targets are active together, with the best delta of each target alone.
+  // Returns these elements, with the best delta of each of their targets alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {

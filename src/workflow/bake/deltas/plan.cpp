@@ -152,7 +152,7 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
     turn += candidates[order[count++]].turn;
   order.resize(count);
   // A term along a normal does not turn this normal alone, but the sum of several such terms may be longer than the
-  // normal.
+  // normal and turn it. If the pairs together turn a normal by more than the tolerance, only half of them are left out.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

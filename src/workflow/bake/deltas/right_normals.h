@@ -1,7 +1,8 @@
 /// The true normals of vertices in any pose. Private to workflow.
 ///
-/// Units      A right normal has the true direction. Its length is |n(w)| / |n(0)| by area, or 1 if n(0) is zero. It is
-///            (0, 0, 0) if n(w) is so short compared with its terms that its direction means nothing.
+/// Units      A right normal has the true direction. Its length is the quotient |n(w)| / |n(0)| of normals weighted by
+///            area, or 1 if n(0) is zero. It is (0, 0, 0) if n(w) is so short compared with its terms that its
+///            direction means nothing.
 /// Poses      A pose has the weights of the mesh's own targets. Further weights may follow, and are ignored.
 /// Threads    const functions may run at the same time. Each function uses all cores.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_

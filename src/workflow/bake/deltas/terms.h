@@ -20,9 +20,9 @@
 namespace chronormal::inline internal {
 
 /// The true normals of all elements as a quadratic form in the weights. If normals are weighted by area, the form is
-/// exact. If not, the true normal is no polynomial, and the form is fitted to it. At some weights, the fitted form has
-/// the true direction and the length that the normal has by area: if one target has the weight 0, 1/2 or 1, or if two
-/// targets have the weight 1, and all other weights are 0.
+/// exact. If not, the true normal is no polynomial, and the form is fitted to it. The length by area of a normal is the
+/// length that it has if it is weighted by area. At some weights, the fitted form has the true direction and the length
+/// by area: if one target has the weight 0, 1/2 or 1, or if two targets have the weight 1, and all other weights are 0.
 class NormalTerms {
  public:
   /// Fits the terms of all targets, if the true normals are not weighted by area. The shading and its truth must
@@ -37,7 +37,7 @@ class NormalTerms {
   /// rounding errors.
   [[nodiscard]] BlendTerm linear(std::size_t i) const;
   [[nodiscard]] BlendTerm pair(std::size_t i, std::size_t j) const;
-  /// Return terms as functions, which compute or find the value of one element at a time.
+  /// Return the same terms as objects that compute or look up the value of one element at a time.
   class Term;
   [[nodiscard]] Term linear_by_element(std::size_t i) const;
   [[nodiscard]] Term pair_by_element(std::size_t i, std::size_t j) const;

@@ -158,8 +158,8 @@ std::vector<float> QuadraticFit::directions(std::span<const double> vectors) con
   return result;
 }
 
-// Computes the terms of the weights. Writes the terms of n(w) as sums of the directions, by least squares over all
-// points.
+// Computes the terms of the weights s_k. For this purpose, writes each term of n(w) as a sum of the directions E_k, by
+// least squares over all points.
 void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions) {
   const GltfShading& shading = source.shading;
   std::vector<double> matrix(extras_ * extras_, 0.0);
@@ -168,7 +168,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
     return to_double(Vec3f{of[k], of[padded_ + k], of[2 * padded_ + k]});
   };
   std::vector<VertexTerms> turned;
-  std::vector<double> shares;  // the shares of the terms of each point
+  std::vector<double> shares;  // for each point, the factor by which its terms count
   for (std::size_t p = 0; p < points_.size(); ++p) {
     const std::uint32_t v = points_[p].front(), e = shading.element_of_vertex[v];
     const double square = static_cast<double>(importance_[p]) * static_cast<double>(importance_[p]);
@@ -256,7 +256,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
   for (std::size_t r = 0; r < rows; ++r)
     for (std::size_t k = 0; k < count; ++k) largest[k] = std::fmax(largest[k], std::fabs(weights_[r * padded_ + k]));
 
-  // Fits the deltas of each point by least squares. Rows in which its normal is shorter count more.
+  // Fits the deltas of each point by least squares. Rows in which the normal of the point is shorter count more.
   std::vector<Vec3f> deltas(points_.size() * count);
   const double least = kPartOfEntry * tolerance_ / kDegreesPerRadian;
   parallel_blocks(points_.size(), kQuadraticBlock, [&](IndexRange points) {
@@ -264,7 +264,7 @@ QuadraticFit::Extras QuadraticFit::best(std::size_t count, bool keeps_lengths) c
     for (std::size_t p = points.first; p < points.first + points.count; ++p) {
       const float *shown = missing_.shown(p), *lack = missing_.missing(p);
       std::copy(lack, lack + 3 * stride, wanted.begin());
-      float most = 0;  // the largest weight in any row
+      float most = 0;  // the largest `share` of any row
       for (std::size_t r = 0; r < rows; ++r) {
         const Vec3f now = {shown[r], shown[stride + r], shown[2 * stride + r]};
         const Vec3f right = now + Vec3f{lack[r], lack[stride + r], lack[2 * stride + r]};

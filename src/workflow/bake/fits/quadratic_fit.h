@@ -43,7 +43,7 @@ class QuadraticFit {
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
-    /// Weights from about -1 to 1 in the poses of the rig; their index is not set.
+    /// Weights from about -1 to 1 in the poses of the rig; their member `target` is not set.
     std::vector<GltfExtraTarget> weights;
     std::vector<VertexVectors> vectors;  ///< deltas of any length
   };

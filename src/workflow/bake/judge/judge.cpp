@@ -20,11 +20,11 @@ constexpr int kFineBits = 16;
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
 // A glance takes every kGlance-th pose, but at least kFewestAtGlance poses if there are so many.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
-// The number of errors of vertices that are in memory at the same time.
+// The largest number of errors (of a vertex in a pose) that are in memory at the same time.
 constexpr std::size_t kMostErrors = 4000000;
 
-// Returns the viewer without rounding that must not decide a choice: rounding to half floats, which is too fine, and
-// rounding to a few bits, which compressors do.
+// Returns the viewer without two kinds of rounding that must not decide which candidate is chosen: rounding to half
+// floats, because its effect is too small, and rounding to a few bits, because compressors do that and not the viewer.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
@@ -97,7 +97,7 @@ class Sums {
       else
         no_sums_.push_back({begin - first, end - begin});
     };
-    constexpr std::size_t kFew = 8;  // a longer list of entries is searched for each column
+    constexpr std::size_t kFew = 8;  // lists with more entries than this per column are searched
     if (kFew * weights.columns().size() > entries.size()) {
       for (const auto& [column, delta] : entries) add(column, delta);
     } else {

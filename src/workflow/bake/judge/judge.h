@@ -61,7 +61,7 @@ class Judge {
   /// Tells which viewers and which poses a measurement includes.
   enum class Depth {
     kGlance,   ///< the named viewers, without tears, in about an eighth of the poses that decide (decides())
-    kRounded,  ///< the viewers for which compressors round, with this rounding, in about an eighth of the poses
+    kRounded,  ///< the viewers with NormalRule::kClamped, rounded as by compressors, in about an eighth of the poses
     kAll       ///< all viewers in all poses
   };
 

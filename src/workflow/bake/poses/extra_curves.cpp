@@ -176,7 +176,7 @@ ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& cur
   result.interpolation = track.interpolation;
   result.keys = track.size();
   if (result.keys > most_keys) return result;
-  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // this is a spline with one key
+  const bool is_spline = track.interpolation == GltfInterpolation::kCubicSpline;  // then it has one key
   for (std::size_t key = 0; key < track.size(); ++key) {
     const auto append_tangents = [&](bool out) {
       for (std::size_t i = 0; i < track.targets; ++i) result.values.push_back(to_file(track.tangent(key, out, i)));

@@ -7,7 +7,7 @@
 ///
 ///     STEP, or a single key    a node at each key; curves are constant between keys, as the track is
 ///     LINEAR                   one piece per gap if the true normals are weighted by area, because n(w(t)) and the
-///                              missing normals are then quadratic there; otherwise as many pieces as the track says
+///                              missing normals are then quadratic there; otherwise WeightTrack::pieces_of_line pieces
 ///     CUBICSPLINE              two, four or eight pieces per gap, so that parabolas are near squares of weights
 ///
 /// Threads    All functions are pure.

@@ -11,8 +11,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kLookedAtPairs is the largest number of samples (a vertex at a time) at which a skin is examined. kFewestInstants is
-// the smallest number of times at which a skin is examined.
+// kLookedAtPairs is the largest number of samples at which a skin is examined. A sample is a vertex at one time.
+// kFewestInstants is the smallest number of times at which a skin is examined.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
 // Returns true if a skin deforms these vertices by more than a rotation and an even scale at some time of a track.
@@ -46,7 +46,7 @@ std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin)
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights) {
   const std::vector<GltfNode>& nodes = document.nodes();
-  std::optional<MeshSkin> any;  // some skin that was read, for its joints and shares
+  std::optional<MeshSkin> any;  // a skin that was read; further skins reuse its joints and shares
   const auto read = [&](std::size_t node, std::optional<std::size_t> animation) -> std::optional<MeshSkin> {
     Result<MeshSkin> skin = MeshSkin::read(document, shading, node, animation, any ? &*any : nullptr);
     if (!skin) return std::nullopt;

@@ -14,8 +14,9 @@
 
 namespace chronormal::inline internal {
 
-/// Stores vectors as long as there is room, and after that stores no more. Poses come in the same order each time, so
-/// if new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions may run at once.
+/// A store of vectors. It takes vectors as long as there is room, and after that takes no more. Poses come in the same
+/// order each time, so if new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions
+/// may run at once.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}

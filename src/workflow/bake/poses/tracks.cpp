@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr int kMostHalvings = 10;  // the most halvings of a gap between two keys
+constexpr int kMostHalvings = 10;  // how often a gap between two keys is halved at most
 
 using Cubic = std::array<double, 4>;
 using Sextic = std::array<double, 7>;

@@ -55,8 +55,8 @@ Status hold_between(const SequenceNormals& normals, const Instant& from, const I
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// Judges straight lines between the normals at two instants. Times count keyframes: keyframe k is at time k. If a
-// keyframe could not be read, status() has the error, and all other results are invalid.
+// The judge of lines (fewest_keys.h) between the normals at two instants. Times count keyframes: keyframe k is at time
+// k. If a keyframe could not be read, status() has the error, and all other results are invalid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
