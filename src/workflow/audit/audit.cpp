@@ -106,9 +106,8 @@ std::size_t FineBins::operator[](std::size_t number) const noexcept {
 
 void FineBins::add(std::size_t number, std::uint64_t count) {
   if (count == 0) return;
-  if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));  // the usual case:
-                                                                                                    // bins come in
-                                                                                                    // ascending order
+  // The usual case: bins come in ascending order.
+  if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));
   const auto at =
       std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
   if (at != bins_.end() && at->number() == number)
@@ -210,8 +209,8 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));
   const double angle = angle_between(u0, u1), sine = portable::sin(angle);
-  constexpr double kStraight = 1e-9;  // the smallest sine of the angle between the normals; below, their arc is a
-                                      // straight line or undefined
+  // The smallest sine of the angle between the normals; below, their arc is a straight line or undefined.
+  constexpr double kStraight = 1e-9;
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
 }

@@ -28,8 +28,8 @@ constexpr std::size_t kMostSamples = 128;
 // A block: some outputs, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
-  std::vector<std::uint32_t> corners;           // for each face of the block, the indices of its three vertices in the
-                                                // mesh
+  // For each face of the block, the indices of its three vertices in the mesh.
+  std::vector<std::uint32_t> corners;
   std::vector<std::uint32_t> faces, face_ends;  // faces of each element, as numbered in the block
 };
 

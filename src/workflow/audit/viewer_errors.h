@@ -50,8 +50,8 @@ class ViewerErrors {
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  std::vector<StoredSums> kept_;            // the sums of normals and deltas, one entry for each way in which viewers
-                                            // store them
+  // The sums of normals and deltas, one entry for each way in which viewers store them.
+  std::vector<StoredSums> kept_;
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
   RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them
   double size_ = 0;                         // diagonal of the box around the mesh

@@ -202,10 +202,10 @@ class Elements {
   // The number of corners above which the normal of a face is computed once for all groups that contain the face. These
   // stored normals take less than 400 bytes for each corner.
   std::size_t many_corners_ = 0;
-  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;  // for groups, by segment: what groups share: control
-                                                                 // normals of faces
+  // The control normals of faces, by segment; only for groups.
+  std::map<std::size_t, std::vector<ControlNormals>> of_faces_;
   std::vector<std::uint32_t> large_;           // for groups: faces with more than many_corners_ corners
-  std::map<std::size_t, SharedFaces> shared_;  // for groups, by segment
+  std::map<std::size_t, SharedFaces> shared_;  // only for groups: control normals of faces for exact sums, by segment
   std::map<std::size_t, std::vector<ReferenceArea>> of_large_;  // by segment: areas of large_ at each sample
   double shared_ns_ = 0;
 };

@@ -171,7 +171,8 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));
-  if (limits.any() && !audit.is_judged()) json["passed"] = false;  // only here; audit_object() is for lists of inputs
+  // audit_object() does not do this, because it is for lists of inputs.
+  if (limits.any() && !audit.is_judged()) json["passed"] = false;
   return with_items(
       is_indented ? json_text(json) : json.dump(-1, ' ', false, Json::error_handler_t::replace), "subjects",
       audit.subjects.size(), [&](std::size_t i) { return subject_json(audit.subjects[i]); }, is_indented);

@@ -56,8 +56,8 @@ Json schemes_json(const NamedComparison& input, bool with_times) {
   return schemes;
 }
 
-// Writes the cheapest scheme. The key exists if the caller gave a tolerance. Its value is null if no scheme is within
-// the tolerance.
+// Writes the field `cheapest`, but only if the caller gave a tolerance. The value is null if no scheme is within the
+// tolerance.
 void put_cheapest(Json& json, const Comparison& c) {
   if (!c.tolerance) return;
   json["tolerance_degrees"] = *c.tolerance;

@@ -68,8 +68,8 @@ SchemeTally read_tally(Numbers numbers) {
   return tally;
 }
 
-// Writes an error. Most bins of the fine histogram are empty, so only the other bins are written, each as its number
-// and its count.
+// Writes the sums and counts of a MotionError. Most bins of the fine histogram are empty, so only the other bins are
+// written, each as its number and its count.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,
                error.sum,

@@ -69,8 +69,8 @@ void add_facing(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (facing.count == 0) ++(facing.side == Side::kFront ? found.always_front : found.always_back);
 }
 
-// Finds when outputs face the viewer. Vertices at the same point with the same normal have the same result, which is
-// computed once.
+// Finds when outputs face the viewer in a part of a segment. Vertices at the same point with the same normal have the
+// same result, which is computed once.
 Found facing_of_outputs(const Segment& segment, const View& view, const AskedOutputs& outputs,
                         const SegmentPart& part) {
   std::vector<std::optional<Facing>> facings(outputs.element_count());

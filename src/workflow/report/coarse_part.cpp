@@ -245,7 +245,8 @@ void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertic
     if (kept.faces[f] && !part.faces.empty())
       face_of_fine.insert(face_of_fine.end(), corners.size() / 3, part.faces[faces.first[f]]);
   }
-  // The triangles need about half as many vertices, because a closed mesh has twice as many triangles as vertices.
+  // The limit is a number of triangles. They need about half as many vertices, because a closed mesh has twice as many
+  // triangles as vertices.
   part.coarse = simplified(rest, part.positions, most_vertices);
   part.triangles = std::move(fine);
   part.faces = std::move(face_of_fine);

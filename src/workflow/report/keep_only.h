@@ -1,4 +1,4 @@
-/// Removes some of many values. Private to workflow.
+/// Removes values that are not kept from a list. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 #define CHRONORMAL_WORKFLOW_REPORT_KEEP_ONLY_H_
 

@@ -10,8 +10,8 @@
 /// at any moment from the same positions and normals, so its numbers at the worst places equal the numbers of the
 /// audit.
 ///
-/// Worst      At most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace. No two of a
-///            mesh are within kPlaceDistance of each other.
+/// Worst      At most kMostWorstPlaces vertices, each at its largest error, which is above kLeastPlace. No two places
+///            on one mesh are within kPlaceDistance of each other.
 /// Thinned    A page above the size limit is thinned out, and states what is left out. First, keyframes and samples
 ///            between the worst places are removed. Then triangles far from these places become fewer, and are not
 ///            judged. All data on which the normals around a worst place depend stay unchanged.
@@ -39,7 +39,7 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kMostReportBytes = 30000000;  ///< in bytes; the size limit of a page with its template
 inline constexpr std::size_t kMostWorstPlaces = 20;
 inline constexpr double kLeastPlace = 0.001;  ///< in degrees; a vertex with a smaller error is not a worst place
-/// The least distance between worst places, as a share of the diagonal of the mesh.
+/// The smallest distance between worst places, as a share of the diagonal of the box around the mesh.
 inline constexpr double kPlaceDistance = 0.04;
 
 struct ReportOptions {

@@ -53,8 +53,8 @@ struct ModelOffset {
   bool is_other_side = false;                  ///< true if the author shows the side opposite to the sum
   std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: each edge leads from the element to a neighbour
   std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
-  std::array<double, 6> turned = {};           ///< the directions z and x of the base (truth/offset_frame.h), if there
-                                               ///< is no reference
+  /// The directions z and x of the base (truth/offset_frame.h), if there is no reference.
+  std::array<double, 6> turned = {};
   std::array<float, 2> base = {};
 };
 
@@ -137,10 +137,10 @@ struct ModelPart {
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;
   std::vector<ModelVectors> keyframe_positions, keyframe_normals;
-  std::vector<std::uint32_t> segments;  ///< (n, 2) the keyframes at both ends
+  std::vector<std::uint32_t> segments;  ///< (n, 2) the keyframes at both ends of each segment
 
   std::vector<ModelMotion> motions;
-  std::vector<ModelPeak> peaks;  ///< (V), for each vertex
+  std::vector<ModelPeak> peaks;  ///< (V) the largest error of each vertex
 
   [[nodiscard]] std::size_t vertex_count() const noexcept { return element.size(); }
 };

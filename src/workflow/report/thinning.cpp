@@ -65,7 +65,7 @@ std::size_t sum(const ReportModel& model, const OfPart& of_part) {
   return result;
 }
 
-// Returns the bytes that are left of `most` if `taken` are used, or 0 if more are used.
+// Returns the number of bytes that are left of `most` after `taken` bytes are used, or 0 if `taken` is larger.
 std::size_t left(std::size_t most, std::size_t taken) { return most > taken ? most - taken : 0; }
 
 // Lists the samples of a motion that belong to worst places.

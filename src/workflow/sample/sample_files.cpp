@@ -89,7 +89,7 @@ class ArrayFile {
     const IndexRange share = run.share();
     const bool is_first = is_first_process(run);
     const std::vector<std::uint64_t> shape = {run.peers ? moments.count() : share.count, outputs, 3};
-    // Bytes before the share, for each output.
+    // The number of bytes in the rows before the share, for each output.
     const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);
     if (!npz_) {
       checksum_ = checksum_of(header);
@@ -171,7 +171,7 @@ class ArrayFile {
   std::size_t normals_ = 0, positions_ = 0;  // the indices of arrays in npz_
   Origin origin_ = {};                       // the origin of the positions
   std::optional<std::uint64_t> at_;          // the offset of the next row in the .npy file that all peers share
-  std::uint32_t checksum_ = 0;               // the checksum of a .npy file that has no peers
+  std::uint32_t checksum_ = 0;               // the checksum of all bytes so far of a .npy file that no peers share
   std::string storage_;
 };
 
@@ -368,8 +368,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  std::vector<OutputFile> meshes;  // complete files get their names only at the end, since a name may be that of a
-                                   // keyframe's file
+  // Complete files get their names only at the end, since a name may be that of a keyframe's file.
+  std::vector<OutputFile> meshes;
   run.skip(written);
   const auto keys = [&](std::size_t i) {
     return moments.times.empty() ? Motion::SegmentKeys{}

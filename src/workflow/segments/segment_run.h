@@ -54,7 +54,7 @@ struct SegmentRun {
   std::optional<Shard> shard = {};
   /// The processes that have the other shares, or nullptr if this process does not communicate with others.
   const Peers* peers = nullptr;
-  /// Limits the memory of results, relative to the size of the motion's files.
+  /// The limit on the memory of results, relative to the size of the motion's files.
   Expansion expansion = Expansion::unlimited();
   Progress progress = {};
   /// The journal for rows of samples. A RecordedRun has `keep` instead.

@@ -105,7 +105,7 @@ TaskChecksums read_task_checksums(const JsonView& part) {
 
 Status KnownParts::add(const std::string& part, const TaskChecksums& checksums) {
   parts_.push_back(part);
-  std::optional<Error> keyframe;  // reported last, since errors in data that all keyframes share are more helpful
+  std::optional<Error> keyframe;  // returned only if there is no other error, since other errors are more helpful
   for (const auto& [name, checksum] : checksums) {
     const auto [known, is_new] = first_.try_emplace(name, checksum, parts_.size() - 1);
     if (is_new || known->second.first == checksum) continue;

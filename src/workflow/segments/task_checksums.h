@@ -44,7 +44,7 @@ class KeyframeChecksums {
   [[nodiscard]] Status take(std::size_t keyframe, std::span<const float> positions);
 
   MotionStream& stream_;
-  std::mutex mutex_;  // another thread reports keyframes that are read ahead
+  std::mutex mutex_;  // guards of_keyframe_, since another thread reports keyframes that it reads ahead
   std::map<std::size_t, std::uint32_t> of_keyframe_;
 };
 
@@ -68,7 +68,8 @@ class KnownParts {
 
  private:
   std::vector<std::string> parts_;
-  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;  // for each name, its first checksum and part
+  // For each name, its first checksum and the index of that part.
+  std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;
 };
 
 }  // namespace chronormal::inline internal

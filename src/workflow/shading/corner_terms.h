@@ -55,7 +55,7 @@ class CornerTerms {
 
  private:
   struct Known {
-    std::uint64_t use = 0;  // tells for which emptied() this entry was made
+    std::uint64_t use = 0;  // the value of use_ when this entry was made
     std::uint32_t polygon = 0, face = 0;
   };
   static constexpr std::size_t kKnown = 512;

@@ -80,8 +80,8 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  std::size_t silent = 0, silent_off = 0;  // the numbers of normals that do not tell, and of those among them that no
-                                           // candidate is near
+  // The numbers of normals that do not tell, and of those among them that no candidate is near.
+  std::size_t silent = 0, silent_off = 0;
 
   void add(const Distances& other) {
     for (std::size_t c = 0; c < kCandidates; ++c)
@@ -92,7 +92,7 @@ struct Distances {
   }
 };
 
-// Returns the value that this share of the values lies below. Changes the order of the values.
+// Returns the value below which this share of the values lies. Changes the order of the values.
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -310,7 +310,8 @@ class Mending {
   std::vector<char> whole_;  // for each element, 1 if it adds up its whole point
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
-  // Elements that may still be tried; bounds the time for normals that no polygon corrects.
+  // The number of elements that may still be tried. It limits the time that is spent on normals that no polygon
+  // corrects.
   std::size_t budget_ = 400000;
 };
 
@@ -349,7 +350,9 @@ class Candidates {
     std::size_t paired = 0;
     for (std::size_t t = 0; t < shading.set.topology.face_count(); t += quads.triangle_count(t))
       paired += quads.triangle_count(t) == 2 ? 2U : 0U;
-    constexpr double kMostly = 0.75;  // the other faces are caps and poles, where quads are rare
+    // If more than this share of the triangles is in quads, the mesh was cut from quads. The other triangles are caps
+    // and poles, where quads are rare.
+    constexpr double kMostly = 0.75;
     is_of_quads_ = static_cast<double>(paired) > kMostly * static_cast<double>(shading.set.topology.face_count());
   }
 
@@ -532,8 +535,9 @@ class Candidates {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<AuthorSums> of_kinds_;
-  std::vector<std::size_t> sums_of_kind_;  // for each kind, the index of its sums in of_kinds_; if no point has several
-                                           // elements, a whole point is the same as own corners
+  // For each kind, the index of its sums in of_kinds_; if no point has several elements, a whole point is the same as
+  // own corners.
+  std::vector<std::size_t> sums_of_kind_;
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
   // For each key, the elements that are examined to see if all of them follow a rule.

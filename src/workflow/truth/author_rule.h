@@ -37,8 +37,8 @@ struct AuthorRule {
   bool any_whole_point = false;  ///< true if some elements add up more than the corners that show them
   std::size_t telling = 0;       ///< the number of stored normals that tell rules apart
   double distance = 0;           ///< the median distance of the candidate that was found, in degrees
-  double spread = 0;             ///< degrees: the median, over these normals, of the largest angle between a candidate
-                                 ///< and triangles by area
+  /// Degrees: the median, over these normals, of the largest angle between a candidate and triangles by area.
+  double spread = 0;
 
   [[nodiscard]] bool is_plain() const noexcept {
     return weighting == Weighting::kArea && !any_polygons && !any_whole_point;

@@ -82,8 +82,9 @@ class Polygons {
 
   const Topology* triangles_;
   // All four lists are empty until triangles are joined.
-  std::vector<std::uint32_t> first_,
-      count_;  // for each triangle, the first triangle of its polygon; for that one, the number of triangles
+  // first_ has for each triangle the first triangle of its polygon. count_ has for this first triangle the number of
+  // triangles in the polygon.
+  std::vector<std::uint32_t> first_, count_;
   // For a larger polygon, by its first triangle, the place of its corners in loops_.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles

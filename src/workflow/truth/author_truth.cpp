@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kFramesOfBlock = 256;
 constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a normal that is nearer to its sum has no offset
 
-// Returns the angle by which rounding may turn a stored normal, in radians. It is not zero if the normals look like
-// bytes, which some exporters store.
+// Returns the angle by which rounding may turn a stored normal, in radians. The angle is above zero only if the
+// components look like signed bytes, which some exporters store.
 double rounding_of_stored(const GltfShading& shading) {
   constexpr double kSteps = 127, kNear = 1e-3;
   constexpr std::size_t kEnough = 16;
@@ -208,7 +208,7 @@ class AuthorTruth::Finder {
   std::vector<std::uint32_t> vertex_of_;
   double tolerance_;
   StoredKey base_;
-  std::vector<Vec3d> z0_;  // sum of each element, on the side that the author shows
+  std::vector<Vec3d> z0_;  // unit sum of each element in the base, on the side that the author shows
   std::vector<double> side_;
   std::vector<char> off_;
   StaleKeys stale_;

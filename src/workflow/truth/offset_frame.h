@@ -90,7 +90,7 @@ template <class PositionOf>
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {
-  constexpr double kNoOffset = 1.7e-4;  // radians; a hundredth of a degree
+  constexpr double kNoOffset = 1.7e-4;  // radians, a hundredth of a degree: a smaller angle is no offset
   double least = angle_between(z, s);
   if (angle_between(z0, s0) <= kNoOffset) return least;
   const double mean0 = mean_edge_angle(edges, z0, base), mean = mean_edge_angle(edges, z, at_key);

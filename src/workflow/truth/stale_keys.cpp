@@ -72,7 +72,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
 
 // The vertices that a key turns, in one connected part of the mesh.
 struct PartOfKey {
-  std::vector<float> turned, off;  // radians: turn and error of each vertex that turns
+  std::vector<float> turned, off;  // radians: the turn of each vertex that turns, and the error of its normal
   double together = 0, of_surface = 0, of_stored = 0;
 
   [[nodiscard]] bool is_stale() {

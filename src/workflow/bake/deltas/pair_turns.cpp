@@ -124,8 +124,8 @@ struct PairMeter::Candidate {
   double aside = 0;    // length of the largest part of the term across a normal, relative to the normal
   double size = 0;     // length of the largest value of the term, relative to the normal
   double tangent = 0;  // the tangent of the largest angle by which a normal turns without the term
-  std::vector<std::pair<double, std::uint32_t>> poses;  // factor of the term in each pose, and the pose; the largest
-                                                        // first
+  // The factor of the term in each pose, and the index of the pose; the largest factors come first.
+  std::vector<std::pair<double, std::uint32_t>> poses;
 };
 
 PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses,

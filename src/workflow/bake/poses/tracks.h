@@ -41,8 +41,8 @@ struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::vector<float> times;   ///< in seconds; empty if the times do not change
   std::vector<float> values;  ///< weights of the track's targets and of correction targets, in the order of the file
-  double error = 0;           ///< radians: a bound of the angle by which errors of weights turn normals; pi if float32
-                              ///< cannot hold a number
+  /// Radians: a bound of the angle by which errors of weights turn a normal; pi if float32 cannot hold a number.
+  double error = 0;
   std::size_t keys = 0;
 };
 

@@ -13,8 +13,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kAreaBlock = 4096;            // the number of elements in a block
-constexpr std::size_t kAreaFaces = 8 * kAreaBlock;  // faces in a block, if all areas are computed first
+constexpr std::size_t kAreaBlock = 4096;  // the number of elements in a block
+// The number of faces in a block, if the areas of all faces are computed first.
+constexpr std::size_t kAreaFaces = 8 * kAreaBlock;
 
 IndexRange faces_around(const NormalGroups& groups, IndexRange elements) {
   std::uint32_t first = ~std::uint32_t{0}, end = 0;

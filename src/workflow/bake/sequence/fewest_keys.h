@@ -36,8 +36,8 @@ struct SequenceKeys {
   std::vector<std::size_t> at;  ///< the keys in steps, ascending; keyframe k is at step k kKeySteps
   /// Radians: the largest error of any normal at any instant, except of normals counted in `beyond`.
   double largest_error = 0;
-  std::size_t beyond = 0;  ///< the number of (normal, segment) pairs whose error is beyond the tolerance even on lines
-                           ///< of one step
+  /// The number of (normal, segment) pairs whose error is beyond the tolerance even on lines of one step.
+  std::size_t beyond = 0;
   /// The number of keys if all keyframes stay, and all segments are split into the same number of pieces, at most
   /// kKeySteps.
   std::size_t even = 0;

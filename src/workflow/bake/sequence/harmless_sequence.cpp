@@ -12,9 +12,9 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kHarmlessBlock = 256;
-constexpr double kWorthIt = 2e-3;    // radians: a smaller gain is not worth the bytes of a target
-constexpr std::size_t kJudged = 40;  // the number of instants at which a segment is judged; its first key is not one of
-                                     // them
+constexpr double kWorthIt = 2e-3;  // radians: a smaller gain is not worth the bytes of a target
+// The number of instants at which a segment is judged; its first key is not one of them.
+constexpr std::size_t kJudged = 40;
 
 // Returns the weight 4 t (1 - t) of a bend as the LINEAR track plays it, in straight pieces.
 double bend_weight(double t) {

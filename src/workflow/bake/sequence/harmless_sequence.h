@@ -44,7 +44,7 @@ struct SegmentEnds {
 
 /// The bends of a segment, if these reduce errors, and the largest angles between rendered and true normals.
 struct UnitBends {
-  std::vector<Vec3d> deltas;       ///< the deltas of elements; empty if no element gains
+  std::vector<Vec3d> deltas;       ///< the deltas of elements; empty if bends help no element
   double gain = 0;                 ///< radians: the reduction of the largest angle, added up over all elements
   double error = 0, straight = 0;  ///< radians: the largest angle with these deltas, and with no bends
 };

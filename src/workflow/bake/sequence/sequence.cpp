@@ -4,7 +4,7 @@
 //
 //     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
 //     SequenceNormals                 normals at keys, and their bends between, from a stream       sequence_normals
-//     sequence_elements               base normals, and which of them key 0 cannot have sequence_deltas
+//     sequence_elements               base normals, and which of them key 0 cannot have             sequence_deltas
 //     *_deltas, each_exact_segment    the deltas of each target, as arrays                          sequence_deltas
 //     unit_*                          deltas that every viewer renders alike                        harmless_sequence
 //     fewest_keys                     the instants that need keys                                   fewest_keys

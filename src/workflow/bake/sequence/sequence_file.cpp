@@ -1,4 +1,4 @@
-// Writes a sequence to a GLB file: targets, tracks of weights, and marks in extras.
+// Writes a sequence to a GLB file: its targets, the track of their weights, and the mark of the bake in extras.
 #include "workflow/bake/sequence/sequence_file.h"
 #include "motion/triangles.h"
 

@@ -44,9 +44,9 @@ class SequenceNormals {
 
   /// Returns the positions of key 0, (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
-  /// Returns the float32 deltas of a key from key 0, as a file stores them, (V, 3).
+  /// Returns the float32 deltas from the positions at key 0 to those at a key, as a file stores them, (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
-  /// Writes the float32 deltas of a key from key 0 into existing memory.
+  /// Writes the same deltas into existing memory.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
   /// Returns true if stored normals differ from the normals of the geometry.

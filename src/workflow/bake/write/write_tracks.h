@@ -29,8 +29,8 @@ struct GrownMesh {
                                                           const GltfEdit& edit);
 
 struct WrittenTracks {
-  std::vector<double> errors;      ///< for each mesh, a bound of the angle by which errors of weights turn normals, in
-                                   ///< radians
+  /// For each mesh, a bound of the angle by which errors of weights turn normals, in radians.
+  std::vector<double> errors;
   std::vector<std::size_t> bytes;  ///< for each mesh, the number of bytes added to its tracks
   std::size_t converted = 0;       ///< the number of tracks that became cubic splines
 };
