@@ -122,7 +122,7 @@ void FineBins::add(const FineBins& other) {
     while (i < before && bins_[i].number() < other.bins_[j].number()) ++i;
     if (i == before || bins_[i].number() != other.bins_[j].number()) ++added;
   }
-  if (added > 0) bins_.reserve(before + added);  // reserves no more than needed
+  if (added > 0) bins_.reserve(before + added);  // a vector that grows by itself would reserve more
   bins_.resize(before + added, Bin(0, 0));
   // Merging starts at the end, so that no bin is overwritten before it is read.
   for (std::size_t to = bins_.size(), from = other.bins_.size(); from > 0;) {
@@ -219,7 +219,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
   constexpr std::size_t kEdgeBlock = 4096;
   // If both ends of an edge are within half of the smallest tear, the edge is not torn. Most edges pass this test and
   // need no other.
-  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // slightly less, as a margin for rounding
+  constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // the factor leaves a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
   for (std::size_t i = 0; i < differences.size(); ++i) {

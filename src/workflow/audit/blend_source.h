@@ -28,7 +28,8 @@ namespace chronormal::inline internal {
 /// the number of the part, and the number of the vertex in this part.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// A function that writes the weights of the targets that are involved in a motion, at position t of a segment.
+/// A function that writes the weights of the involved targets at both ends that are involved in a motion, at position t
+/// of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
 /// A function that returns the weight or the time by which messages name position t of a segment.
 using Moment = std::function<double(std::size_t segment, double t)>;
@@ -99,7 +100,7 @@ class BlendSource {
   MeshSkin* skin_;
   std::vector<AffineTransform> carriers_;  // the transform of each output by the skin; empty if there is no skin
   std::size_t placed_ = 0;
-  // Deltas of each involved target; nullopt until they are needed.
+  // The deltas by which each involved target moves vertices of the part; nullopt until they are needed.
   std::vector<std::optional<std::vector<Delta>>> moved_;
   std::vector<ShownTurn> turns_;  // for each output, how the author's normal is rotated from the geometry's
   std::optional<SegmentEnds> ends_;

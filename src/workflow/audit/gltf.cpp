@@ -510,7 +510,7 @@ void audit_asked_poses(const MeshAudit& mesh, Audit& result) {
   add_poses(measure_poses(mesh, poses, mesh.standing, std::move(subject), result.subjects.size()), result);
 }
 
-// Counts the segments of all subjects.
+// Counts the segments of all subjects, for reports of progress.
 std::size_t count_segments(const GltfDocument& document, const AuditOptions& options, std::optional<std::size_t> only) {
   std::size_t total = 0;
   for (std::size_t m = 0; m < document.meshes().size(); ++m) {

@@ -41,7 +41,7 @@ template <class VertexAt>
 /// A vertex whose normal is judged, or a corner if its vertex has several normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
-  std::uint32_t face = 0, corner = 0;  ///< used by rules that need a face and a corner
+  std::uint32_t face = 0, corner = 0;  ///< the face and the corner that show the normal; not set by all callers
 };
 
 struct PartNormals {
@@ -108,8 +108,8 @@ class JudgedPart {
                            const Vec3d& normal) const;
 
   std::vector<std::uint32_t> vertices_, elements_;
-  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;  // vertices have their numbers in the part
-  // Elements and faces have their numbers in the part.
+  std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;  // the corners of each face, as indices in vertices_
+  // The faces around each element. Elements and faces are numbered as in the part.
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;
   // For each face of an element, the corner of the face that belongs to the element, by its number in the face. The
   // list is empty if faces are weighted by area.
@@ -120,7 +120,7 @@ class JudgedPart {
   bool keeps_faces_;                   // if false, each element computes the normals of its faces again
   std::vector<JudgedOutput> outputs_;
   std::span<const std::array<std::uint32_t, 2>> edges_;
-  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // the edges of the part alone, set if the part is small
+  std::vector<std::array<std::uint32_t, 2>> own_edges_;  // the edges at vertices with outputs; set if the part is small
   std::vector<std::uint32_t> output_of_;
 };
 

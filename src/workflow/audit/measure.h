@@ -123,7 +123,7 @@ void finish(Audit& result);
 struct PlacedPart {
   explicit PlacedPart(const JudgedPart& judged) : part(judged), positions(judged.vertices().size()) {}
 
-  /// Places the part at position t of a segment. Returns true if any position differs from the last call.
+  /// Places the part at position t of a segment. Returns true if any position has changed since the last call.
   template <class Source>
   bool place(Source& source, std::size_t segment, double t) {
     const bool differs = source.place(segment, t, positions);
@@ -174,7 +174,7 @@ void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of
                 MotionError& result) {
   double sum = 0, sum_of_squares = 0, worst = 0;  // copies of the members of `result`, so that they stay in registers
   std::size_t judged = 0;
-  std::array<std::uint32_t, kAuditFineBins> counts{};  // counts of at most kRange outputs
+  std::array<std::uint32_t, kAuditFineBins> counts{};  // the fine histogram of at most kRange outputs
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const JudgedOutput& output = outputs[i];
     double degrees = degrees_of(output, i);
@@ -379,7 +379,7 @@ template <class Source, class Segments, class EachSample>
       normals[k] = source.seen(from + k, placed.normals.faces[part.outputs()[from + k].face]);
   };
   RightOutputs right;
-  MotionError error;  // error of the last sample
+  MotionError error;  // the error at the sample that was placed last
   std::vector<float> each(kept.any() ? part.outputs().size() : 0);
   const Status measured = segments.over(subject, [&](std::size_t s) {
     SegmentErrors found{s, {}, {}};

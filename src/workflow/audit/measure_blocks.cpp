@@ -30,7 +30,7 @@ struct Block {
   IndexRange outputs, elements;
   // For each face of the block, the indices of its three vertices in the mesh.
   std::vector<std::uint32_t> corners;
-  std::vector<std::uint32_t> faces, face_ends;  // faces of each element, as numbered in the block
+  std::vector<std::uint32_t> faces, face_ends;  // the faces of each element, by their numbers in the block
 };
 
 std::vector<Block> make_blocks(const JudgedPart& part) {
@@ -83,7 +83,7 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
-  std::optional<std::size_t> keyframe;  // the keyframe of scratch.end
+  std::optional<std::size_t> keyframe;  // the keyframe whose normals scratch.end has
   for (const std::size_t s : segments) {
     const Segment segment = motion.segment(s);
     scratch.triangles.gather(segment.from, segment.to, block.corners);

@@ -37,7 +37,7 @@ class StoredSums {
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
   /// Writes the unit normals, rounded to float, that a viewer renders for the sums of outputs from number `first` on.
-  /// If a sum is zero, infinite or NaN, its normal is as well.
+  /// If a sum is zero, infinite or NaN, so is its normal.
   void shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
@@ -45,7 +45,7 @@ class StoredSums {
  private:
   // A group of neighbouring outputs, with a row of deltas for each target that changes any of their normals.
   struct Group {
-    std::vector<std::uint32_t> targets;  // indices in involved_, ascending
+    std::vector<std::uint32_t> targets;  // the targets of the rows, as ascending indices in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup), the deltas of the outputs in the group
   };
   static constexpr std::size_t kGroup = 64;
@@ -60,7 +60,7 @@ class StoredSums {
   std::vector<std::size_t> involved_;
   Viewer viewer_;
   std::vector<Vec3f> kept_normals_;  // one for each output; empty if the viewer uses the normals as stored
-  std::vector<Group> groups_;        // empty until the first sum
+  std::vector<Group> groups_;        // empty until add_up() is called
   std::vector<std::vector<double>> sets_;
   std::size_t stride_;       // number of floats for one set of weights, rounded up to whole groups
   std::vector<float> sums_;  // (sets, stride), the sums for each set of weights

@@ -79,7 +79,7 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     std::vector<double> now(now_[h].size());
     weights_[h](sample.segment, sample.t, now);
-    is_judged[h] = is_still && now == now_[h];  // the result of the previous sample still holds
+    is_judged[h] = is_still && now == now_[h];  // true if the error at the last sample is also the error at this sample
     now_[h] = std::move(now);
   }
   placed_ = source.placed();

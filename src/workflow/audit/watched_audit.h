@@ -48,11 +48,11 @@ using AuditShard = ShardOf<Audit, SegmentErrors>;
 
 /// A judged sample of a subject. Spans and references are valid during the call.
 struct AuditSample {
-  std::size_t subject_index = 0;  ///< the index that it will have in Audit::subjects
+  std::size_t subject_index = 0;  ///< the index that the subject will have in Audit::subjects
   const AuditSubject& subject;    ///< the subject, before its errors are known
   std::size_t segment = 0;        ///< for a glTF file, the index in the subject; otherwise in the motion
-  double t = 0;                   ///< position in the segment, from 0 to 1
-  double at = 0;                  ///< the weight, or the time in seconds
+  double t = 0;                   ///< the position of the sample in the segment, from 0 to 1
+  double at = 0;                  ///< the weight, or the time in seconds, as messages name it
   const JudgedPart& part;
   std::span<const double> largest;  ///< for each element of the part, the length of its largest control normal
   const MotionError& error;

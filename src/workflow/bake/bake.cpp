@@ -126,7 +126,7 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
 
 // Functions that compute the arrays of a mesh for one target at a time, so that few arrays are in memory together.
 struct MeshDeltas {
-  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target stays as it is
+  std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target keeps its deltas
   std::function<TargetDeltas(std::size_t extra)> extra;
   GrownMesh grown;
   bool is_new = true;  // false if the mesh stays as it is
@@ -156,7 +156,7 @@ MeshDeltas chosen_deltas(const DeltaSource& source, const MeshWeights& weights, 
           changes(source.shading, *candidate)};
 }
 
-// Estimates the bytes of new tangents.
+// Estimates the bytes that the deltas of new tangents take in the file.
 std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>& is_stale) {
   std::size_t bytes = 0;
   const SharedParts parts(source.shading);

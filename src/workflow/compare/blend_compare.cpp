@@ -331,7 +331,7 @@ void measure_random(BlendMeter& meter, const Subject& subject, const std::vector
     const std::vector<double> others =
         random_rows(subject, own, fitted_rows(options.rows, own.size()), active, ~options.seed);
     result.errors.push_back(meter.measure(rows, others, progress));
-    result.errors.back().active = active;  // without correction targets
+    result.errors.back().active = active;  // the number of active targets, without correction targets
   }
 }
 

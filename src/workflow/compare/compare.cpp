@@ -54,7 +54,7 @@ double median(std::vector<float> values) {
 
 // The results of one scheme on one block, or on all blocks of a segment so far.
 struct Tally : SchemeTally {
-  std::vector<Quality> samples;                // errors of a block, if samples are kept
+  std::vector<Quality> samples;                // the errors at each sample; set only if samples are kept
   std::vector<float> prepare_ns, evaluate_ns;  // nanoseconds per element, one value for each block
 
   void add(const Tally& other) {
@@ -206,7 +206,8 @@ class Elements {
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;
   std::vector<std::uint32_t> large_;           // for groups: faces with more than many_corners_ corners
   std::map<std::size_t, SharedFaces> shared_;  // only for groups: control normals of faces for exact sums, by segment
-  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;  // by segment: areas of large_ at each sample
+  // By segment: the areas of the faces in large_ at each sample.
+  std::map<std::size_t, std::vector<ReferenceArea>> of_large_;
   double shared_ns_ = 0;
 };
 

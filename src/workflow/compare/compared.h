@@ -15,7 +15,7 @@ namespace chronormal::inline internal {
 struct SchemeTally {
   Quality quality;
   std::size_t fallbacks = 0, flagged = 0;
-  double bytes = 0;  ///< the bytes of all elements together
+  double bytes = 0;  ///< the bytes that the scheme keeps for all elements together
   CertifiedError certified = {};
 };
 

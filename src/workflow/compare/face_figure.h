@@ -35,8 +35,8 @@ struct FaceFigureOptions {
 struct SchemeFigure {
   std::string scheme;
   double sum = 0;               ///< the sum of the angles in radians, q of the paper
-  std::vector<Vec3d> normals;   ///< (S) unit vectors, or zero
-  std::vector<double> angles;   ///< (S) radians; NaN if the exact normal or this normal is zero
+  std::vector<Vec3d> normals;   ///< (S) the normals that the scheme computes: unit vectors, or zero
+  std::vector<double> angles;   ///< (S) radians: the angles to the exact normals; NaN if one of the two normals is zero
   std::vector<double> lengths;  ///< (S) lengths before normalization; empty if the length is always 1
   /// The steps of de Casteljau's algorithm. `nodes` has the exact normals with which the algorithm begins, (K).
   /// `points` has the points that the algorithm computes at each sample: K - 1 of the first level, K - 2 of the second,

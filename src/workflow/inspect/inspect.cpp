@@ -245,7 +245,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    // Both sides have a normal, so the collapse is not at an end.
+    // If there are normals before and after the collapse, it is not at an end of the segment.
     return each.before != Vec3d{} && each.after != Vec3d{};
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);

@@ -63,7 +63,7 @@ Inspected inspect_input(const Motion& motion, std::string name) {
   Inspected result;
   result.motion_name = std::move(name);
   MotionStream stream(motion);
-  (void)inspect_keyframes(stream, {}, result);  // a stream of a motion in memory cannot fail
+  (void)inspect_keyframes(stream, {}, result);  // reading a motion that is in memory cannot fail
   return result;
 }
 

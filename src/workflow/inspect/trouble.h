@@ -16,8 +16,8 @@ struct Trouble {
   std::string kind;  ///< a name for programs, such as "no_area_at_keyframe"
   std::size_t count = 0;
   std::string what;     ///< the problem, such as "2 faces have no area at a keyframe"
-  std::string where;    ///< the first place, or empty
-  std::string meaning;  ///< the consequences for normals
+  std::string where;    ///< the first place with the problem, or empty
+  std::string meaning;  ///< the consequences of the problem for normals
 };
 
 /// Lists all problems of an input, the worst problem first.

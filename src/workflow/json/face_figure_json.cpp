@@ -11,7 +11,7 @@ namespace {
 Json rounded(double value) {
   constexpr double kDigits = 1e7;
   if (!std::isfinite(value)) return {};
-  return std::round(value * kDigits) / kDigits + 0.0;  // turns -0 into 0
+  return std::round(value * kDigits) / kDigits + 0.0;  // the sum turns -0 into 0
 }
 
 Json flat(std::span<const Vec3d> vectors) {

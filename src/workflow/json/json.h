@@ -30,7 +30,7 @@ namespace chronormal::inline internal {
 struct NamedComparison {
   std::string name;
   Comparison comparison;
-  TargetNames targets = {};  ///< set if the motion is a set of targets
+  TargetNames targets = {};  ///< the names of targets; set if the motion consists of targets
 };
 
 /// Returns the text of comparisons. If several is true, writes a list of inputs even if there is only one input. If

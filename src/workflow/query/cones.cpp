@@ -17,7 +17,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kMostTriangles = 512;  // the limit of meshoptimizer for a meshlet
+constexpr std::size_t kMostTriangles = 512;  // the largest number that meshoptimizer allows for a meshlet
 // A weight from 0 to 1. The larger it is, the more meshoptimizer prefers meshlets whose faces point in similar
 // directions, since these are culled more often.
 constexpr float kConeWeight = 0.5F;

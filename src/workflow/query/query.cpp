@@ -79,7 +79,7 @@ std::uint64_t bytes_of_query(const QueryAnswer& answer) noexcept {
 }
 
 std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept {
-  constexpr std::uint64_t kLongestNumber = 25;  // the longest text, as in "-1.2345678901234567e-300,"
+  constexpr std::uint64_t kLongestNumber = 25;  // the bytes of the longest text, as in "-1.2345678901234567e-300,"
   std::uint64_t numbers = 0;
   for (const QueryTable& table : answer.tables) {
     for (const QueryColumn& column : table.columns) numbers += std::uint64_t{column.rows()} * column.width;

@@ -20,7 +20,7 @@ namespace {
 // parts.
 struct Means {
   std::vector<ShutterNormal> normals;
-  std::vector<Vec3d> from, to;  // unit normals at the beginning and the end
+  std::vector<Vec3d> from, to;  // unit normals at the beginning and the end of the parts
   std::vector<NormalCone> cones;
 };
 

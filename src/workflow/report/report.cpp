@@ -151,7 +151,8 @@ std::string write_within(const std::string& head, ReportModel& model, const Repo
   for (double share = kShare;; share *= kShare) {
     model = whole;
     const double most = share * static_cast<double>(room) / per_byte;
-    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));  // bytes of the JSON
+    // The bytes that are not in arrays.
+    const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));
     thin_out(model, static_cast<std::size_t>(std::max(0.0, most - static_cast<double>(beside))));
     std::string thinned = write_container(head, model);
     if (share < kLeastShare || page_bytes(gzipped(thinned).size(), options) <= options.most_bytes) return thinned;

@@ -49,7 +49,7 @@ struct ReportOptions {
   std::vector<Viewer> viewers = {};         ///< the viewers of glTF files that the page shows besides the specification
   bool plan = true;                         ///< for a glTF file, adds the plan: the candidates of bake for each mesh
   std::size_t most_bytes = kMostReportBytes;
-  std::size_t template_bytes = 0;  ///< the size of the page without the report, in bytes
+  std::size_t template_bytes = 0;  ///< bytes: the size of the template of the page
   /// A function that is called with the current step ("auditing", "comparing", "planning") and its progress.
   std::function<void(std::string_view what, std::size_t done, std::size_t total)> progress = {};
 };
@@ -72,9 +72,9 @@ struct ReportPart {
 
 struct Report {
   std::string input;  ///< the name of the input without folders
-  Audit audit;        ///< errors of the input; for a glTF file, with all viewers
+  Audit audit;        ///< the errors of the input; for a glTF file, also those in all viewers
   std::optional<GltfBake> plan;
-  std::string plan_message;                   ///< why a requested plan is missing
+  std::string plan_message;                   ///< the reason why a requested plan is missing
   std::optional<NamedComparison> comparison;  ///< the errors of schemes at vertices, unless the input is a glTF file
   std::vector<ReportPart> parts;
   std::vector<ReportPlace> worst;    ///< the worst places, the largest error first

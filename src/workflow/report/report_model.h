@@ -42,7 +42,7 @@ struct ModelShown {
   std::vector<std::string> viewers;
   bool keeps_halves = false;
   double least_weight = 0;
-  std::vector<float> normals;         ///< (V, 3)
+  std::vector<float> normals;         ///< (V, 3) the base normals
   std::vector<ModelVectors> targets;  ///< deltas of each target
 };
 
@@ -50,7 +50,8 @@ struct ModelShown {
 /// frame that moves with the surface (truth/offset_frame.h).
 struct ModelOffset {
   std::uint32_t element = 0;
-  bool is_other_side = false;                  ///< true if the author shows the side opposite to the sum
+  /// True if the author shows the side opposite to the sum of face normals.
+  bool is_other_side = false;
   std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: each edge leads from the element to a neighbour
   std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
   /// The directions z and x of the base (truth/offset_frame.h), if there is no reference.
@@ -82,12 +83,12 @@ struct ModelTruth {
 /// listed.
 struct ModelWeights {
   std::vector<std::string> viewers;
-  std::vector<std::uint32_t> targets;  ///< (n), in ascending order
+  std::vector<std::uint32_t> targets;  ///< (n) the indices of the targets, in ascending order
   std::vector<float> values;
 };
 
 struct ModelMotion {
-  AuditSubject subject;  ///< without errors
+  AuditSubject subject;  ///< the subject of the audit, without its errors
   std::size_t subject_index = 0;
   std::vector<double> at;               ///< (S) the weight, or the time in seconds
   std::vector<std::uint32_t> segments;  ///< (S) the segment of each sample; empty for glTF

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-constexpr std::size_t kNumber = 4;  // bytes of a float or an index
+constexpr std::size_t kNumber = 4;  // the number of bytes of a float or an index
 
 std::size_t bytes_of(const ModelVectors& vectors) {
   return kNumber * vectors.vertices.size() + kNumber * vectors.values.size();

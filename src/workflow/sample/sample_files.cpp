@@ -166,10 +166,10 @@ class ArrayFile {
     return binary::bytes_of(values, std::endian::little, storage_);
   }
 
-  std::unique_ptr<OutputFile> file_;  // on the heap, because npz_ keeps the address of the file
+  std::unique_ptr<OutputFile> file_;  // on the heap, because npz_ keeps its address
   std::optional<NpzOutput> npz_;
   std::size_t normals_ = 0, positions_ = 0;  // the indices of arrays in npz_
-  Origin origin_ = {};                       // the origin of the positions
+  Origin origin_ = {};                       // the origin to which the positions are relative
   std::optional<std::uint64_t> at_;          // the offset of the next row in the .npy file that all peers share
   std::uint32_t checksum_ = 0;               // the checksum of all bytes so far of a .npy file that no peers share
   std::string storage_;
@@ -186,7 +186,7 @@ struct EmptyPartial {
     if (!name.empty() && journal->is_empty()) std::filesystem::remove(path_of(name), ignored);
   }
 
-  std::string name;  // empty if there is no partial output
+  std::string name;  // the path of the partial output; empty if there is none
   const Journal* journal = nullptr;
 };
 

@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlock = 1024;                // the number of elements in a block
-constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; so small that the sine equals the angle
+constexpr double kTells = 0.1 / kDegreesPerRadian;  // radians; for such small angles the sine equals the angle
 constexpr double kClear = 2.0 / 3;
 constexpr double kFollows = 1;  // degrees: the largest distance of a weighting that the author may have used
 

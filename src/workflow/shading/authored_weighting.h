@@ -42,8 +42,8 @@ struct StoredNormal {
 struct WeightingDistance {
   std::size_t count = 0;  ///< the number of stored normals whose element has a normal
   double sum = 0, worst = 0;
-  std::uint32_t worst_at = 0;  ///< the vertex with the largest distance
-  double of_telling = 0;       ///< the median over the normals at which weightings differ
+  std::uint32_t worst_at = 0;  ///< the vertex with the largest angle
+  double of_telling = 0;       ///< the median angle at the normals that tell weightings apart
 
   [[nodiscard]] double mean() const noexcept { return count > 0 ? sum / static_cast<double>(count) : 0; }
 };

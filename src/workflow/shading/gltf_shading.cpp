@@ -210,7 +210,7 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
 // Groups vertices into points. The vertices of a point may share a normal.
 Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
                               GltfShading& shading) {
-  Motion base;  // gets the arrays of `shading` temporarily
+  Motion base;  // the mesh at rest; borrows the arrays of `shading` until the end
   base.topology = std::move(shading.set.topology);
   base.keyframes.push_back({std::move(shading.set.base), 0, ""});
   Points points = separate_points(has_normal.size());

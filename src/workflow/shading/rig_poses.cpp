@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 10> kEyes = {"eye",  "eyes", "brow",  "br
 enum class Side { kNone, kLeft, kRight };
 
 struct Name {
-  std::vector<std::string> words;  // in ascending order, without the words for a side
+  std::vector<std::string> words;  // the words of the name, sorted, without those for a side
   Side side = Side::kNone;
 };
 

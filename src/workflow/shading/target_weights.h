@@ -13,7 +13,7 @@
 
 namespace chronormal::inline internal {
 
-/// Weights of all targets, pose by pose.
+/// A list of poses. A pose has one weight for each target.
 using PoseList = std::vector<std::vector<double>>;
 
 /// The keys of a track, and how weights are interpolated between them. A cubic spline with one key stays constant.
@@ -70,7 +70,8 @@ class WeightUse {
   void note(std::size_t target, double weight, std::vector<std::size_t>& active);
 
   std::vector<double> lowest_, highest_;
-  std::vector<std::vector<std::size_t>> moments_;  // for each target, the moments when it is active, ascending
+  // For each target, the numbers of the moments at which it is active, ascending.
+  std::vector<std::vector<std::size_t>> moments_;
   std::size_t moment_count_ = 0;
   std::vector<std::size_t> last_;  // the argument of the last add_active()
   std::vector<std::vector<double>> poses_;

@@ -218,7 +218,7 @@ class Mending {
     Vec3d z0 = unit_sum(parts, base_);
     if (z0 == Vec3d{} && whole) return kNothingLeft;
     if (z0 == Vec3d{} || s0 == Vec3d{}) return 0;
-    const double side = dot(z0, s0) < 0 ? -1 : 1;  // 1 or -1, the side of the surface that the author shows
+    const double side = dot(z0, s0) < 0 ? -1 : 1;  // the side of the surface that the author shows
     z0 = side * z0;
     double worst = 0;
     bool any = false;

@@ -51,7 +51,7 @@ struct AuthorSum {
   }
 };
 
-/// Polygons that are rebuilt from triangles.
+/// The author's polygons, rebuilt from the triangles of the file.
 class Polygons {
  public:
   explicit Polygons(const Topology& triangles);

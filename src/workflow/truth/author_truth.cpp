@@ -259,7 +259,7 @@ AuthorTruth::Pose AuthorTruth::pose_alone(std::size_t target, double weight) con
 }
 
 std::vector<std::uint32_t> AuthorTruth::elements_of(std::size_t target) const {
-  if (target >= shading_->set.targets.size()) return {};  // a bake added the target
+  if (target >= shading_->set.targets.size()) return {};  // the target is not in the author's mesh; a bake added it
   std::vector<bool> moves(shading_->element_of_vertex.size());
   for (const std::uint32_t v : shading_->set.targets[target].vertices) moves[v] = true;
   std::vector<bool> turns = sums_.elements_around(moves);

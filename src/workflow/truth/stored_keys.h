@@ -44,7 +44,7 @@ class StoredKey {
   };
   const GltfShading* shading_;
   std::vector<float> moved_;  // all positions; empty if they are equal to those of the base
-  std::vector<Part> parts_;   // the target and the correction targets that follow it
+  std::vector<Part> parts_;   // the deltas of the target, and of the correction targets that follow it
 };
 
 /// Lists the targets whose stored normals are the author's, in ascending order. The list is empty if an earlier bake

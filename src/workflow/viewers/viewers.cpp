@@ -97,7 +97,7 @@ Vec3d through_frame(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const Vec3d x = first_axis(v), y = cross(v, x);
   const double m[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {v.x, v.y, v.z}};
-  std::array<double, 4> q{};  // in the order x, y, z, w
+  std::array<double, 4> q{};  // the quaternion, in the order x, y, z, w
   const double trace = m[0][0] + m[1][1] + m[2][2];
   if (trace > 0) {
     const double root = std::sqrt(trace + 1), s = 0.5 / root;

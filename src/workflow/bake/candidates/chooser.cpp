@@ -167,7 +167,8 @@ class Chooser {
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    if (options_.most_delta_bytes) return room(most_bytes()) + 1;  // if one more is too large, fewer are tried
+    // If the additional target does not fit, fewer are tried.
+    if (options_.most_delta_bytes) return room(most_bytes()) + 1;
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
   // Returns true if the best candidate is accurate enough and has at most this many bytes, so that no other candidate

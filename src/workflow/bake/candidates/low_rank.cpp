@@ -88,7 +88,7 @@ struct LowRankLimits {
 
 // The instants to which a fit is made.
 struct Rows {
-  std::vector<std::size_t> instants;  // their indices, ascending
+  std::vector<std::size_t> instants;  // the indices of these instants in FileInstants, ascending
   std::vector<PlaceOfRows> places;    // instants half-way between neighbouring nodes of a piece
   std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };

@@ -49,7 +49,7 @@ struct Making {
   const Judge& judge;
   std::span<const Viewer> viewers;  ///< the viewers in which the candidate should be right
   Lengths lengths = Lengths::kFree;
-  double tolerance = 0;  ///< in degrees
+  double tolerance = 0;  ///< degrees: the largest error that the candidate should have
   std::size_t most_extras = 0;
   bool animations_only = false;
   /// If true, correction targets have only deltas across N, because some viewers keep no lengths.

@@ -75,7 +75,7 @@ struct Products {
   std::size_t left_out = 0;
 };
 
-// The vertices that show each element, as lists.
+// A list for each element, with the vertices that show this element.
 class VerticesOfElements {
  public:
   explicit VerticesOfElements(const GltfShading& shading) : first_(shading.groups.size() + 1) {
@@ -375,7 +375,7 @@ std::vector<Pair> active_pairs(std::size_t all_targets, const PoseList& poses) {
 
 // The angles by which a correction target turns normals.
 struct Worth {
-  double squares = 0;  // squares of angles, added up over vertices and poses
+  double squares = 0;  // the sum of squared angles over vertices and poses
   double worst = 0;    // the largest angle in degrees
 };
 
@@ -463,7 +463,7 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
 }
 
 // Adds correction targets for some poses. Only vertices that need corrections get deltas; `worst` has the error of each
-// vertex in degrees.
+// vertex degrees: the largest error that should be left.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {

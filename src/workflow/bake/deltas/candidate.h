@@ -19,7 +19,7 @@
 namespace chronormal::inline internal {
 
 struct Candidate {
-  std::string_view name;              ///< the name, as in BakedCandidate::name
+  std::string_view name;              ///< the name of the candidate, as in BakedCandidate::name
   std::vector<VertexVectors> own;     ///< deltas of each target of the mesh, for all vertices that show a normal
   std::vector<VertexVectors> extras;  ///< deltas of each correction target
   ExtraDrivers drivers;               ///< the data that drive the correction targets

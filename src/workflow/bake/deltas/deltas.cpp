@@ -16,8 +16,8 @@ constexpr std::size_t kDeltasBlock = 1024;
 // The length of the shortest stored base normal that can get deltas. A stored normal should have length 1, and no
 // viewer renders shorter normals than this right.
 constexpr double kShortest = 1e-3;
-// The length of the longest stored normal that stays as it is. If deltas are up to 1e6 times as long, float32 can still
-// hold the square of the sum and the inverse of this square.
+// The length of the longest stored normal that stays as it is. If the deltas of such a normal are up to 1e6 times as
+// long, float32 can still hold the squared length of the sum, and the inverse of this square.
 constexpr double kLongestStored = 1e10;
 
 Vec3d stored_normal(std::span<const float> normals, std::size_t vertex) {

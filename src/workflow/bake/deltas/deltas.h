@@ -22,7 +22,7 @@ struct DeltaSource {
   const GltfShading& shading;
   const NormalTerms& terms;
   const MeshPlan& plan;
-  std::span<const float> base_normals;  ///< (V, 3), as the file will store them
+  std::span<const float> base_normals;  ///< (V, 3), the base normals that the file will store
 };
 
 /// The base normals of a mesh after some of them were replaced.
@@ -49,7 +49,7 @@ struct BaseFaults {
 
 /// The deltas that one target adds to the normals of a mesh, as arrays for the file.
 struct TargetDeltas {
-  /// (vertices, 3) for each part. The list is empty if no normal changes.
+  /// The deltas of each part, (vertices, 3). An array is empty if no normal of its part changes.
   std::vector<std::vector<float>> of_parts;
   double error = 0;  ///< radians: a bound of the error of normals that is left at the weights of the file
 };

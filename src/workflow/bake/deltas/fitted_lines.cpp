@@ -59,7 +59,7 @@ Vec3d direction(const Rounded& r) {
 // An element, its active targets, and their deltas.
 struct Element {
   std::uint32_t index = 0;
-  Vec3d base;  // n(0) with length 1, or zero
+  Vec3d base;  // n(0) of the element with length 1, or zero
   std::vector<std::uint32_t> targets;
   std::vector<Vec3d> deltas;
 
@@ -252,7 +252,7 @@ class Together {
   }
 
   const NormalTerms& terms_;
-  std::vector<std::size_t> active_;                     // the active targets
+  std::vector<std::size_t> active_;                     // the targets that have a weight in some pose
   std::vector<std::vector<std::uint32_t>> targets_of_;  // for each element, its active targets
   std::vector<std::size_t> place_;                      // for each target, its index in active_
   std::vector<bool> pairs_;  // (active, active), below the diagonal: true if both are active together

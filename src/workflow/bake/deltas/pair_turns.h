@@ -56,7 +56,7 @@ class PosedNormals {
   const NormalTerms& terms_;
   const PoseList& poses_;
   std::size_t chunk_, first_ = 0;
-  std::vector<Normal> normals_;  // (elements, poses), of the elements from first_ on
+  std::vector<Normal> normals_;  // (elements, poses), the normals of the elements from first_ on
 };
 
 class PairMeter {

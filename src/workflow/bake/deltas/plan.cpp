@@ -52,7 +52,7 @@ bool products_fit(const MeshUse& mesh) {
 // The poses in which pairs are measured.
 struct Poses {
   std::vector<std::vector<double>> weights;
-  bool are_all = false;  // true if the file has no other poses
+  bool are_all = false;  // true if these are all poses of the file
 };
 
 std::vector<bool> shown_elements(const GltfShading& shading) {

@@ -55,7 +55,7 @@ Vec3d RightNormals::stored(std::size_t vertex) const noexcept {
 
 bool RightNormals::is_judged(std::uint32_t element, const Vec3d& normal) const noexcept {
   const double least = kLeastTerms * std::max(base_lengths_[element], largest_[element]);
-  return max_abs(normal) > least || length(normal) > least;  // the first test decides for most normals
+  return max_abs(normal) > least || length(normal) > least;  // the first test is faster, and decides for most normals
 }
 
 std::vector<Vec3d> RightNormals::normals_of(std::span<const double> pose,

@@ -98,7 +98,7 @@ class RightNormals {
   std::vector<Vec3d> base_;           // n(0) of each element; kept, since it is often needed
   std::vector<double> base_lengths_;  // lengths of base_
   std::vector<std::uint32_t> all_elements_;
-  std::vector<ShownTurn> turns_;  // the author's rotation, for each vertex
+  std::vector<ShownTurn> turns_;  // for each vertex, the rotation from n(0) to the stored normal
 };
 
 }  // namespace chronormal::inline internal

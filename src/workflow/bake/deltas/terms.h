@@ -87,7 +87,7 @@ class NormalTerms {
   BlendTerms by_area_;
   std::vector<Vec3d> base_;  // set if the truth is fitted, or if the list takes little memory
   std::vector<Fit> fits_;
-  mutable PoseMemory sampled_{kMostSampledBytes};  // stored normals of all elements
+  mutable PoseMemory sampled_{kMostSampledBytes};  // the true normals of all elements in some poses
 };
 
 /// A term whose values are computed or looked up when they are needed. Threads: const functions may run at once.
@@ -116,8 +116,8 @@ class NormalTerms::Term {
 /// nearly zero, this division is impossible. The terms then become so long that N hardly matters in the sum.
 class VertexTerms {
  public:
-  /// Creates the map. base is n(0) of the element, `largest` the length of its largest term, and stored the stored
-  /// normal of the vertex.
+  /// Creates the map. `base` is n(0) of the element, `largest` is the length of its largest term, and `stored` is the
+  /// normal that the file stores for the vertex.
   VertexTerms(const Vec3d& base, double largest, const Vec3d& stored) noexcept;
 
   [[nodiscard]] static bool has_base(const Vec3d& base, double largest) noexcept {
@@ -139,7 +139,7 @@ class VertexTerms {
 
   [[nodiscard]] Vec3d turn(const Vec3d& v) const noexcept;
 
-  Vec3d base_, stored_;  // unit vectors, or zero
+  Vec3d base_, stored_;  // the directions of n(0) and N as unit vectors, or zero
   double length_ = 1, scale_ = 0, side_ = 1;
 };
 

@@ -12,7 +12,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr int kDirections = 16;
-constexpr int kSteps = 24;                 // steps of a bisection, which finds a point to 1e-7 of the arc
+constexpr int kSteps = 24;                 // the steps of a bisection, which finds a point to 1e-7 of an arc
 constexpr double kShortestSum = 1.0 / 16;  // the shortest sum; rounding turns shorter ones too far
 
 // The largest component that fits. It is slightly below 1, since differences are rounded to float32.

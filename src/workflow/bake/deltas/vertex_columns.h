@@ -28,7 +28,7 @@ struct VertexColumns {
 
     friend bool operator==(const Entry&, const Entry&) = default;
   };
-  std::vector<std::size_t> first;  ///< (n + 1), the first entry of each vertex
+  std::vector<std::size_t> first;  ///< (n + 1), for each vertex the index of its first entry
   std::vector<Entry> entries;
 
   [[nodiscard]] std::span<const Entry> of(std::size_t n) const {

@@ -25,8 +25,8 @@ class LowRankFit {
   /// fitted. All arguments must outlive this object.
   LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
-  /// Returns an error in degrees for each of these numbers of correction targets, if singular vectors alone are used.
-  /// 99.9 % of the samples do not exceed this error. It is measured at some of the points and rows.
+  /// Returns for each of these numbers of correction targets the error, in degrees, that 99.9 % of the samples do not
+  /// exceed if singular vectors alone are used. Measures the errors at some of the points and rows.
   [[nodiscard]] std::vector<double> errors_with(std::span<const std::size_t> extras);
 
   /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get a fit of their own. If
@@ -37,7 +37,7 @@ class LowRankFit {
   [[nodiscard]] std::size_t padded() const noexcept { return padded_; }
   /// Returns the weights of the correction targets, (rows, padded).
   [[nodiscard]] std::span<const float> weights() const noexcept { return weights_; }
-  /// Returns the deltas of a point, (3, padded).
+  /// Returns the deltas of all correction targets for a point, (3, padded).
   [[nodiscard]] std::span<const float> deltas(std::size_t point) const {
     return std::span(deltas_).subspan(3 * padded_ * point, 3 * padded_);
   }

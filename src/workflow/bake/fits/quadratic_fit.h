@@ -73,7 +73,7 @@ class QuadraticFit {
   std::size_t extras_ = 0, padded_ = 0;
   std::vector<PointVertices> points_;
   MissingNormals missing_;
-  std::vector<float> importance_;  // one for each point
+  std::vector<float> importance_;  // for each point, the factor by which it counts in the fit
   std::vector<Feature> features_;
   std::vector<double> terms_;   // (features, extras), the factors of all features
   std::vector<float> weights_;  // (rows, padded), the weights in the poses of the fit

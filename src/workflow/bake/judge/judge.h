@@ -95,8 +95,8 @@ class Judge {
 
   // The differences between rendered and right unit normals, for all vertices of a set in all its poses.
   struct Differences {
-    std::vector<float> planes;   // (vertices, 3, poses), x, y and z in planes
-    std::vector<float> largest;  // (vertices), the largest length of a difference
+    std::vector<float> planes;   // (vertices, 3, poses), the differences as planes of x, y and z
+    std::vector<float> largest;  // (vertices), the length of the largest difference of each vertex
     std::size_t poses = 0;
   };
 
@@ -111,7 +111,7 @@ class Judge {
   std::size_t named_;
   std::vector<std::uint32_t> vertices_;
   std::vector<KnownSet> sets_;
-  mutable Differences differences_;  // memory that each measurement uses again
+  mutable Differences differences_;  // kept, so that each measurement uses the same memory
 };
 
 }  // namespace chronormal::inline internal

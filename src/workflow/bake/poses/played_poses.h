@@ -26,7 +26,7 @@ struct PlayedPose {
 
   SeenPose seen;  ///< the weights of the mesh's own targets, and the skin
   std::size_t track = kNone;
-  double time = 0;  ///< the time on the track, in seconds
+  double time = 0;  ///< seconds: the time of the pose on the track
   std::size_t standing = kNone;
 };
 

@@ -42,7 +42,7 @@ class PoseMemory {
  private:
   mutable std::mutex mutex_;
   std::map<std::vector<double>, std::vector<Vec3d>> kept_;
-  std::size_t room_;  // bytes that are left
+  std::size_t room_;  // the number of bytes that may still be stored
 };
 
 }  // namespace chronormal::inline internal

@@ -36,7 +36,7 @@ struct SeenPose {
 /// once.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
-/// The skins of some poses. The joints of each skin stand as in its pose.
+/// The skins of some poses, one for each pose. The joints of a skin stand as in its pose.
 class SkinsInPoses {
  public:
   explicit SkinsInPoses(std::span<const SeenPose> poses);

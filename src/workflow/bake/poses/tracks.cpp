@@ -204,7 +204,7 @@ class TrackExtender {
   const WeightTrack& track_;
   std::span<const ExtraWeight> extras_;
   double tolerance_;
-  std::size_t most_keys_, keys_ = 1;  // the number of keys, with the first
+  std::size_t most_keys_, keys_ = 1;  // keys_: the number of keys so far, including the first
   Spline spline_;
   std::vector<Cubic> pieces_;
   double error_ = 0;

@@ -39,7 +39,7 @@ struct ExtraWeight {
 
 struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
-  std::vector<float> times;   ///< in seconds; empty if the times do not change
+  std::vector<float> times;   ///< the times of the keys in seconds; empty if they stay as they are
   std::vector<float> values;  ///< weights of the track's targets and of correction targets, in the order of the file
   /// Radians: a bound of the angle by which errors of weights turn a normal; pi if float32 cannot hold a number.
   double error = 0;

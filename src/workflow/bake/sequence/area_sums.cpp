@@ -81,7 +81,7 @@ void AreaSums::each_block(const PointRows& a, const PointRows* b, const Exact& o
                           const Body& body) const {
   const std::array<const PointRows*, 2> points = {&a, b};
   const std::array<const Exact*, 2> exact = {&of_a, &of_b};
-  std::array<AlignedArray<double>, 2> all;  // areas of all faces, for the points a and b
+  std::array<AlignedArray<double>, 2> all;  // the areas of all faces, for the points a and for the points b
   for (std::size_t k = 0; k < points.size() && are_scattered_; ++k) {
     if (points[k] == nullptr) continue;
     all[k] = AlignedArray<double>(kAreaRow * topology_->face_count());

@@ -18,7 +18,7 @@ inline constexpr Vec3d kAnyNormal{0, 0, 1};
 
 /// The data of one element that follow from the whole sequence.
 struct SequenceElement {
-  Vec3d normal;             ///< N, a unit vector in float32
+  Vec3d normal;             ///< N, the base normal: a unit vector in float32
   double scale = 1;         ///< the number by which the element's normals are divided
   bool frees_base = false;  ///< if true, N is not the element's normal at key 0, so key 0 needs a target
   bool has_none = true;     ///< true if the element has no normal at any time of the sequence

@@ -117,7 +117,8 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
     const double from = times[k], length = double{times[k + 1]} - from;
     for (std::size_t piece = 1; piece < kBendPieces; ++piece) {
       const auto time = static_cast<float>(from + length * static_cast<double>(piece) / kBendPieces);
-      if (!(time > track.times.back() && time < times[k + 1])) continue;  // float32 has no time between these two keys
+      // Skips the key if float32 has no time for it between its neighbours.
+      if (!(time > track.times.back() && time < times[k + 1])) continue;
       add(time, {k, (double{time} - from) / length});
     }
   }

@@ -44,11 +44,11 @@ struct SequenceTargets {
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
-  std::vector<std::uint32_t> vertex;   ///< for each vertex, its vertex in the motion
+  std::vector<std::uint32_t> vertex;   ///< for each vertex of the file, its vertex in the motion
   std::vector<std::uint32_t> element;  ///< for each vertex, the element whose normal it shows; kNone if it has no face
-  std::vector<std::uint32_t> of_corner;  ///< for each corner of the motion, its vertex
+  std::vector<std::uint32_t> of_corner;  ///< for each corner of the motion, its vertex in the file
 
-  bool are_of_motion = false;  ///< true if there are no copies
+  bool are_of_motion = false;  ///< true if the vertices are those of the motion, without copies
   bool are_elements = false;   ///< true if vertex i shows element i, and there are no other elements
 
   [[nodiscard]] std::size_t size() const noexcept { return vertex.size(); }

@@ -67,7 +67,7 @@ Status SequenceNormals::check_deltas(std::size_t keys) const {
 }
 
 Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> deltas) {
-  constexpr std::size_t kTogether = 4096;  // deltas that are checked together without branches
+  constexpr std::size_t kTogether = 4096;  // the number of deltas that a loop without branches checks together
   for (std::size_t first = 0; first < deltas.size(); first += kTogether) {
     const std::span<const float> some = deltas.subspan(first, std::min(kTogether, deltas.size() - first));
     bool any_far = false;

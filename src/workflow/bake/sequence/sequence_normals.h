@@ -98,7 +98,7 @@ class SequenceNormals {
   AreaSums sums_;
   std::vector<float> base_;
   std::vector<std::vector<Vec3d>> fitted_keys_, fitted_bends_;
-  std::vector<ShownTurn> turns_;  // rotation of each element; empty if no stored normal differs
+  std::vector<ShownTurn> turns_;  // the rotation of each element; empty if no element is rotated
   std::vector<std::vector<double>> bounds_;
 };
 

@@ -102,7 +102,8 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
     const GltfPrimitive::Target& has = mesh_.primitives[p].targets[target];
-    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");  // other primitives have more targets
+    // A primitive may have fewer targets than others.
+    if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");
     if (attributes_[p].positions && !has.positions) edit_.set(pointer + "/POSITION", std::to_string(zeros_of(p)));
     if (deltas && is_shaded(p))
       edit_.set(pointer + "/NORMAL", std::to_string(deltas_of(p, *deltas)));

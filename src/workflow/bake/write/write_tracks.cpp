@@ -232,7 +232,7 @@ class TrackWriter {
   double tolerance_;
   GltfEdit& edit_;
   WrittenTracks written_;
-  std::map<std::size_t, std::size_t> place_of_mesh_;  // from the index of a mesh to its index in meshes_
+  std::map<std::size_t, std::size_t> place_of_mesh_;  // for the index of a mesh, its index in meshes_
   // The samplers that were written, by animation, keys of the track, and index of the mesh in meshes_.
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;
 };
