@@ -50,7 +50,7 @@ using AuditShard = ShardOf<Audit, SegmentErrors>;
 struct AuditSample {
   std::size_t subject_index = 0;  ///< the index that the subject will have in Audit::subjects
   const AuditSubject& subject;    ///< the subject, before its errors are known
-  std::size_t segment = 0;        ///< for a glTF file, the index in the subject; otherwise in the motion
+  std::size_t segment = 0;        ///< its index: in the subject for a glTF file, otherwise in the motion
   double t = 0;                   ///< the position of the sample in the segment, from 0 to 1
   double at = 0;                  ///< the weight, or the time in seconds, as messages name it
   const JudgedPart& part;

@@ -135,7 +135,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// The measurement of errors at rows of weights, one row after the other.
+// A meter of the errors of a subject's normals. It measures at one row of weights after the other.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)

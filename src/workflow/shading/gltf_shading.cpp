@@ -144,7 +144,7 @@ Points split_by_targets(Points points, const std::vector<BlendTarget>& targets) 
     };
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
     std::vector<std::uint32_t> classes = points.point_of_vertex;
-    std::size_t class_count = points.count;  // vertices of a class with equal deltas go to the same new class
+    std::size_t class_count = points.count;  // vertices of one class whose deltas are equal go to the same new class
     for (std::size_t n = 0; n < count; ++n) {
       if (n == 0 || key(order[n - 1]) < key(order[n])) ++class_count;
       classes[target.vertices[order[n]]] = static_cast<std::uint32_t>(class_count - 1);

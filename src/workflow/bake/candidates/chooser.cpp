@@ -155,8 +155,8 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // Returns the bytes that deltas may take. If the options give a tolerance or a limit, returns the limit; otherwise
-  // the bytes are in proportion to the file.
+  // Returns the number of bytes that deltas may take. If the options give a tolerance or a limit, returns the limit.
+  // Otherwise the number is in proportion to the size of the file.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
@@ -383,7 +383,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(20);
   if (chooser.is_found()) return;
   if (has_few_products(making, weights)) chooser.consider(products_candidate(making));
-  std::optional<Candidate> similar;  // a candidate similar to own deltas of any length, which are judged later
+  std::optional<Candidate> similar;  // if set, own deltas of any length are judged last
   if (!chooser.is_found() && making.lengths == Lengths::kShort && !has_unit(making.viewers)) {
     // Viewers that add deltas as stored render the true normals with deltas of any length. In many files, other viewers
     // render such deltas no worse than the file before the bake.

@@ -35,8 +35,8 @@ struct ChosenCandidate {
   std::vector<BakedCandidate> candidates;  ///< all candidates that were tried
 };
 
-/// Chooses a candidate of the encoding in the plan. tangent_bytes is the size of new tangents, which are added to every
-/// candidate.
+/// Chooses a candidate of the encoding in the plan. tangent_bytes is the number of bytes of new tangents, which is
+/// added to the size of every candidate.
 [[nodiscard]] ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights,
                                                const BakeOptions& options, std::size_t tangent_bytes);
 

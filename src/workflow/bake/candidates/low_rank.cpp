@@ -67,7 +67,7 @@ struct Share {
 
 // Properties of shares whose deltas are short, for viewers that limit the length of deltas.
 struct ShortShares {
-  bool are_units = false;   // N + E has the length of N, so that viewers that store directions keep E
+  bool are_units = false;   // if true, N + E has the length of N, so that viewers that store directions keep E
   bool keep_along = false;  // if true, keeps the part of E along N
 };
 
@@ -82,8 +82,8 @@ struct LowRank {
 struct LowRankLimits {
   std::size_t most_extras = 0;
   double tolerance = 0;       // degrees: correction targets are added until no sample has a larger error
-  bool keeps_across = false;  // correction targets correct only what is missing across N
-  bool refits_own = false;    // the deltas of own targets are fitted to the animations as well, and to nothing else
+  bool keeps_across = false;  // if true, correction targets correct only what is missing across N
+  bool refits_own = false;    // if true, own deltas are fitted to the animations too, and to nothing else
 };
 
 // The instants to which a fit is made.

@@ -48,7 +48,7 @@ constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
 constexpr double kLeastCorrection = 1e-5;
 // The error in radians below which a normal needs no correction.
 constexpr double kRight = 1e-5;
-// Limits for the lengths of n(w) that are stored, relative to n(0).
+// Limits for the length that a delta of any length gives the normal at weight 1, relative to n(0).
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 // The product of both weights of a pair drives its correction target. At unit lengths the product is multiplied by a
 // scale, so that its largest value in the file becomes kStrongest. The scale is at most kMostScale.

@@ -48,7 +48,7 @@ class QuadraticFit {
     std::vector<VertexVectors> vectors;  ///< deltas of any length
   };
   /// Returns the best `count` correction targets. count must be at most extras(). If keeps_lengths is false, only the
-  /// direction of the sum is fitted, and the length of the sum stays as it is.
+  /// direction of the sum of N and all deltas is fitted, and the length of this sum stays as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:

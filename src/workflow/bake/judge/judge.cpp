@@ -126,7 +126,7 @@ class Sums {
   }
 
   // Compares the sums with the right normals, which are given in three planes. Writes the angles between them in
-  // degrees, and the differences of the unit vectors as planes.
+  // degrees, and the differences of the unit vectors as planes. Returns the length of the largest difference.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});

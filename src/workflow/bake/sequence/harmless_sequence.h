@@ -44,9 +44,10 @@ struct SegmentEnds {
 
 /// The bends of a segment, if these reduce errors, and the largest angles between rendered and true normals.
 struct UnitBends {
-  std::vector<Vec3d> deltas;       ///< the deltas of elements; empty if bends help no element
-  double gain = 0;                 ///< radians: the reduction of the largest angle, added up over all elements
-  double error = 0, straight = 0;  ///< radians: the largest angle with these deltas, and with no bends
+  std::vector<Vec3d> deltas;  ///< the deltas of elements; empty if bends help no element
+  /// Radians: the sum over elements of the angle by which bends reduce the largest error.
+  double gain = 0;
+  double error = 0, straight = 0;  ///< radians: the largest error with these deltas, and without bends
 };
 [[nodiscard]] UnitBends unit_bends(std::span<const SequenceElement> elements, const SegmentForm& form,
                                    const SegmentEnds& ends);

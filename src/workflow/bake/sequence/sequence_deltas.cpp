@@ -157,7 +157,8 @@ Result<bool> each_exact_segment(const SequenceNormals& normals, std::span<const 
 // at keys are products of ratios.
 EndDeltas end_deltas(std::span<const SequenceElement> elements, const SegmentForm& form, std::span<const double> bounds,
                      const std::vector<Vec3d>& before) {
-  // The shortest and the longest length of a normal. Beyond these lengths, sums in float32 lose digits.
+  // The smallest and the largest length of N plus the delta of a key. Beyond these lengths, sums in float32 lose
+  // digits.
   constexpr double kShortest = 0x1p-10, kLongest = 0x1p16;
   EndDeltas result{before, 0};
   const auto fit = [&](std::size_t e, double& error) {
