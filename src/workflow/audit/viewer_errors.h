@@ -54,7 +54,7 @@ class ViewerErrors {
   std::vector<StoredSums> kept_;
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
   RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them
-  double size_ = 0;                         // diagonal of the box around the mesh
+  double size_ = 0;                         // the diagonal of the box around the mesh at rest
   std::optional<PlacedPart> elsewhere_;     // the part at weights other than the specified ones; empty until needed
   std::size_t placed_ = 0;                  // source.placed() at the last sample; 0 before the first
   std::vector<std::vector<double>> now_;    // for each viewer, the weights of the last sample

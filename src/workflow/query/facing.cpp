@@ -13,7 +13,7 @@
 namespace chronormal {
 namespace {
 
-// An interval of t. The beginning of the interval lies between two known numbers, and so does the end.
+// An interval of t. It begins between the two numbers in `from`, and ends between the two numbers in `to`.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
@@ -30,7 +30,7 @@ struct Found {
   std::size_t always_front = 0, always_back = 0;
 };
 
-// Shortens an interval to the part of it that lies in a part of a segment. Returns false if nothing is left.
+// Cuts off what lies outside of a part of a segment from an interval. Returns false if nothing is left.
 bool cut(Interval& when, const SegmentPart& part) {
   if (when.from[0] >= part.t1 || when.to[1] <= part.t0) return false;
   for (double& t : when.from) t = std::max(t, part.t0);
@@ -110,7 +110,7 @@ std::uint64_t bytes_of_fronts(const Found& found) {
   return kBytesPerFront * found.fronts.size() + kBytesPerSilhouette * found.silhouettes.size();
 }
 
-// The columns of an answer that have segments and times.
+// The columns of an answer that give for each row the segment and the interval of t.
 struct WhenColumns {
   std::vector<std::int64_t> segments;
   std::array<std::vector<double>, 4> ends;

@@ -75,7 +75,7 @@ struct Report {
   Audit audit;        ///< the errors of the input; for a glTF file, also those in all viewers
   std::optional<GltfBake> plan;
   std::string plan_message;                   ///< the reason why a requested plan is missing
-  std::optional<NamedComparison> comparison;  ///< the errors of schemes at vertices, unless the input is a glTF file
+  std::optional<NamedComparison> comparison;  ///< the comparison of schemes at vertices; not set for a glTF file
   std::vector<ReportPart> parts;
   std::vector<ReportPlace> worst;    ///< the worst places, the largest error first
   std::vector<std::string> thinned;  ///< describes the data that were left out, one sentence for each kind

@@ -274,9 +274,9 @@ std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   return result;
 }
 
-// Finds the x that minimizes |(I - u u^T) (shown + basis x)|^2 over the instants, where u is the right direction.
-// Instants with larger errors count more, and a ridge pulls x towards the singular vectors. Keeps the best x of all
-// rounds.
+// Fits the deltas x of one point. Minimizes the sum of |(I - u u^T) (shown + basis x)|^2 over the instants, where u is
+// the right direction. Instants with larger errors count more, and a ridge pulls x towards the singular vectors. Keeps
+// the best x of all rounds.
 void LowRankFit::refit(std::size_t point, const Basis& basis, std::span<const PlaceOfRows> places, double tolerance) {
   const std::size_t columns = basis.columns, size = 3 * columns, instants = basis.instants, plane = basis.stride;
   const Course course = course_of(point, places);

@@ -46,7 +46,7 @@ class PoseWeights {
   explicit PoseWeights(std::span<const SeenPose> poses)
       : stride_(padded(poses.size())),
         active_(poses.empty() ? 0 : poses[0].weights.size()),
-        weights_(stride_ * active_.size() + kPosePadding) {  // padded, since vectors are read from any pose on
+        weights_(stride_ * active_.size() + kPosePadding) {  // padded, since SIMD loads may begin at any pose
     for (std::size_t p = 0; p < poses.size(); ++p) {
       for (std::size_t c = 0; c < active_.size(); ++c) {
         const auto weight = static_cast<float>(poses[p].weights[c]);

@@ -92,7 +92,7 @@ struct ExtraDrivers {
   std::vector<GltfExtraTarget> sums;
   TrackCurves curves;  ///< the curves of each track; empty if there are formulas
   PoseList rest;       ///< for curves, the weights in the poses that the file stores (MeshWeights)
-  TrackPieces pieces;  ///< for the LINEAR tracks that stay LINEAR; others become cubic splines
+  TrackPieces pieces;  ///< set for LINEAR tracks that stay LINEAR; others become cubic splines
   /// An angle in radians. Cubic splines get more keys until the errors of formulas turn no normal by more than this
   /// angle. If it is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();

@@ -33,9 +33,9 @@ class AreaSums {
   /// a and for the points b. They are valid until body returns. If b is nullptr, sums_of_b is empty.
   using Body = std::function<void(IndexRange elements, std::span<const Vec3d> of_a, std::span<const Vec3d> of_b)>;
   void each_block(const PointRows& a, const PointRows* b, const Body& body) const { each_block(a, b, {}, {}, body); }
-  /// Calls body in the same way, but with more exact sums. If the areas of an element cancel to less than 2^-20 of
-  /// their size, their sum is hardly more than rounding error, and of_a() or of_b() computes it instead. Both functions
-  /// are called on several threads at the same time.
+  /// Calls body in the same way, but with more exact sums. If the vector areas around an element cancel to less than
+  /// 2^-20 of the sum of their sizes, their sum is hardly more than rounding error, and of_a() or of_b() computes it
+  /// instead. Both functions are called on several threads at the same time.
   using Exact = std::function<Vec3d(std::size_t element)>;
   void each_block(const PointRows& a, const PointRows* b, const Exact& of_a, const Exact& of_b, const Body& body) const;
 

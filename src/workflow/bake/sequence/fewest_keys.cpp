@@ -102,8 +102,8 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out elements of a segment from all later judgements. These are the elements for which even the line from a
-  // to b in the segment exceeds the tolerance.
+  // Leaves out elements of a segment from all later judgements: those whose error on the line from a to b, in this
+  // segment, is beyond the tolerance.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;
     const Instant start = at(a);

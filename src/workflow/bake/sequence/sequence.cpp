@@ -220,8 +220,8 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Chooses the segments that get a bend. If there is not enough room for all, chooses those in which bends reduce errors
-// most.
+// Chooses the segments that get a bend. If viewers support fewer targets (`room`) than there are segments, chooses
+// those in which bends reduce errors most.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
   const std::size_t segments = normals.keys() - 1;

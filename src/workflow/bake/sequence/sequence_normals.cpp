@@ -217,7 +217,7 @@ void SequenceNormals::each_computed_block(std::size_t segment, Rows& rows, const
 }
 
 void SequenceNormals::find_offsets(VectorView<const float> stored) {
-  constexpr double kNone = 1e-4;  // radians; a smaller angle to the geometry's normal is ignored
+  constexpr double kNone = 1e-4;  // radians; a stored normal so near to the geometry's normal counts as equal
   if (stored.count == 0) return;
   const std::vector<Vec3d> n = computed_at_key(0);
   std::vector<ShownTurn> turns(n.size());
