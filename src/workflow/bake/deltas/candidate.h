@@ -1,7 +1,7 @@
 /// A candidate: the data that a bake may write for a mesh. A candidate has deltas of the mesh's own targets, correction
 /// targets, and the drivers of the correction targets' weights. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
-#define CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_CANDIDATE_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_CANDIDATE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -63,4 +63,4 @@ struct Candidate {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_CANDIDATES_CANDIDATE_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_CANDIDATE_H_
