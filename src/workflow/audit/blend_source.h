@@ -28,8 +28,7 @@ namespace chronormal::inline internal {
 /// the number of the part, and the number of the vertex in this part.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// A function that writes the weights of the involved targets at both ends that are involved in a motion, at position t
-/// of a segment.
+/// A function that writes the weights of the targets that are involved in a motion, at position t of a segment.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
 /// A function that returns the weight or the time by which messages name position t of a segment.
 using Moment = std::function<double(std::size_t segment, double t)>;
@@ -78,7 +77,7 @@ class BlendSource {
   // straight lines. For such tracks, the deltas of many targets need to be added up only at the ends.
   struct SegmentEnds {
     std::size_t segment = 0;
-    std::vector<double> start, end;  // weights of the targets
+    std::vector<double> start, end;  // the weights of the involved targets at both ends
     std::vector<Vec3d> from, to;
   };
 

@@ -82,7 +82,7 @@ Status check_extras(const GltfDocument& document, const GltfEdit& edit, std::siz
       "extras is not an object, so the bake cannot be recorded there; remove extras, or make it an object");
 }
 
-// Returns for each part of a mesh true if the part gets new base normals.
+// Tells for each part of a mesh whether the part gets new base normals.
 std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shading, const BakeOptions& options) {
   std::vector<bool> result;
   for (const GltfPart& part : shading.parts)

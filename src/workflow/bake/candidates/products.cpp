@@ -64,7 +64,7 @@ constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmles
 struct ProductLimits {
   Lengths lengths = Lengths::kUnit;
   std::size_t most_extras = 0;
-  double tolerance = 0;  // in degrees
+  double tolerance = 0;  // degrees: the largest error that should be left
 };
 
 // A candidate before its correction targets have drivers.
@@ -463,7 +463,7 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
 }
 
 // Adds correction targets for some poses. Only vertices that need corrections get deltas; `worst` has the error of each
-// vertex degrees: the largest error that should be left.
+// vertex in degrees.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {

@@ -41,7 +41,7 @@ struct ExactSegment {
 };
 
 /// Calls body(segment, values) for every segment in order, until it returns an error. Has the keys of one segment in
-/// memory at a time. If are_final is false, the elements may be those of the first segments only. The function then
+/// memory at a time. If are_final is false, the elements may be those of the first segment alone. The function then
 /// returns false as soon as a segment shows that sequence_elements() would return different elements. Errors:
 /// kInvalidInput if a delta is too large for float32; errors of body, and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
