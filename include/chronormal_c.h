@@ -96,7 +96,7 @@ CHRONORMAL_API void chronormal_options_init(chronormal_options* options);
 typedef enum chronormal_format {
   CHRONORMAL_FLOAT32 = 0,    /* three float32 */
   CHRONORMAL_OCTAHEDRAL = 1, /* 4 bytes: two int16, the octahedral encoding as snorm; (0, 0, 0) becomes (0, 0, 1) */
-  CHRONORMAL_RGB10A2 = 2     /* 4 bytes: x, y, z as snorm of 10 bits, from the lowest on */
+  CHRONORMAL_RGB10A2 = 2     /* 4 bytes: x, y, z as snorm of 10 bits each, from the lowest bits up */
 } chronormal_format;
 
 #define CHRONORMAL_ALL ((size_t)-1)
@@ -130,7 +130,7 @@ CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
 /* Returns the number of bytes of memory that the curves take. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
 /* Writes the unit normals at t, with (0, 0, 0) for elements without a normal. The number of such elements is stored in
- * `zeros`, unless it is NULL. */
+ * `zeros`, unless `zeros` is NULL. */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
 /* Writes the unit normals at many t, each to its own output. The total number of (0, 0, 0) is stored in `zeros`, unless

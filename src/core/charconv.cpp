@@ -1,7 +1,8 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
-// For the two files of tools/two_files.py, which are built without fmt and format numbers only for messages.
+// This part is for the two files of tools/two_files.py, which are built without fmt and format numbers only for
+// messages.
 #ifdef CHRONORMAL_ALONE
 
 #include <cstdio>

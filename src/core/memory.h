@@ -10,11 +10,11 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes read and written in one pass from which results are written to memory directly, without the
-/// caches. All arrays of results must then be aligned to 64 bytes (in recompute and the schemes, also packed). In a
-/// shared cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody reads
-/// them. Measurements on a machine with such a cache, with and without a reader afterwards, show that this is faster
-/// from 20 to 30 MiB on.
+/// The smallest number of bytes, read and written in one pass, for which results are written to memory past the caches.
+/// All arrays of results must then be aligned to 64 bytes (in recompute and the schemes, also packed). In a shared
+/// cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody reads them.
+/// Measurements on a machine with such a cache, with and without a reader afterwards, show that this is faster from 20
+/// to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
 /// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees them with free_aligned(). Throws
@@ -23,7 +23,7 @@ inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 void free_aligned(void* memory) noexcept;
 
 /// Uninitialised bytes, aligned to 64 bytes. Arrays of 8 MiB or more are aligned to 2 MiB and, on Linux, marked for
-/// huge pages, with which most addresses are translated without a miss. Pages that are never written cost no memory.
+/// huge pages, with which few translations of addresses miss the TLB. Pages that are never written cost no memory.
 class AlignedBytes {
  public:
   AlignedBytes() = default;

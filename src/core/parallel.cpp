@@ -8,8 +8,8 @@
 //     waiting             A caller that has no piece left waits for the helpers that work on its last pieces. Meanwhile
 //                         it only helps with jobs nested in its own: everything that it waits for is on the stack of a
 //                         running thread, so there is no deadlock.
-//     fork()              The child has only the thread that called fork(). It creates no others if its parent had
-//                         some.
+//     fork()              The child has only the thread that called fork(). It creates no workers if its parent had
+//                         any.
 #include "chronormal/core/parallel.h"
 
 #include <algorithm>
@@ -165,8 +165,8 @@ class Pool {
     mutex_.unlock();
   }
 
-  // Ends all workers when the process ends or when the library is unloaded. If loops still run, it does not wait for
-  // any thread.
+  // Ends all workers when the process ends or when the library is unloaded. Does not wait for any thread if loops still
+  // run.
   void end() noexcept {
     if (is_forked_) return;
     {

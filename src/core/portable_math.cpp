@@ -101,7 +101,7 @@ double sin(double x) noexcept {
 double cos(double x) noexcept {
   if (x == 0) return 1;
   const double size = std::fabs(x);
-  // An odd number, in units of quarter turns.
+  // The zero of the cosine that is nearest to x, as a number of quarter turns, which is odd.
   const std::uint32_t q = 2 * whole_part(size * 0.31830988618379067153) + 1;
   return sine_of_reduced(reduced(size, 0.5 * static_cast<std::int32_t>(q)), (q & 2) == 0 ? 1 : 0);
 }

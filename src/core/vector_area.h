@@ -1,4 +1,5 @@
-/// The vector area of a polygon: its normal, whose length is twice the area.
+/// Computes the normal of a polygon: twice its vector area, so that the length of a flat polygon's normal is twice its
+/// area.
 ///
 /// The edges from the first corner cut a polygon p0 ... pn into a fan of triangles, and the normal is the sum of the
 /// normals of the triangles,

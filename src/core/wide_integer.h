@@ -124,7 +124,8 @@ class WideInteger {
     }
   }
 
-  /// Add other * t 2^t.scale, and other * 2^shift. The digits of `other` must be below 2^26.
+  /// Add a multiple of `other`: t 2^t.scale times `other`, or 2^shift times `other`. The digits of `other` must be
+  /// below 2^26.
   template <std::size_t kOther>
   void add_product(const WideInteger<kOther>& other, const UnitFraction& t) noexcept {
     for (std::size_t i = 0; i < t.digits.size(); ++i) {

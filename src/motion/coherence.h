@@ -1,5 +1,5 @@
-/// Measures how well the order of vertices and faces suits the caches. Looks only at a sample of the faces of a mesh,
-/// at equal distances.
+/// Measures how well the order of vertices and faces suits the caches. Looks only at evenly spaced samples of the faces
+/// of a mesh.
 #ifndef CHRONORMAL_MOTION_COHERENCE_H_
 #define CHRONORMAL_MOTION_COHERENCE_H_
 

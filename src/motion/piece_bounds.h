@@ -1,16 +1,17 @@
 /// Decides into how many straight pieces curved motions of vertices must be cut, by a bound of the angle between the
 /// normals of the pieces and those of the curves. Private to motion and io.
 ///
-/// Let e and f be edges of a face over one piece, as chords, and let the curves differ from them by p and q times s (1 -
-/// s), where s runs from 0 to 1. So the normal of the curve differs from the normal n of the chords by
+/// Let e and f be edges of a face over one piece, on the chords, and let the edges on the curves differ from them by p
+/// and q times s (1 - s), where s runs from 0 to 1. So the normal of the curve differs from the normal n of the chords
+/// by
 ///
 ///     d = s (1 - s) (e x q + p x f) + s^2 (1 - s)^2 p x q                                                         (1)
 ///
-/// added up over the triangles of the face. If p and q are linear, as for cubics, both products are quadratics in s, and
-/// so is n. A quadratic is never longer than the longest of its Bernstein coefficients, and nowhere shorter than the
-/// shortest of their projections on a direction. With s (1 - s) <= 1/4 this bounds |d| from above by r and |n| from
-/// below by l, and the angle between n and n + d by asin(r / l). Sums over faces differ by no more than the sum of their
-/// r, so that the same bounds serve vertices and corners.
+/// added up over the triangles of the face's fan. If p and q are linear, as for cubics, both products are quadratics in
+/// s, and so is n. A quadratic is never longer than the longest of its Bernstein coefficients, and nowhere shorter than
+/// the shortest of their projections on a direction. As s (1 - s) <= 1/4, this bounds |d| from above by r and |n| from
+/// below by l, and the angle between n and n + d by asin(r / l). Sums over faces differ by no more than the sum of
+/// their r, so that the same bounds serve vertices and corners.
 ///
 /// For other curves only lengths are known: |p| <= h^2 / 2 max |e''| if a piece takes the time h, and |e| is largest at
 /// an end.
@@ -38,8 +39,8 @@ struct Ends {
   Vec3d from, to;
 };
 
-/// The edge from the first corner of a face, over a piece: its chord, p for the curve, and bounds of the length of a
-/// further part of p and of the rounding of either end.
+/// The edge from the first corner of a face, over a piece: its chord, p for the curve, and two bounds: of the length of
+/// a further part of p, and of the rounding error of either end.
 struct PieceEdge {
   Ends chord, beside;
   double farther = 0, rounding = 0;
@@ -50,7 +51,7 @@ struct PieceEdge {
   return 2 * std::sqrt(3.0) * kFloatUnitRoundoff * size;
 }
 
-/// Sums of products of edges, as quadratics.
+/// The sum of the cross products e x f of moving edges, as the Bernstein coefficients of a quadratic in s.
 class EdgeProducts {
  public:
   void add(const Ends& e, const Ends& f) noexcept {
@@ -68,9 +69,9 @@ class EdgeProducts {
   Vec3d from_, middle_, to_;
 };
 
-/// Tells whether the normal of a face stays within an angle, given by its sine, of that of the curve over a piece, or
-/// as near as rounding to float32 allows. edge_to(c) makes the edge to corner c. Bounds that are NaN or infinite are
-/// never within.
+/// Returns true if the normal of a face on its chords stays within an angle, given by its sine, of the normal on the
+/// curves over a piece, or as near as rounding to float32 allows. edge_to(c) makes the edge to corner c. Returns false
+/// if a bound is NaN or infinite.
 template <class EdgeTo>
 [[nodiscard]] bool is_within(std::size_t corners, const EdgeTo& edge_to, double sine) {
   EdgeProducts normal, beside, beside_both;

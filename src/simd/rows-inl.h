@@ -1,4 +1,4 @@
-// Adds vectors of doubles to the vectors of floats, and turns rows of four floats into lanes.
+// Defines vectors of doubles, which stand beside the vectors of floats, and turns rows of four floats into lanes.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 

@@ -15,16 +15,17 @@
 ///            exact normal is a quadratic. The Bernstein coefficients of their cross and dot products bound the angle.
 ///            The piece with the largest bound is halved until this bound meets the largest error found in the middle
 ///            of a piece (docs/theory.md, section 19).
-/// Rounding   The bounds include rounding. The coefficients have their float32 values. The radius of the ball includes
-///            a proven bound of the rounding when float32 evaluates the coefficients. The errors of control normals are
-///            added. The bound of `polynomial` and `recompute` is kExactTolerance, which these schemes guarantee.
+/// Rounding   The bounds include rounding. The scheme's coefficients are taken as the float32 numbers that the scheme
+///            stores. The radius of the ball includes a proven bound of the rounding error when the curve is evaluated
+///            in float32. The errors of the control normals are added to the bound. The bound of `polynomial` and
+///            `recompute` is kExactTolerance, which these schemes guarantee.
 /// Collapses  If n(t), or the vector that the scheme normalises, vanishes inside the segment, no bound below half a
-///            turn is claimed: `upper` is pi, and [from, to] contains the place.
+///            turn is claimed: `upper` is pi, and [from, to] contains the t at which it vanishes.
 /// Units      angles in radians; t is the fraction of the segment, from 0 to 1.
 /// Threads    pure. Allocates a little, once for each call.
 /// Cost       about 10 pieces per element: 1.5 to 5 microseconds; schemes of nested slerps take 50 times as long.
 /// Limits     The bounds hold if a scheme is evaluated at arbitrary t. They do not hold for playback, whose errors add
-///            up from frame to frame. Scheme and control normals must be prepared from the same block.
+///            up from frame to frame. The scheme must be prepared from the block that is given to certify().
 #ifndef CHRONORMAL_ANALYSIS_CERTIFY_H_
 #define CHRONORMAL_ANALYSIS_CERTIFY_H_
 
@@ -64,8 +65,8 @@ struct CertifyOptions {
   std::size_t most_pieces = 256;  // may not exceed 256
 };
 
-/// Bounds of the errors of the three control normals n0, m and n1 of an element. Each is the largest distance between a
-/// component and its exact value.
+/// Bounds of the errors of the three control normals n0, m and n1 of an element. Each is the largest possible
+/// difference between a component of the control normal and the exact value of this component.
 using ControlErrors = std::array<double, 3>;
 
 /// Bounds the errors of all elements of a block. An element without a normal in the whole segment gets the bounds 0, 0.

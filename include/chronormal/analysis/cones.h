@@ -8,8 +8,8 @@
 /// A cone is four floats, made for the test of back-face culling. For a direction of view d, from the eye into the
 /// scene,
 ///
-///     dot(d, axis) >= sine * length(d)   ->   every normal n of the cone has dot(d, n) >= 0: no face in it is
-///                                        front-facing
+///     dot(d, axis) >= sine * length(d)   ->   every normal n of the cone has dot(d, n) >= 0: no face with such
+///                                        a normal is front-facing
 ///
 /// The whole sphere is the axis 0 with the sine 1, which never passes this test. An element that has no normal at any
 /// time has the empty cone, which is the axis 0 with the sine 0 and always passes. Cones with a half-angle above 90
@@ -135,7 +135,8 @@ struct ClusterBounds {
 //
 // Proof      Gauss's rule with 8 nodes on pieces in which |n(z)|^2 has no zero for complex z nearby, so that the unit
 //            normal is analytic there and the error is known (docs/theory.md, section 21). Pieces with an instant at
-//            which n(t) = 0 are halved until they are 2^-28 of the interval. These last pieces count as error.
+//            which n(t) = 0 are halved until they are 2^-28 of the interval. The integral over these last pieces counts
+//            as error.
 // Threads    pure, on the thread that calls: no allocation, no throw, the same bits everywhere.
 
 struct ShutterNormal {
@@ -145,20 +146,22 @@ struct ShutterNormal {
   double error = 0;
 };
 
-/// Returns the means over the times [t0, t1]. Assumes that control normals have a relative error of at most 2^-26, and
-/// includes this error in `error`. If t0 and t1 are equal, the means are the normals at that instant. Cost: about 0.2
-/// microseconds if normals turn little, more if n(t) comes close to zero. Precondition: 0 <= t0 <= t1 <= 1.
+/// Returns the mean of the normal and the mean of the unit normal over the times [t0, t1]. Assumes that control normals
+/// have a relative error of at most 2^-26, and includes this error in `error`. If t0 and t1 are equal, the means are
+/// the normals at that instant. Cost: about 0.2 microseconds if normals turn little, more if n(t) comes close to zero.
+/// Precondition: 0 <= t0 <= t1 <= 1.
 [[nodiscard]] ShutterNormal shutter_normal(const ControlNormals& normals, double t0, double t1) noexcept;
 
-/// Writes the means of a range of faces over the times [t0, t1], computed from positions. If control normals of the
-/// interval cancel so far that double is not accurate enough, integer arithmetic computes the means. Preconditions:
-/// result has faces.count elements; the faces exist in the topology; 0 <= t0 <= t1 <= 1.
+/// Writes the mean normals and the mean unit normals of a range of faces over the times [t0, t1], computed from
+/// positions. If control normals of the interval cancel so far that double is not accurate enough, integer arithmetic
+/// computes the means. Preconditions: result has faces.count elements; the faces exist in the topology; 0 <= t0 <= t1
+/// <= 1.
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 
-/// Returns the means of a vertex or corner, whose normal is the sum of the normals of these faces
-/// (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face. Preconditions
-/// are those of face_shutter_normals().
+/// Returns the mean normal and the mean unit normal of a vertex or corner, whose normal is the sum of the normals of
+/// these faces (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face.
+/// Preconditions are those of face_shutter_normals().
 [[nodiscard]] ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces,
                                                     double t0, double t1) noexcept;
 

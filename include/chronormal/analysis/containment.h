@@ -77,7 +77,7 @@ class Containment {
                                                           VectorView<const float> to) const;
 
   /// Finds all crossings in the segment, ordered by point and t.
-  /// Cost: O(log F) for each point, and a cubic for each face that comes near it.
+  /// Cost for each point: O(log F) for F faces, and the roots of a cubic for each face that comes near the point.
   [[nodiscard]] std::vector<Crossing> crossings(const Segment& segment, VectorView<const float> from,
                                                 VectorView<const float> to) const;
 

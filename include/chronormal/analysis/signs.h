@@ -11,8 +11,6 @@
 /// Certain    the number of collapses, whether each turns the face over, and that its instant t is in [lower, upper].
 ///            The two bounds are equal if t is a double, and otherwise neighbouring doubles; only t below 2^-200 are
 ///            given as [0, 2^-200]. The limit directions are within 1e-14 of their value.
-/// Nearly     A face that was made to collapse and then rounded may only come so close to a collapse that its direction
-///            is nearly discontinuous. Such a face does not count here; workflow/inspect.h counts both.
 /// Nearly     A face that was made to collapse may, after its positions were rounded, only come very close to a
 ///            collapse. Its direction then changes almost at once. Such a face is not found here; workflow/inspect.h
 ///            counts such faces, too.
@@ -36,7 +34,7 @@ namespace chronormal {
 /// An instant at which a face has no normal.
 struct Collapse {
   double lower = 0, upper = 0;  ///< bounds of the t of the collapse
-  /// The limits of n(t) / |n(t)| from earlier and from later times; `before` is (0, 0, 0) at t = 0, `after` at t = 1.
+  /// True if the normals before and after the collapse have opposite directions.
   bool turns_over = false;
   Vec3d before, after;  ///< the limits of n(t) / |n(t)| on both sides; (0, 0, 0) before t = 0 and after t = 1
 };
@@ -81,14 +79,14 @@ struct FaceCollapses {
 //     const Facing facing = find_facing(segment, face, View::of_eye({4, -5, 2}));
 //     for (const FacingChange& change : facing.changes()) ...    // seen edge-on at a t in [change.lower, change.upper]
 //
-// Certain    the order of all sides, and that each root of f is in its bracket and nowhere else. Both are exact for the
-//            given positions and viewer: floating point with a proven bound decides, or else integers. A bracket has a
-//            width of about 1e-14 divided by the slope of f, and at most kWidestBracket; or it is two neighbouring
-//            doubles, or the root itself. Roots without a double between them count as one. A root below 2^-200 is not
-//            distinguished from 0.
+// Certain    the sides in their order, and that each bracket contains its root of f and no root is outside of the
+//            brackets. Both are exact for the given positions and viewer: floating point with a proven bound decides,
+//            or else integers. A bracket has a width of about 1e-14 divided by the slope of f, and at most
+//            kWidestBracket; or it is two neighbouring doubles, or the root itself. Roots without a double between them
+//            count as one. A root below 2^-200 is not distinguished from 0.
 // Polygons   the side of a non-planar polygon is the side of its vector area, seen from its first corner.
 // Units      t: fraction of the segment; directions: any nonzero length.
-// Threads    pure; find_silhouettes() allocates, nothing else does or throws.
+// Threads    pure. Only find_silhouettes() allocates memory and may throw.
 // Source     docs/theory.md, section 2; Munkberg, Akenine-Moller, Backface Culling for Motion Blur and Depth of Field
 //            (2011), have the cubic and the test of its Bernstein coefficients, which is the first stage here.
 
@@ -168,8 +166,8 @@ enum class ShutterSide : std::int8_t {
 
 /// Decides the ShutterSide of a range of faces. kBack and kFront are always certain. kBoth is certain unless the face
 /// changes sides within a bracket that contains t0 or t1. A face that is edge-on or without area throughout is kBack.
-/// `normals` are the control normals of the range. Cost: nearly always the lowest cost of find_facings().
-/// Preconditions: result has an element for each face; 0 <= t0 <= t1 <= 1.
+/// `normals` are the control normals of the range. Cost: for most faces, that of find_facings() for a face that changes
+/// sides at most once. Preconditions: result has an element for each face; 0 <= t0 <= t1 <= 1.
 void sides_over(const Segment& segment, IndexRange faces, std::span<const ControlNormals> normals, const View& view,
                 double t0, double t1, std::span<ShutterSide> result) noexcept;
 

@@ -13,7 +13,7 @@
 /// self-crossing quad, are a different face. A face that has a point twice coincides with no other face.
 ///
 /// Threads    pure.
-/// Cost       sorting within the edges and faces of each point: near linear.
+/// Cost       nearly linear: the edges and the faces of each point are sorted separately.
 #ifndef CHRONORMAL_ANALYSIS_SURFACE_H_
 #define CHRONORMAL_ANALYSIS_SURFACE_H_
 
@@ -53,7 +53,7 @@ struct Surface {
   std::size_t most_corners = 0;  ///< the largest number of corners of a face
 };
 
-/// Counts everything that Surface has for a mesh. `points` tells which vertices of the mesh are one point.
+/// Counts everything in Surface for a mesh. `points` tells which vertices of the mesh are one point.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -52,10 +52,10 @@ void check_interruption();
 /// done. The first exception that body throws is thrown again by parallel_for(). All threads use this thread's rounding
 /// mode.
 ///
-/// Threads    the threads of one pool, which are created when first needed; if the system grants fewer, the loop uses
-///            these. A body may call parallel_for, whose loop shares the threads of the outer one. A child of fork()
-///            has one thread, and a loop that was running on several threads ends with Interrupted in the child. In
-///            wasm there is one thread.
+/// Threads    the threads of one pool, which are created when first needed; if the system grants fewer threads, the
+///            loop uses those that it gets. A body may call parallel_for, whose loop shares the threads of the outer
+///            one. A child of fork() has one thread, and a loop that was running on several threads ends with
+///            Interrupted in the child. In wasm there is one thread.
 /// Order      a result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 

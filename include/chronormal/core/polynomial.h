@@ -57,7 +57,7 @@ template <class T, std::size_t M>
 }
 
 /// Returns p over the interval [t0, t1], as a polynomial over [0, 1].
-/// 0 <= t0 < t1 <= 1
+/// Precondition: 0 <= t0 < t1 <= 1.
 template <class T, std::size_t M>
 [[nodiscard]] constexpr std::array<T, M> restrict_to(const std::array<T, M>& p, double t0, double t1) {
   assert(0 <= t0 && t0 < t1 && t1 <= 1);
@@ -145,7 +145,7 @@ template <std::size_t M>
 }
 
 /// Finds the roots of p in [t0, t1] by the number of sign changes among its coefficients (Descartes). Halves the
-/// interval until each part has at most one root, or is as narrow as rounding.
+/// interval until each part has at most one root, or is only as wide as a rounding error.
 template <std::size_t M>
 void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 1>& roots) {
   std::size_t variations = 0;
@@ -177,9 +177,9 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
 
 }  // namespace detail
 
-/// Finds the roots of p in [0, 1], including the ends. Simple roots are within 1e-15 times their condition number, and
-/// roots of multiplicity k within about the k-th root of that error. A double root that rounding has moved off the axis
-/// may be missed, or found as two roots. Decisions that depend on double roots need exact arithmetic.
+/// Finds the roots of p in [0, 1], including the ends. The error of a simple root is at most 1e-15 times its condition
+/// number. The error of a root of multiplicity k is about the k-th root of that. A double root that rounding has moved
+/// off the axis may be missed, or found as two roots. Decisions that depend on double roots need exact arithmetic.
 template <std::size_t M>
 [[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
   Roots<M - 1> roots;

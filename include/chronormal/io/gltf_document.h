@@ -99,7 +99,9 @@ struct GltfBakeMark {
   /// True if the deltas are fitted to the animations of the file. The deltas are then meaningless at weights that no
   /// animation has.
   bool animations_only = false;
-  bool author = false;  ///< true if the normals of each target at weight 1 follow the author's intention for the input
+  /// True if the normals of targets at weight 1 are those that the author would see (docs/cli.md), not area-weighted
+  /// sums.
+  bool author = false;
 };
 
 inline namespace internal {
@@ -116,7 +118,8 @@ using FileResolver = std::function<Result<std::string_view>(const std::string& n
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
 
 struct GltfPrimitive {
-  /// 4: triangles, 5: strip, 6: fan; primitives of other modes (points, lines) have no faces.
+  /// The kind of primitive by its number in glTF: 4 for triangles, 5 for a strip, 6 for a fan. Primitives of other
+  /// kinds (points, lines) have no faces.
   int mode = 4;
   std::size_t vertex_count = 0;   ///< 0 if the primitive has no POSITION
   std::size_t element_count = 0;  ///< number of indices, or number of vertices if there are no indices
@@ -145,7 +148,7 @@ struct GltfMesh {
   std::vector<double> weights;              ///< the default weight of each target; 0 if the file has none
   std::vector<GltfExpression> expressions;  ///< the expressions of a VRM avatar that set weights of this mesh
   std::optional<GltfBakeMark> mark;         ///< the mark of a bake, if the mesh has one that can be understood
-  /// The error in a mark that cannot be understood; only some callers report it.
+  /// The error in the mark of a bake, if the mark cannot be understood. Only some callers report it.
   std::optional<Error> mark_fault;
 };
 
@@ -223,7 +226,7 @@ struct GltfOptions {
 class GltfDocument {
  public:
   /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place if the file cannot be read;
-  /// those of the format.
+  /// those of reading glTF, described at the top of this file.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
   /// Reads a document from bytes, which must outlive the document. `name` is used in messages. `folder` is the folder
@@ -267,7 +270,7 @@ class GltfDocument {
     bool targets = true;
   };
   /// Reads a primitive. Memory: that of the result; pieces that were decompressed are kept until the document is
-  /// destroyed. Precondition: the primitive has_faces()
+  /// destroyed. Precondition: has_faces() is true for the primitive.
   [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
   /// Reads one target of a primitive, as geometry() reads all of its targets.
   [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,
@@ -314,7 +317,7 @@ class GltfDocument {
 //            memory.
 // Threads    an edit and its document belong to one thread at a time.
 
-/// Selects how an accessor of new numbers is written.
+/// The options for writing an accessor of new numbers.
 struct GltfVectors {
   bool bounds = false;  ///< true to write min and max, which accessors of positions and times must have
   /// True to store every component, even if all are zero. If false, an array that is mostly zero becomes a sparse
@@ -339,8 +342,8 @@ class GltfEdit {
   void set(std::string pointer, std::string json);
   /// Appends a value to the array at a JSON pointer. The array is created if it is missing.
   void append(std::string pointer, std::string json);
-  /// Return true if the unchanged source has a value at a JSON pointer, and the text of that value, or an empty text if
-  /// there is none.
+  /// Read the unchanged source. has() returns true if there is a value at a JSON pointer. text() returns the text of
+  /// this value, or an empty text if there is no value.
   [[nodiscard]] bool has(const std::string& pointer) const;
   [[nodiscard]] std::string text(const std::string& pointer) const;
 
@@ -370,9 +373,10 @@ class GltfEdit {
   /// Returns the complete new file, as write() would write it to the path.
   [[nodiscard]] Result<std::string> bytes(const std::string& path) const;
   /// Writes the new file, by write_output() (io/output.h).
-  /// Errors: of write_output(); kUsage for another extension; kInvalidInput, with the pointer as the place, if the
-  /// source does not allow a change (the parent is not an object, or an array is not an array), for text that is not
-  /// JSON, for unreadable buffers, for images of an unknown kind, and for a GLB of 4 GiB or more.
+  /// Errors: those of write_output(); kUsage for an extension other than .glb and .gltf; kInvalidInput, with the
+  /// pointer as the place, if the source does not allow a change (the parent is not an object, or an array is not an
+  /// array), for text that is not JSON, for unreadable buffers, for images of an unknown kind, and for a GLB of 4 GiB
+  /// or more.
   [[nodiscard]] Status write(const std::string& path, bool force) const;
 
  private:

@@ -10,7 +10,7 @@
 ///     face.glb                      a glTF document: its morph targets, or one of its animations
 ///     base, and any of              a set of morph targets: meshes with the faces of the base, targets of MakeHuman,
 ///       smile.obj lift.target t/      patterns, folders with all their subfolders; the base itself is skipped
-///     sample twist                  a built-in morph (io/input.h)
+///     sample twist                  a built-in morph (builtin_morphs())
 ///     -                             one file on the standard input
 ///
 /// A file is opened and read only once, so pipes work like files. Its extension determines the format, or else its
@@ -48,7 +48,8 @@ enum class KeepShading {
   kNone,
   kFirst,  ///< the normals of the first keyframe: the base of targets, or the mesh of a point cache
   kAll,    ///< the normals of all keyframes, if every keyframe stores normals
-  /// The normals of all keyframes if their files are read at once; only those of the first if positions stay in files.
+  /// The normals of all keyframes if the files are read when the input is opened; only those of the first keyframe if
+  /// positions stay in files (`stream`).
   kRead,
 };
 
@@ -71,8 +72,8 @@ struct InputOptions {
   std::size_t max_expansion = 100;
   bool allow_mesh = false;  ///< true to accept a mesh without motion, too
   KeepShading shading = KeepShading::kNone;
-  /// True to keep the velocities that the mesh files of a sequence store. All files are then read at once. Velocities
-  /// in formats with a whole motion are always kept.
+  /// True to keep the velocities that the mesh files of a sequence store. All files are then read when the input is
+  /// opened. Velocities in formats with a whole motion are always kept.
   bool velocities = false;
   /// Returns the bytes of files by their names. If it is empty, files are read from the file system. Otherwise `files`
   /// are names and not patterns or folders, and the buffers of a glTF file are requested by their paths below its
@@ -97,12 +98,11 @@ struct InputOptions {
   /// segments of the motion.
   std::string path = "linear";
   /// True to leave positions in the files until they are needed. This is possible for mesh files, .pc2 and .mdd, and
-  /// for .npy and .npz files that are uncompressed and in C order. Other inputs are read at once, and so are mesh files
-  /// if the normals of all keyframes are kept. Callers that set this should use Input::stream(). An error in a keyframe
-  /// is found when the keyframe is read.
+  /// for .npy and .npz files that are uncompressed and in C order. Other inputs are read when they are opened, and so
+  /// are mesh files if the normals of all keyframes are kept. Callers that set this should use Input::stream(). An
+  /// error in a keyframe is found when the keyframe is read.
   bool stream = false;
-  /// The largest number of bytes that keyframes may take in memory together so that all of them stay there after they
-  /// were read.
+  /// If all keyframes together take at most this number of bytes, each of them stays in memory once it was read.
   std::size_t kept_bytes = MotionStream::kUsuallyKept;
 
   [[nodiscard]] bool chooses_frames() const noexcept { return from > 0 || to || every != 1 || loop; }
@@ -113,7 +113,7 @@ struct InputOptions {
 /// the place.
 [[nodiscard]] Status check_input(const InputOptions& options);
 
-/// Finds the glTF files among names, patterns and folders, each of which is a separate input. A folder stands for all
+/// Finds the glTF files among names, patterns and folders. Each glTF file is a separate input. A folder stands for all
 /// glTF files in it and in its folders, except for names that begin with a dot and links to folders; a folder whose own
 /// files are meshes is a sequence. Patterns and folders are sorted by number. The result is empty if there are no glTF
 /// files. Nothing is opened, so a name need not belong to an existing file. Errors: kUsage for glTF files together with
@@ -254,7 +254,7 @@ struct BuiltinMorph {
 using TargetNames = std::vector<std::vector<std::string>>;
 
 /// Returns the names of the targets in the motion of an input; empty if the input is not a set of targets. Errors:
-/// those of Input::motion()
+/// those of Input::motion().
 [[nodiscard]] Result<TargetNames> target_names(Input& input);
 
 /// Finds a target by its name, or else by its number, counted from 0. Errors: kUsage for an unknown name, with the most

@@ -51,13 +51,14 @@ void remove_temporaries() noexcept;
 ///     .npz          the whole motion, and whether it is a sequence or a set of targets
 ///     .pc2, .mdd    positions of a sequence without its faces; PC2 gets one frame per second, as open_input() reads it
 ///     .obj, .ply    every keyframe in its own file, named by numbered_names(); .ply is binary, little endian
+///     .glb          a set of targets over a base
 ///
-/// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is one of the first three. Targets in a
-/// .glb get base normals, which vertices at the same point in all keyframes share unless `weld` is false. A stream is
-/// written as its keyframes are read; errors of the stream are returned, too.
+/// Precondition: every keyframe has 3 x vertex_count coordinates, or the format is .npz, .pc2 or .mdd. A .glb gets base
+/// normals, which vertices at the same point in all keyframes share unless `weld` is false. A stream is written as its
+/// keyframes are read; errors of the stream are returned, too.
 /// Errors: kUsage, with the path as the place, for another extension, for an invalid pattern, and for a motion that the
-/// format cannot represent: targets in a point cache, or faces with different numbers of corners in .npz. Otherwise
-/// those of write_output(); if a file exists and `force` is false, nothing is written.
+/// format cannot represent: targets in a point cache, a sequence in .glb, or faces with different numbers of corners in
+/// .npz. Otherwise those of write_output(); if a file exists and `force` is false, nothing is written.
 [[nodiscard]] Status write_motion(const Motion& motion, const std::string& path, bool force, bool weld = true);
 [[nodiscard]] Status write_motion(MotionStream& stream, const std::string& path, bool force, bool weld = true);
 

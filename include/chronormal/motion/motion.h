@@ -114,11 +114,11 @@ struct Motion {
     std::vector<float> positions;  ///< (V, 3), in units of length of the file
     double time = 0;               ///< in seconds; for targets, the weight
     std::string name;              ///< the file of the keyframe, for messages; or empty
-    /// (V, 3), units of length per second, if the file of a sequence stores velocities; or empty.
+    /// The velocities that the file of a sequence stores, (V, 3), in units of length per second; or empty.
     std::vector<float> velocities = {};
-    /// The velocities of the vertices, (V, 3) per second, at the first or last keyframe of a part of a sequence. They
-    /// are the velocities of curves through the whole sequence (PathKind::kCatmullRom in motion/paths.h). If this is
-    /// empty, velocities are computed from the keyframes of the motion.
+    /// The velocities of the vertices, (V, 3) in units of length per second, at the first or last keyframe of a part of
+    /// a sequence. They are the velocities of curves through the whole sequence (PathKind::kCatmullRom in
+    /// motion/paths.h). If this is empty, velocities are computed from the keyframes of the motion.
     std::vector<float> end_velocities = {};
     /// The remainders of rounding positions to float32, (V, 3), or empty if nothing was rounded. The exact place of a
     /// vertex is the sum of its position and its residual. Files store only positions.

@@ -16,9 +16,9 @@
 /// these faces have similar directions.
 ///
 /// The new keyframes are float32, and the rounding of their positions adds to the error; a face whose normals deviate
-/// by no more than this rounding is accepted, too. A face that nearly vanishes between two keyframes may miss the
-/// tolerance with any number of pieces: such a face is counted in `beyond`, and does not influence the number of
-/// pieces.
+/// by no more than this rounding can cause is accepted, too. A face that nearly vanishes between two keyframes may miss
+/// the tolerance with any number of pieces: such a face is counted in CutPath::beyond, and does not influence the
+/// number of pieces.
 ///
 /// Units      positions: any length L; velocities L / s; tolerances in degrees.
 /// Threads    pure. Cutting runs on all cores, with the same result on any number of them.

@@ -16,15 +16,16 @@
 /// Speed      normals are recomputed in lanes of double, along rings of points around elements. If the lanes cannot
 ///            guarantee 1e-6 rad for an element, or if its ring has more than 64 points, the element is computed
 ///            separately, which takes about eight times as long.
-/// Memory     Known in advance (predict_blend_cost()), and limited by max_bytes: if not all terms fit, the largest are
-///            not kept, and their elements are computed from blended positions.
+/// Memory     Known in advance (predict_blend_cost()), and limited by max_bytes: if not all terms fit, those of the
+///            targets and pairs with the most terms are not stored, and elements that need them are computed from
+///            blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path (except with
 ///            BlendNormalsOptions::in_float32). Terms are stored in float32, each with an error bound; an element whose
 ///            n(w) is small relative to the sum of its terms is computed in double from blended positions. If even
 ///            double cannot guarantee 1e-6 rad, the element is counted as uncertain.
 /// Degenerate if n(w) is below its own rounding error, or an element has no faces, the result is (0, 0, 0), which is
-/// counted. Weights that are not finite, or so large that n(w) overflows, give (0, 0, 0) at least for the elements that
-/// they affect.
+///            counted. Weights that are not finite, or so large that n(w) overflows, give (0, 0, 0) at least for the
+///            elements that they affect.
 /// Ownership  the set and the groups are moved in and kept. A moved-from object may only be destroyed or assigned.
 /// Threads    const functions may run at the same time. The same bits on any number of threads, in ranges of any size,
 ///            and on every instruction set.
@@ -78,11 +79,11 @@ struct BlendNormalsOptions {
 struct BlendCost {
   std::size_t target_elements = 0;    ///< number of elements that a target touches, summed over targets
   std::size_t overlapping_pairs = 0;  ///< number of pairs of targets that both move some face
-  /// Elements that touch a face which both targets of a pair move, summed over pairs.
+  /// Number of elements that touch a face which both targets of a pair move, summed over pairs.
   std::size_t pair_elements = 0;
-  /// Targets whose terms fit into max_bytes; the targets with the fewest terms are stored first.
+  /// Number of targets whose terms fit into max_bytes; the targets with the fewest terms are stored first.
   std::size_t stored_targets = 0;
-  /// Pairs of stored targets whose terms fit; the pairs with the fewest terms are stored first.
+  /// Number of pairs of stored targets whose terms fit; the pairs with the fewest terms are stored first.
   std::size_t stored_pairs = 0;
   std::size_t least_bytes = 0;  ///< bytes that are needed without any terms: base normals, lists, rings, scratch
   std::size_t bytes = 0;        ///< bytes that are needed with the stored terms, at most
@@ -110,7 +111,7 @@ struct BlendChoice {
 struct BlendEvaluation : BlendChoice {
   std::size_t recomputed_elements = 0;  ///< number of elements that were computed from blended positions
   std::size_t zeros = 0;                ///< number of normals that are (0, 0, 0), including those of untouched elements
-  /// Elements that are so close to a collapse that 1e-6 rad is not guaranteed for them.
+  /// Number of elements so close to a collapse that an error of at most 1e-6 rad is not guaranteed for them.
   std::size_t uncertain_elements = 0;
 };
 

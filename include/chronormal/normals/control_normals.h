@@ -118,8 +118,8 @@ struct NodeTransform {
 /// The matrix that transforms normals, for an affine transform.
 struct NormalMatrix {
   std::array<Vec3d, 3> columns;
-  bool mirrored =
-      false;  ///< true if det < 0; normals still point outwards, but corners are counter-clockwise seen from inside
+  /// True if det < 0. Normals still point outwards, but corners are counter-clockwise if seen from inside.
+  bool mirrored = false;
 
   [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {
     return normal.x * columns[0] + normal.y * columns[1] + normal.z * columns[2];

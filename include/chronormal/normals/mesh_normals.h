@@ -22,9 +22,9 @@
 /// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a proven
 ///            bound. For blend shapes it is within 1e-6 rad (blend_normals.h). Weightings other than area add
 ///            fit_bound().
-/// Degenerate (0, 0, 0) if there is no normal; calls return the number of these, usually 0. If n(t) is zero only at
-/// this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer end; if t is
-/// NaN every normal is (0, 0, 0).
+/// Degenerate (0, 0, 0) if there is no normal; calls return the number of such results, usually 0. If n(t) is zero only
+///            at this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer
+///            end; if t is NaN every normal is (0, 0, 0).
 /// Cost       Preparing a segment costs about as much as recomputing its normals once, and an evaluation a thirtieth of
 ///            that (docs/benchmarks.md, "Frames of a segment"). If two ranges share elements, these are evaluated
 ///            twice.

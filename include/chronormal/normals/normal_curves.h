@@ -8,7 +8,7 @@
 ///                20  in int16 relative to the largest component of the element; or for slivers and collapsing faces,
 ///                    each of n0, m, n1 relative to its own largest component, rounded up to a power of two (5 bits
 ///                    each)
-///                12  n0, n1 in 11 bits and m in 10
+///                12  n0, n1 in 11 bits per component, m in 10
 ///     degree 1   24  n0, n1 in float32;   12 or 20  in int16, likewise
 ///     degree 0   12  the unit normal in float32, 16 with its length
 ///
@@ -154,8 +154,8 @@ class NormalCurves {
   /// Returns the number of elements that are evaluated in double, since float32 cannot guarantee the tolerance for
   /// them.
   [[nodiscard]] std::size_t flagged_count() const noexcept;
-  /// Returns the memory in use, in bytes, of which 8 per index of a block. The padding of the last block and the memory
-  /// that is kept for the next `reuse` do not count.
+  /// Returns the memory in use, in bytes. Each index of the curves counts as 8 bytes, also on 32-bit machines. The
+  /// padding of the last block and the memory that is kept for the next `reuse` do not count.
   [[nodiscard]] std::size_t bytes() const noexcept;
   /// The number of elements that take a certain number of bytes each.
   struct ByteCount {

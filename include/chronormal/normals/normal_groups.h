@@ -218,7 +218,7 @@ struct ElementOptions {
   ElementKind kind = ElementKind::kVertices;
   /// True if vertices that coincide in all keyframes share a normal, so that seams do not show.
   bool weld = true;
-  /// In degrees, for corners: an edge with a larger angle between its faces in keyframe 0 is hard.
+  /// The crease angle in degrees, for corners: an edge is hard if the angle between its faces in keyframe 0 is larger.
   double crease_angle = 180;
   std::span<const std::uint32_t> group_of_face = {};  ///< the smoothing group of each face, or empty
   VectorView<const float> normal_of_corner = {};      ///< the stored normal of each corner, or empty
@@ -227,7 +227,7 @@ struct ElementOptions {
 /// Makes the groups of corners for the vertices or the corners of a motion. Errors: kUsage for a crease angle outside
 /// [0, 180]; kInvalidInput if there is not one smoothing group for each face, or one finite normal for each corner. The
 /// motion may be a mesh at rest, which is a keyframe without segments. Preconditions: the motion is otherwise valid;
-/// the kind is not kFaces
+/// the kind is not kFaces.
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
 /// Makes the groups for a stream, whose keyframes are read as by weld_coincident(). Errors: those of the function
 /// above, and those of the stream.

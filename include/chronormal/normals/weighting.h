@@ -38,7 +38,7 @@
 ///            Elements of a single triangle have its direction, which is exact, and the bound 0.
 /// Threads    Everything except the fit is pure. Results have the same bits on every system.
 /// Source     Jin, Lewis, West, A comparison of algorithms for vertex normal computation, The Visual Computer 21
-///            (2005): uniform, angle, area, max and the last two.
+///            (2005): uniform, angle, area, max, inverse-edges and inverse-roots.
 ///            Moore, Interval Analysis (1966), for Taylor coefficients in intervals.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_H_
@@ -76,8 +76,8 @@ inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kInverseRoots, "inverse-roots", "the square roots of these reciprocals"},
 }};
 
-/// The weightings that tools use for shading. If the weighting of stored normals is unknown, it is searched among
-/// these.
+/// The weightings that tools use for shading. If the weighting of stored normals is unknown, only these weightings are
+/// tried.
 inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], kAllWeightings[1], kAllWeightings[2],
                                                              kAllWeightings[3], kAllWeightings[4]};
 

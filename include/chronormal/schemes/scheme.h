@@ -13,8 +13,8 @@
 /// Ends       every scheme is prepared from the exact unit normals of the block at t = 0 and t = 1, or from the limits
 ///            of n / |n| if n vanishes there.
 /// Degenerate An element whose normal is zero in the whole segment gets (0, 0, 0). All other elements get a finite unit
-/// vector: if a scheme is not defined (antipodal ends, singular frames, a node at a collapse), it uses a documented
-/// fallback, and counts it. The result is never NaN.
+///            vector: if a scheme is not defined (antipodal ends, singular frames, a node at a collapse), it uses a
+///            documented fallback, and counts it. The result is never NaN.
 /// Threads    a scheme object belongs to one thread at a time, but several threads may call evaluate(), which is const.
 #ifndef CHRONORMAL_SCHEMES_SCHEME_H_
 #define CHRONORMAL_SCHEMES_SCHEME_H_

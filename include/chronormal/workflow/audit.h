@@ -7,11 +7,13 @@
 ///     authored offset    the angle between a stored base normal and the weighted normal of the geometry
 ///     motion error       the angle between the rendered and the true normal at a sample, with the offset kept
 ///
+/// The offset is kept in a different way for each kind of input:
+///
 ///     glTF       the rotation from n(0) to the stored N, fixed per vertex
 ///     skins      both normals as the skin of a node transforms them, in the pose of that time (docs/decisions/0022).
 ///                The errors of skinning itself are reported separately.
 ///     sequences  at each keyframe a rotation towards its stored normal, but by at most the angle of keyframe 0: growth
-///                of the offset is an error. Between two keyframes the two rotations are blended
+///                of the offset is an error. Between two keyframes the two rotations are blended.
 ///
 /// Samples    t = i / (samples - 1) of each segment: a target from weight 0 to 1, or the time between two keys of an
 ///            animation or two frames of a sequence. Weights are LINEAR, STEP or CUBICSPLINE as in the file.
@@ -286,12 +288,12 @@ struct AuditLimits {
 /// kept errors of more than kMostErrorBytes; kInvalidInput for poses that fit no mesh.
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options);
 
-/// Audits a motion without a document: a sequence, or targets over a base, each of which is a subject. If there are no
-/// stored normals, a viewer computes area-weighted normals at keyframes and interpolates between them; the audit
-/// compares these normals with the true ones. Residuals of positions are used in all computations but one: the
-/// weighting of stored normals is detected without them, since differences of a tenth of a degree decide there. Errors:
-/// kUsage for the rule gltf, for viewers, and for fewer than 2 samples; kInvalidInput if the number of normals does not
-/// fit. Precondition: the motion is valid.
+/// Audits a motion that is not from a glTF file. A sequence is one subject; of targets over a base, each is a subject.
+/// If there are no stored normals, a viewer computes area-weighted normals at keyframes and interpolates between them;
+/// the audit compares these normals with the true ones. Residuals of positions are used in all computations but one:
+/// the weighting of stored normals is detected from the rounded positions, because a tenth of a degree can decide which
+/// weighting fits these normals. Errors: kUsage if the options have the rule gltf, any viewer, or fewer than 2 samples;
+/// kInvalidInput if the number of normals does not fit. Precondition: the motion is valid.
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 /// Audits a stream while holding two keyframes at a time. The stream is read twice in full. It is also read twice in
 /// part: until all vertices have moved, and until no two vertices coincide. Errors: also those of the stream.

@@ -44,7 +44,8 @@ class Expansion;  // limits the memory and the output that reading a file may ca
 }
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< in degrees
-/// Degrees; a smaller tolerance would be used up by the rounding to float32 in viewers.
+/// The smallest tolerance of the encoding keys, in degrees. The rounding to float32 in viewers would use up a smaller
+/// one.
 inline constexpr double kLeastKeyTolerance = 0.001;
 
 struct BakeOptions {
@@ -199,7 +200,8 @@ struct BakedMesh {
   /// For kEndpoint, the number of elements whose deltas were computed by least squares, since several targets are
   /// active at once.
   std::size_t fitted_elements = 0;
-  /// Degrees; the error along the animations from cutting cubic splines and from leaving out pairs of targets.
+  /// The error in degrees, along the animations, that comes from cutting cubic splines into lines and from leaving out
+  /// pairs of targets.
   double resampling_error = 0;
   /// True if KHR_animation_pointer drives a single weight. Only the encoding kExact then adds correction targets.
   bool has_lone_weight = false;
@@ -276,14 +278,14 @@ struct SequenceBake {
 /// exact for these positions; residuals of a computed motion are left out. Polygons become fans of triangles with the
 /// normals of the polygons; if a fan does not cover its polygon in keyframe 0, there is a warning. Errors:
 /// kInvalidInput for more than most_bytes or 4 GiB; kUsage in keys for other weights than area or a tolerance below
-/// kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1)
+/// kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1).
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// Bakes a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several
 /// passes that hold two keyframes at a time, or for the encoding keys all keyframes between two keys. The arrays wait
 /// in an unnamed file in the folder of `path` until the JSON in front of them is known, so only this JSON and fits of a
 /// weighting need memory that grows with the number of keyframes. If `path` is a stream or a device, the arrays wait in
-/// memory. Errors: also those of the stream and of write_output()
+/// memory. Errors: also those of the stream and of write_output().
 [[nodiscard]] Result<SequenceBake> bake_sequence(MotionStream& stream, const BakeOptions& options,
                                                  const std::string& path, bool force);
 

@@ -134,8 +134,8 @@ struct Comparison {
 /// Cost       segments x faces x samples x schemes evaluations, plus an exact normal and an arc tangent for each.
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
-/// Compares the schemes for a stream. Holds as many segments at a time as have a few thousand elements for each thread,
-/// but at least one segment. Errors: also those of the stream.
+/// Compares the schemes for a stream. Holds so many segments at a time that each thread has a few thousand elements,
+/// and at least one segment. Errors: also those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
 /// Estimates the cost of an evaluation, by which schemes are sorted. Each byte that is read, each addition and each
@@ -213,7 +213,7 @@ struct BlendComparison {
 
 /// Compares the deltas of blend shapes, which are given as a valid motion of targets. Cost: for each weight vector an
 /// evaluation, a recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active
-/// targets than there are, and a motion that is not one of targets; those of make_groups() and blend_set_of();
+/// targets than there are, and a motion that is not blend shapes; those of make_groups() and blend_set_of();
 /// kInvalidInput if there are so many targets that the weight vectors do not fit into memory.
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 

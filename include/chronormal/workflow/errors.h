@@ -28,7 +28,7 @@
 
 namespace chronormal {
 
-// The sums of an audit: the angles between rendered and true normals, over samples of vertices (workflow/audit.h
+// Statistics of an audit: the angles between rendered and true normals, over samples of vertices (workflow/audit.h
 // explains which samples are judged).
 //
 // Units      degrees
@@ -158,9 +158,9 @@ struct SkinningError {
   }
 };
 
-/// The respects in which one audit is worse than an earlier one. More samples cannot be lit, the worst or the mean
-/// error increased by more than rounding to float32 explains, or more edges are torn. If the two audits are exchanged,
-/// the result has the respects in which the later audit is better.
+/// The respects in which one audit is worse than an earlier one: more samples cannot be lit (`unlit`), the mean or the
+/// worst error increased by more than rounding to float32 explains, or more edges are torn. If the two audits are
+/// exchanged, the result has the respects in which the later audit is better.
 struct WorseRespects {
   bool unlit = false, mean = false, worst = false, torn = false;
 

@@ -1,5 +1,5 @@
-/// Inspects a motion: its contents, and problems for programs that need its normals. For a glTF file also the normals
-/// that it stores, the targets that change them, and tracks of weights.
+/// Inspects a motion: its contents, and problems for programs that need its normals. For a glTF file, inspects also the
+/// stored normals, the targets that change these normals, and the tracks of weights.
 ///
 /// Faces at keyframes or in segments are counted as Places. A Places has the number of (face, keyframe) combinations,
 /// the number of different faces in these, and the first combination, by keyframe or segment and then by face.

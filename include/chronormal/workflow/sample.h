@@ -8,13 +8,13 @@
 ///
 /// Area-weighted normals are within 1e-6 rad of exact arithmetic, also for thin and small faces and faces of mixed
 /// sizes. At a time they are computed by curves of the segment, so they have the same bits whatever other times are
-/// asked for. At weights they are computed from positions. There the guarantee holds for positions before rounding to float32.
-/// Other weightings, which are not polynomials, are computed in double at each moment.
+/// asked for. At weights they are computed from positions. The guarantee is then for the blended positions before they
+/// are rounded to float32. Other weightings, which are not polynomials, are computed in double at each moment.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and
 ///            outputs of the same element have the same bits.
 /// Degenerate An element without a normal gets (0, 0, 0). If n(t) is zero only at this time, area-weighted unit normals
-/// are the limit (Direction in normals/control_normals.h), and all other normals are (0, 0, 0).
+///            are the limit (Direction in normals/control_normals.h), and all other normals are (0, 0, 0).
 ///
 /// Schemes    If a scheme is given, it interpolates the normals, and only the normals at the ends of a segment are
 ///            exact. At weights, a scheme interpolates from the base to one target, whose weight must be in [0, 1]; all
@@ -120,8 +120,9 @@ class NormalSampler {
   /// all keyframes. Errors: also those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
-  /// Computes the pose at a time in seconds. Prepares the segment of this time, unless the last request was for the same
-  /// segment. Errors: those of find_instant(); kUsage if the sampler plays steps and the time is not one of them.
+  /// Computes the pose at a time in seconds. Prepares the segment that contains this time, unless the last request was
+  /// for the same segment. Errors: those of find_instant(); kUsage if the sampler plays steps and the time is not one
+  /// of them.
   [[nodiscard]] Result<Pose> at_time(double time);
 
   /// Computes the pose for weights. Errors: those of check_weights(); kUsage for weights with which a vertex exceeds
@@ -161,7 +162,8 @@ class NormalSampler {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
   }
 
-  std::unique_ptr<MotionStream> whole_ = {};  // the stream around the motion, if a motion was given to make()
+  // A stream of the motion, if make() was given a motion instead of a stream.
+  std::unique_ptr<MotionStream> whole_ = {};
   MotionStream* stream_;
   const Motion* motion_;  // the motion of the stream
   SampleOptions options_;

@@ -17,14 +17,15 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
-// Sums of this many elements take 16 KiB on the stack.
+// The number of elements that are computed together. Their sums take 16 KiB on the stack.
 constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;
 constexpr std::size_t kSlicesOfWord = kBitsOfWord / kRingLanes;
 constexpr std::size_t kMostRows = kMostRingPoints + 2;
 constexpr std::size_t kNearVertices = 4096;  // points of this many vertices take 128 KiB in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
-constexpr double kLargestAngle = 8e-7;  // radians; error of double, before the rounding of the result
+// Radians; the largest error of a normal in double, before it is rounded to float32.
+constexpr double kLargestAngle = 8e-7;
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
 // The limits for terms in float32. They guarantee 1e-6 rad if the bound of the terms' error is at most 14 times 2^-24
 // |n(w)|, that is, 14 roundings. The rounding of the result is then added.
@@ -114,8 +115,8 @@ void blend_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   pose.has_points = true;
 }
 
-// Sets the points that active targets have moved back to the base. If targets moved many of them, it is faster to set
-// all points in order.
+// Sets points back to the base after active targets have moved them. If many points were moved, it is faster to set all
+// points in order.
 void restore_points(const BlendInput& source, BlendPose& pose, Threads threads) {
   blocks_on(threads, source.set.topology.vertex_count(), kBlockOfVertices, [&](IndexRange vertices) {
     std::size_t moved = 0;
@@ -168,8 +169,9 @@ class Call {
       const Vec3d edge = point(face[c]) - a;
       return Edge{edge, sum_abs(edge)};
     };
-    // The loop below also bounds the error of the sum over the fan. Edges, and both products in a component, are within
-    // 10 u of the absolute products. Each triangle adds a rounding, and points have an error of their own.
+    // The loop below also bounds the error of the sum over the fan. The errors of the edges and of both products in a
+    // component come to at most 10 u times the absolute products. Each triangle adds a rounding, and points have an
+    // error of their own.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
     for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
@@ -231,8 +233,8 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // The list of a target has all elements that touch a face which the target moves. So no stored pair has an
-      // element outside of it.
+      // The list of a target has all elements that touch a face which the target moves. So no stored pair of this
+      // target has an element outside of the list.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);

@@ -17,7 +17,7 @@ namespace {
 // Threads work on terms of at most 1 / kShareOfWork of all terms' bytes at a time. A single term may be larger.
 constexpr std::size_t kShareOfWork = 8;
 
-// Bytes of an element of a target.
+// The number of bytes that an element takes in the terms of a target, and in the term of a pair of targets.
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 

@@ -19,7 +19,8 @@ constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 constexpr std::size_t kTermsTogether = 1024;
 // The largest number of faces for which it takes little memory to store the contribution of each face.
 constexpr std::size_t kFewFaces = 100000;
-// If faces are farther apart in the mesh than this on average, a table of all faces between them is too large.
+// The largest average distance between the numbers of a term's faces at which a table from the first to the last face
+// is still small enough.
 constexpr std::size_t kFarApart = 16;
 
 Indices common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {

@@ -114,7 +114,7 @@ class Build {
   void make_parts(const MakeSource& make_source) {
     constexpr std::size_t kNotKnown = ~std::size_t{0};
     std::vector<std::size_t> ends(parts_.size(), kNotKnown);
-    std::mutex mutex;  // of `ends`. std::atomic's wait() may miss its notification in libstdc++ for Windows.
+    std::mutex mutex;  // guards `ends`. std::atomic's wait() may miss its notification in libstdc++ for Windows
     std::condition_variable known;
     std::atomic<std::size_t> next = 0;
     parallel_for(std::min(thread_count(), parts_.size()), [&](std::size_t) {

@@ -32,7 +32,7 @@ struct CurveCount {
   [[nodiscard]] std::size_t bytes(std::size_t size) const noexcept;
 };
 
-/// The number of a multiple of which each counted range must begin.
+/// The number of faces that are counted together. Each counted range must begin at a multiple of it.
 inline constexpr std::size_t kCountedTogether = 512;
 
 /// Counts the sizes of exact curves of some faces. Also writes the control normals of these faces and their longest

@@ -4,7 +4,7 @@
 ///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
 ///     write(elements, tiles, bounded)   also writes the values before rounding, and bounds of their errors
 ///     write_in_float(elements, tiles)   entirely in float32, with bounds on the errors, if has_float() is true; not
-///                              every source has these two
+///                              every source has write_in_float() and has_float()
 ///     in_double(i)             one element, and bounds of its errors
 ///     exact(i)                 one element without any rounding, if there are positions to compute it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_

@@ -31,7 +31,7 @@ inline constexpr std::size_t kChunkTiles = 32;
 inline constexpr std::size_t kChunk = kChunkTiles * kTile;
 inline constexpr std::size_t kWrittenTiles = 4;  // number of tiles that one call of a source writes
 
-inline constexpr std::size_t kShortestRun = 4;  // number of blocks
+inline constexpr std::size_t kShortestRun = 4;  // the fewest blocks that form a run of their own
 
 inline constexpr double kSmallestShare = kSmallestEnd / kLargestComponent;
 

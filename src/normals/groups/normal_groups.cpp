@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 
-// The error, in radians, of the angle at an edge that rounding positions to float32 may cause.
+// The error, in radians, that rounding positions to float32 may cause in the angle at an edge.
 constexpr double kCreaseRounding = 1e-6;
 
 // The largest number of faces at a smooth edge. Edges with more faces are hard. This bounds the number of pairs of
@@ -67,8 +67,8 @@ struct StoredNormal {
   }
 };
 
-// Joins the corners of all directions whose distance is at most `chord`. Equal directions are joined first, since there
-// may be many of them.
+// Joins the corners of any two directions whose distance is at most `chord`. Equal directions are joined first, since
+// there may be many of them.
 void join_close_directions(std::vector<StoredNormal>& normals, double chord, CornerSets& sets) {
   std::sort(normals.begin(), normals.end());
   std::size_t distinct = 0;

@@ -87,7 +87,7 @@ std::size_t FloatRecompute::unit_normals(const Segment& segment, double t, Vecto
   assert(result.count == size());
   if (!parts_) return 0;
   if (!std::isnan(t)) return parts_->unit_normals(segment.from, segment.to, local_time(t), result, threads);
-  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // there is no normal at the time NaN
+  for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});  // the time is NaN, so there are no normals
   return result.count;
 }
 

@@ -46,10 +46,10 @@ struct NormalAtTime {
   double error = 0;
 };
 
-// Computes n(t) of a face with a bound of its error. Edges, and both products in a component, are within 10 u of the
-// absolute products, and each triangle of a fan adds a rounding. The bound holds even if all roundings go in the same
-// direction. Real errors are smaller: a search by hill climbing from 60 triangles finds none above 3.4 u of these
-// products.
+// Computes n(t) of a face with a bound of its error. The errors of the edges and of both products in a component come
+// to at most 10 u times the absolute products, and each triangle of a fan adds a rounding. The bound holds even if all
+// roundings go in the same direction. Real errors are smaller: a search by hill climbing from 60 triangles finds none
+// above 3.4 u of these products.
 NormalAtTime normal_at_time(const Segment& segment, std::size_t f, const LocalTime& time) {
   const auto face = segment.topology->face(f);
   const double s = time.rest, t = time.t;
@@ -398,7 +398,7 @@ class Call {
   std::size_t window_ = 0;
 };
 
-// Writes zeros as the normals at the time NaN, and returns their number.
+// Writes zeros as the normals, for a time that is NaN, and returns their number.
 std::size_t write_zeros(VectorView<float> result) {
   for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
   return result.count;

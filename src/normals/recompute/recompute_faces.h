@@ -11,7 +11,7 @@ namespace chronormal::inline internal {
 
 /// Writes the unit normals at t of a range of faces, with the same bits as NormalRecompute. Pure: no allocation, no
 /// throw, and no scratch memory, so it is slower than NormalRecompute on meshes in random order and on positions that
-/// are not packed. result must have faces.count elements; faces must lie inside the topology
+/// are not packed. Preconditions: result has faces.count elements; the faces exist in the topology.
 std::size_t unit_normals_at(const Segment& segment, IndexRange faces, double t, VectorView<float> result) noexcept;
 
 }  // namespace chronormal::inline internal

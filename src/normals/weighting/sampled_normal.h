@@ -23,8 +23,8 @@ struct SampledNormal {
   [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }
 };
 
-/// Returns the weighted normal of the element with some corners. Precondition: normal_of_face(f) returns the result of
-/// face_normals_at() for a face of the element at this t.
+/// Returns the weighted normal of the element that has the given corners. Precondition: normal_of_face(f) returns the
+/// result of face_normals_at() for a face of the element at this t.
 template <class NormalOfFace>
 [[nodiscard]] SampledNormal sample_normal(const Segment& segment, const NormalOfFace& normal_of_face,
                                           std::span<const std::uint32_t> corners, std::span<const std::uint32_t> faces,

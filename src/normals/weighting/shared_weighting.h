@@ -1,4 +1,5 @@
-/// Weighted normals of elements that share faces with many corners, for callers that have the normals of faces already.
+/// Computes weighted normals of elements around faces with many corners. The work for such a face is done once and kept
+/// for all its elements. The caller passes the normals of the faces.
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_SHARED_WEIGHTING_H_
 

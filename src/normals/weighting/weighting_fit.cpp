@@ -266,8 +266,9 @@ struct Element {
     return (1 + 0x1p-48) * portable::atan2((1 + 0x1p-50) * sine, (1 - 0x1p-50) * cosine);
   }
 
-  // Returns a bound of this angle over the whole segment. Pieces are halved until their bounds are close to `goal`, in
-  // radians. If a piece of the smallest allowed length has no bound, the result is pi.
+  // Returns an upper bound, in radians, of the angle between the fit and the element's normal over the whole segment.
+  // Pieces are halved until their bounds are close to `goal`, also in radians. If a piece of the smallest allowed
+  // length has no bound, the result is pi.
   [[nodiscard]] double bound_over_segment(double goal) const {
     struct Piece {
       double t0, t1;

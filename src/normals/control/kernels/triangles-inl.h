@@ -134,8 +134,8 @@ HWY_INLINE TriangleLanes LoadTriangles(const Segment& segment, const std::uint32
   return p;
 }
 
-// Returns an upper bound of the sum of the absolute products in any component of e x f, where e and f are edges at any
-// ends of the segment.
+// Returns an upper bound of the sum of the absolute products in any component of e x f, where each of the edges e and f
+// may be at either end of the segment.
 HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1);
   const Floats f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);

@@ -8,8 +8,8 @@ namespace chronormal::inline internal {
 
 std::optional<std::size_t> PrefetchRule::next() noexcept {
   const std::size_t all = kTrials * distances_;
-  // A thread that passes the following comparison takes the number of the next trial. Several threads may do this at
-  // once.
+  // A thread for which the following comparison is false takes the number of the next trial. Several threads may do
+  // this at once.
   if (trials_.load(std::memory_order_relaxed) >= all) {
     if (calls_.fetch_add(1, std::memory_order_relaxed) % kCallsBetween != kCallsBetween - 1) return std::nullopt;
     trials_.store(0, std::memory_order_relaxed);
@@ -19,8 +19,8 @@ std::optional<std::size_t> PrefetchRule::next() noexcept {
   return trial % distances_;
 }
 
-// The distance with the shortest median time is the best. The median ignores trials that the system interrupted or that
-// found cold caches, and also one that was fast by chance.
+// Records a trial. The distance with the shortest median time is the best. The median ignores trials that the system
+// interrupted or that found cold caches, and also one that was fast by chance.
 void PrefetchRule::take(std::size_t distance, float nanoseconds_per_byte) noexcept {
   assert(distance < kDistances.size() && nanoseconds_per_byte > 0);
   const std::size_t trial = counts_[distance].fetch_add(1, std::memory_order_relaxed);

@@ -159,8 +159,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   };
   const auto distance = [&](std::size_t a, std::size_t b)
                             HWY_ATTR { return MaxAbs(at(a, 0) - at(b, 0), at(a, 1) - at(b, 1)); };
-  // The factor is a little more than twice the products, to cover their rounding and that of their sum. A tiny number
-  // is added in case a product underflows.
+  // A component has two products. The factor is a little more than 2, to cover the rounding of the products and of
+  // their sum. A tiny number is added in case a product underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   Floats sum = hn::Zero(kFloats);
@@ -249,8 +249,8 @@ HWY_INLINE void LoadRing(const RingInput& input, PointAccess access, const std::
 // Computes a tile entirely in float32. `magnitude` of the tile is a bound of the error.
 template <PointAccess kAccess>
 HWY_INLINE void FloatTile(const Segment& segment, const std::uint32_t* indices, std::size_t rows, ControlTile& tile) {
-  // The factor is a little more than twice the products, to cover their rounding and that of their sum. A tiny number
-  // is added in case a product underflows.
+  // A component has two products. The factor is a little more than 2, to cover the rounding of the products and of
+  // their sum. A tiny number is added in case a product underflows.
   const Floats factor = hn::Set(kFloats, 2.0f + 0x1p-17f);
   const Floats tiny = hn::Set(kFloats, std::numeric_limits<float>::min());
   const Floats roundings = RoundingsInFloat(rows / 2 + 1);

@@ -26,10 +26,10 @@ class GroupTiles {
   GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
   /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals(), but
-  /// sums are rounded in another order. They are within 2^-47 of the magnitude of the sum, rounded to float32, and zero
-  /// if they are no larger than that bound. Elements with many faces are computed by group_control_normals().
-  /// Preconditions: elements begins at a multiple of 16, and ends at a multiple of 16 or at the last element;
-  /// elements.count > 0; tiles has ceil(elements.count / 16) elements.
+  /// the terms of a sum are added in another order. They are within 2^-47 of the magnitude of the sum, rounded to
+  /// float32, and zero if they are no larger than that bound. Elements with many faces are computed by
+  /// group_control_normals(). Preconditions: elements begins at a multiple of 16, and ends at a multiple of 16 or at
+  /// the last element; elements.count > 0; tiles has ceil(elements.count / 16) elements.
   void write(IndexRange elements, std::span<ControlTile> tiles) const noexcept;
 
   /// Writes tiles and, for a closer examination, the sums of each tile in double before any correction, with bounds of
