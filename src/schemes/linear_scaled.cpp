@@ -1,5 +1,5 @@
 // The scheme linear:scaled, which is linear interpolation with one end scaled. The direction of u0 + t (s u1 - u0) is
-// right at both ends for every s > 0. With the best s, the curve is faster where the true normal is faster
+// exact at both ends for every s > 0. With the best s, the curve is faster where the true normal is faster
 // (docs/theory.md, section 4.8). A viewer that only adds one delta can do no better. The best s of each element is
 // found by a search over its logarithm.
 

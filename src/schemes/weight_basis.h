@@ -40,7 +40,7 @@ class WeightBasis {
   /// Creates a basis from the Bernstein coefficients of each weight. Two examples are the weights 1 - t and t, and the
   /// eased weights 1 - 3 t^2 + 2 t^3 and 3 t^2 - 2 t^3:
   ///     WeightBasis(1, {{1, 0}, {0, 1}})        WeightBasis(3, {{1, 1, 0, 0}, {0, 0, 1, 1}})
-  /// degree must be in [1, kMostDegree]
+  /// Precondition: degree is in [1, kMostDegree].
   WeightBasis(std::size_t degree, std::vector<Coefficients> weights);
   /// Makes the basis of Lagrange polynomials at equidistant nodes. Weight k is 1 at node k and 0 at the other nodes.
   [[nodiscard]] static WeightBasis lagrange(std::size_t degree);

@@ -5,7 +5,7 @@
 /// their Bernstein coefficients if the coefficients of the denominator are positive, so
 ///
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
-///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   all (S.S)_k > 0
+///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   if all (S.S)_k > 0
 ///
 /// Both bounds converge with the square of the width of the piece. The Bernstein coefficients of S.S + D^2 = |p|^2
 /// |n|^2 are the sums of these coefficients. The smallest sum bounds the angles by which the ball and the error of n

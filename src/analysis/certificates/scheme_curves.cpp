@@ -123,8 +123,8 @@ ArcCurve::ArcCurve(Formula formula, ElementCoefficients c) noexcept {
   angle_ = static_cast<double>(c[is_great ? 6 : 9]);
   const double w = length_of(w_), p = length_of(p_), q = length_of(q_);
   largest_ = std::max(p, q);
-  // The rounding errors are those of t and its product with A, of sine and cosine, within 1.2e-7 = 2.02 e, and of two
-  // products and two additions.
+  // The rounding errors are those of t and of its product with A, those of sine and cosine (at most 1.2e-7 = 2.02 e),
+  // and those of two products and two additions.
   double time_error = 2.01 * kE;
   if (formula == Formula::kTimedCircleArc) {
     // The warped time changes by at most `steepest` times the rounding of t, and by a few roundings of its own.

@@ -95,8 +95,8 @@ void add_piece(const Piece& piece, double share, int depth, Sum& sum) noexcept {
   }
 }
 
-// Returns the means for control normals that are sums of vectors. `lengths` has the sums of the lengths of these
-// vectors, whose relative errors are at most kNormalShare.
+// Returns the mean normal and the mean unit normal of a curve whose control normals are sums of vectors. `lengths` has
+// the sums of the lengths of these vectors, whose relative errors are at most kNormalShare.
 ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& lengths) noexcept {
   const auto& [n0, m, n1] = c;
   const double largest = std::max({lengths[0], lengths[1], lengths[2]});
@@ -117,8 +117,8 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
 
 Bernstein<double, 2> lengths_of(const ControlNormals& c) { return {length(c.n0), length(c.m), length(c.n1)}; }
 
-// Returns the means over a part of a segment. `c` are the control normals of the whole segment, `part` those of the
-// part.
+// Returns the mean normal and the mean unit normal over a part of a segment. `c` are the control normals of the whole
+// segment, `part` those of the part.
 ShutterNormal means_of_part(const ControlNormals& c, const IntervalNormals& part,
                             const Restriction& restriction) noexcept {
   const Bernstein<double, 2> whole = lengths_of(c);

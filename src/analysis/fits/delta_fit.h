@@ -49,7 +49,7 @@ class DeltaFit {
 
   /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() becomes as small as
   /// possible, for each element separately. The rows may not determine the deltas, if there are fewer rows than targets
-  /// or if some weights always change together. The result then has the deltas that are nearest to those at the start.
+  /// or if some weights always change together. The result then has those deltas that are nearest to the start deltas.
   /// Cost: for each element, a linear system with one equation for each of its deltas.
   void solve();
 

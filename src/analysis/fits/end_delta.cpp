@@ -22,8 +22,8 @@ namespace {
 constexpr double kHalfPi = 1.57079632679489661923;
 constexpr double kRange = 11.090354888959125;  // the logarithm of 2^16, which is the largest s
 
-// Angles are compared by a number, their key, that grows with the angle and needs no trigonometry. It is the square of
-// the sine or, from 90 degrees on, 2 minus this square.
+// Returns the angle in radians that has a given key. Angles are compared by their keys, which grow with the angle and
+// need no trigonometry. A key is the square of the sine or, from 90 degrees on, 2 minus this square.
 double angle_of_key(double key) noexcept {
   return key <= 1 ? portable::asin(std::sqrt(key)) : 2 * kHalfPi - portable::asin(std::sqrt(std::max(2 - key, 0.0)));
 }
@@ -316,7 +316,8 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   double best_scale = 1;
   ScaleSearch search(u0, u1);
   constexpr int kExchanges = 6;
-  // Smallest gain and largest exact error, as keys; a gain in angles is half as much.
+  // The smallest ratio of two errors that counts as a gain, and the largest error that counts as exact, both as keys.
+  // In angles, the gain is half as much.
   constexpr double kGain = 1 + 1e-3, kExact = 1e-24;
   for (int round = 0; round <= kExchanges; ++round) {
     const double s = portable::exp(log_scale);

@@ -39,8 +39,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
 /// Measures the angles between the rendered and the exact normals, over all rows. Elements count in a row if their
-/// rendered or exact normal differs from that of the base. In max_at, the row is the segment. Preconditions: `weights`
-/// is (rows, targets), and `deltas` has the elements and targets of `normals`.
+/// rendered or exact normal differs from that of the base. In max_at, `segment` is the number of the row.
+/// Preconditions: `weights` is (rows, targets), and `deltas` has the elements and targets of `normals`.
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);
 
 struct BlendWeightOptions {

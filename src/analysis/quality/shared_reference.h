@@ -1,5 +1,4 @@
-/// The exact normals of quality.h for elements that share faces with many corners. It serves callers inside the
-/// library.
+/// Computes the exact normals of quality.h for elements that share faces with many corners. Private to the library.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 

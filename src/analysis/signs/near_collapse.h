@@ -23,8 +23,8 @@ namespace chronormal::inline internal {
 /// rounding of float32 positions, and far below any length that an author intends.
 inline constexpr double kCollapseShare = 1e-6;
 
-/// The distance in t from an end of the segment within which a collapse is not reported. It belongs to the keyframe at
-/// that end, whose face has no area.
+/// The distance in t from an end of the segment within which a collapse is not reported. Such a collapse belongs to the
+/// keyframe at that end, in which the face has no area.
 inline constexpr double kCollapseMargin = 1e-6;
 
 struct NearCollapse {

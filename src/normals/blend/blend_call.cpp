@@ -24,7 +24,7 @@ constexpr std::size_t kMostRows = kMostRingPoints + 2;
 constexpr std::size_t kNearVertices = 4096;  // points of this many vertices take 128 KiB in double
 
 constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
-// Radians; the largest error of a normal in double, before it is rounded to float32.
+// The largest error in radians of a normal in double, before the normal is rounded to float32.
 constexpr double kLargestAngle = 8e-7;
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
 // The limits for terms in float32. They guarantee 1e-6 rad if the bound of the terms' error is at most 14 times 2^-24

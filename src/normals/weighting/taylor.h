@@ -4,8 +4,8 @@
 /// points of an interval T. Each of its coefficients is then an interval that contains the coefficients about every c
 /// in T. If c and c + s are both in T,
 ///     f(c + s) = sum_(k < M-1) f_k(c) s^k + f_(M-1)(x) s^(M-1)     for some x in T,
-/// where f_(M-1)(x) is in the last coefficient of the series about T. A polynomial about its centre is shifted to the interval; other functions follow by the recurrences of
-/// power series. (Moore, Interval Analysis, 1966.)
+/// where f_(M-1)(x) is in the last coefficient of the series about T. A polynomial about its centre is shifted to the
+/// interval; other functions follow by the recurrences of power series. (Moore, Interval Analysis, 1966.)
 #ifndef CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_
 #define CHRONORMAL_NORMALS_WEIGHTING_TAYLOR_H_
 

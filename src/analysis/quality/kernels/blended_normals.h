@@ -14,8 +14,8 @@
 
 namespace chronormal::inline internal {
 
-/// The number of poses to a multiple of which planes of sums and weights are padded. It is the number of floats in the
-/// widest vector.
+/// The padding of planes of sums and weights. Their size is a multiple of this number of poses, which is the number of
+/// floats in the widest vector.
 inline constexpr std::size_t kPosePadding = 16;
 
 /// A finite vector, and its weight in each pose. The weights are zero outside [first, end).
@@ -33,8 +33,8 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
 /// planes, and a true normal is (0, 0, 0) where none is known. Writes
 ///
 ///     degrees   the angles; 180 for a normal that cannot be lit, -1 where no true normal is known
-///     errors    as planes, the rendered minus the true unit normal; minus twice the true one if it cannot be lit, NaN
-///               where none is known
+///     errors    as planes, the rendered minus the true unit normal; minus twice the true one if the rendered normal
+///               cannot be lit, NaN where none is known
 ///
 /// Returns the largest length of an error.
 [[nodiscard]] float compare_normals(const std::array<const float*, 3>& rendered,

@@ -25,13 +25,13 @@ struct alignas(64) FacingWays {
   double at[6][kFacingBlock];
 };
 
-/// The Bernstein coefficients of f, each multiplied by its binomial coefficient. There are three for a viewer in a
-/// direction, and four for an eye.
+/// The Bernstein coefficients of f, each multiplied by its binomial coefficient. There are three for a viewer
+/// infinitely far away, whose f is a quadratic, and four for an eye at a point, whose f is a cubic.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
   /// The error bounds of the coefficients, if control normals are within 2^-26 of the exact ones.
   double bounds[4][kFacingBlock];
-  /// The sum of the absolute components of the vector to the viewer; the larger one of both ends.
+  /// The sum of the absolute components of the vector to the viewer, at that end of the segment where it is larger.
   double reach[kFacingBlock];
   /// The sign of all coefficients if they exceed their bounds and have one sign; otherwise 0.
   int signs[kFacingBlock];
