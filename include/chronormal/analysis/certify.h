@@ -45,8 +45,8 @@ namespace chronormal {
 
 /// The result for one element: the largest angular error of a scheme over a segment lies between two bounds.
 struct ErrorBounds {
-  double lower = 0;         ///< radians; the error at `at` is at least this
-  double upper = 0;         ///< radians; no error is larger; pi if no smaller bound could be shown
+  double lower = 0;         ///< a lower bound in radians: the error at `at` is at least this
+  double upper = 0;         ///< an upper bound in radians: no error is larger; pi if no smaller bound could be shown
   double at = 0;            ///< the t, in [0, 1], of the error `lower`
   double from = 0, to = 1;  ///< the piece of [0, 1], in t, that has the largest bound
 };

@@ -125,7 +125,7 @@ struct FacingChange {
 };
 
 struct Facing {
-  std::array<FacingChange, 3> at;  ///< in ascending order of t
+  std::array<FacingChange, 3> at;  ///< the changes, in ascending order of t
   std::size_t count = 0;
   /// The side in the whole segment if count is 0; kNone if the face is always edge-on or without area.
   Side side = Side::kNone;

@@ -113,7 +113,7 @@ template <class T, std::size_t N>
 /// The roots of a polynomial of degree up to N in [0, 1].
 template <std::size_t N>
 struct Roots {
-  std::array<double, N> t{};  ///< ascending; a root of even multiplicity may be listed once or twice
+  std::array<double, N> t{};  ///< the roots in ascending order; a root of even multiplicity may be listed once or twice
   std::size_t count = 0;
   bool everywhere = false;  ///< true if p is zero for all t; count is then 0
 };

@@ -95,7 +95,8 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
   bool sequence = false;                ///< true if the targets are keyframes, which have no meaning one by one
-  std::vector<GltfExtraTarget> extras;  ///< in the order of targets; empty if the mark lists none
+  /// The correction targets, in the order of the mesh's targets; empty if the mark lists none.
+  std::vector<GltfExtraTarget> extras;
   /// True if the deltas are fitted to the animations of the file. The deltas are then meaningless at weights that no
   /// animation has.
   bool animations_only = false;
@@ -121,7 +122,7 @@ struct GltfPrimitive {
   /// The kind of primitive by its number in glTF: 4 for triangles, 5 for a strip, 6 for a fan. Primitives of other
   /// kinds (points, lines) have no faces.
   int mode = 4;
-  std::size_t vertex_count = 0;   ///< 0 if the primitive has no POSITION
+  std::size_t vertex_count = 0;   ///< number of vertices; 0 if the primitive has no POSITION
   std::size_t element_count = 0;  ///< number of indices, or number of vertices if there are no indices
   bool has_normals = false, has_tangents = false, has_draco = false;
   /// The attributes for which a morph target has deltas.
@@ -184,7 +185,7 @@ struct GltfAnimation {
 
 /// The keys of a track. K is the number of keys, N the number of targets of the mesh.
 struct GltfKeys {
-  std::vector<double> times;  ///< (K), in seconds, ascending; the file stores float32
+  std::vector<double> times;  ///< the times of the keys in seconds, (K), ascending; the file stores float32
   /// The values at the keys, (K, N). For a cubic spline they are (K, 3, N): in-tangents per second, values,
   /// out-tangents.
   std::vector<double> values;
@@ -192,10 +193,11 @@ struct GltfKeys {
 
 /// The arrays of one primitive, decoded to float32 and to triangles.
 struct GltfGeometry {
-  std::vector<std::uint32_t> corners;  ///< (F, 3); strips and fans are converted to triangles
-  std::vector<float> positions;        ///< (V, 3), in units of length of the file
-  std::vector<float> normals;          ///< (V, 3), or empty if the primitive has none
-  std::vector<float> tangents;         ///< (V, 4), or empty if the primitive has none
+  /// The vertices of each triangle, (F, 3); strips and fans are converted to triangles.
+  std::vector<std::uint32_t> corners;
+  std::vector<float> positions;        ///< the positions of the vertices, (V, 3), in units of length of the file
+  std::vector<float> normals;          ///< the stored normals, (V, 3), or empty if the primitive has none
+  std::vector<float> tangents;         ///< the stored tangents, (V, 4), or empty if the primitive has none
   /// The deltas of one target, (V, 3) each. An array is empty if the target has no such deltas.
   struct Target {
     std::vector<float> positions, normals, tangents;
@@ -216,7 +218,7 @@ struct GltfOptions {
   /// The largest number of bytes for the arrays of one primitive. A small file can ask for huge arrays, so a limit is
   /// needed.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
-  std::size_t max_expansion = 100;  ///< as in InputOptions
+  std::size_t max_expansion = 100;  ///< the limit of memory, as a multiple of the file's size (InputOptions)
   bool strict = false;              ///< true to refuse files for which GltfDocument::notes() would not be empty
   /// Finds buffers and images by their paths below the asset's folder. If it is empty, they are read from the file
   /// system.

@@ -300,7 +300,7 @@ struct RigPose {
   struct Named {
     std::string target;
     double weight = 0;
-    std::string place;  ///< for messages: "poses.json, /1/jawOpen"
+    std::string place;  ///< the place of the weight in its file, for messages: "poses.json, /1/jawOpen"
   };
   std::vector<Named> named;
   std::vector<double> in_order;

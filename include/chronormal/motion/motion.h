@@ -111,8 +111,8 @@ enum class MotionKind {
 
 struct Motion {
   struct Keyframe {
-    std::vector<float> positions;  ///< (V, 3), in units of length of the file
-    double time = 0;               ///< in seconds; for targets, the weight
+    std::vector<float> positions;  ///< the positions of the vertices, (V, 3), in units of length of the file
+    double time = 0;               ///< the time in seconds; for targets, the weight
     std::string name;              ///< the file of the keyframe, for messages; or empty
     /// The velocities that the file of a sequence stores, (V, 3), in units of length per second; or empty.
     std::vector<float> velocities = {};
@@ -171,7 +171,7 @@ struct Motion {
 /// 1/3, which no double represents. If n(t) is so small that rounding t to a double would turn it, integer arithmetic
 /// uses the exact quotient. A double converts to a LocalTime without change.
 struct LocalTime {
-  double t = 0;     ///< rounded to a double once
+  double t = 0;     ///< the local t, rounded to a double once
   double rest = 1;  ///< 1 - t, also rounded once; near t = 1 it has digits that t does not have
   /// The exact t is (time - start) / (end - start).
   double start = 0, time = 0, end = 1;

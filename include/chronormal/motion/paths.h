@@ -88,7 +88,7 @@ struct VelocityShares {
 /// The cubics of all vertices from one keyframe to the next, in Bernstein form.
 struct CubicSegment {
   std::array<std::vector<Vec3d>, 4> control;  ///< control[i][vertex] is the coefficient i of the cubic of a vertex
-  double start_time = 0, end_time = 1;        ///< seconds, at t = 0 and t = 1
+  double start_time = 0, end_time = 1;        ///< the times in seconds, at t = 0 and at t = 1
 
   /// Returns the position of a vertex at a local t.
   [[nodiscard]] Vec3d position(std::size_t vertex, double t) const noexcept;

@@ -103,8 +103,9 @@ void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Wei
                                                          Weighting weighting, const LocalTime& t);
 
 struct WeightingFit {
-  std::vector<ControlNormals> normals;  ///< one for each element
-  std::vector<double> bounds;           ///< one for each element, radians in [0, pi]
+  std::vector<ControlNormals> normals;  ///< the control normals of the fits, one for each element
+  /// Bounds of the errors of the fits in radians, in [0, pi], one for each element.
+  std::vector<double> bounds;
 };
 
 /// Fits the normals of all elements of a segment. For area the control normals are those of

@@ -117,14 +117,15 @@ struct AuditSubject {
 
   Kind kind = Kind::kTarget;
   std::string name;                         ///< name of the target, animation or expression; may be empty
-  std::optional<std::size_t> mesh, target;  ///< numbers in a glTF file; `target` is also used for --base
+  /// Numbers in a glTF file; `target` is also set for targets over a base mesh (--base).
+  std::optional<std::size_t> mesh, target;
   /// `animation` and `track` are set for a track, together with its node. For a pose in which the file opens, `node` is
   /// the first node that opens in it.
   std::optional<std::size_t> animation, track, node;
   std::optional<std::size_t> expression;   ///< index among the expressions of the mesh
   Weighting weighting = Weighting::kArea;  ///< weighting of the true normals
   std::vector<std::size_t> driven;         ///< the targets to which a track gives nonzero weights
-  std::size_t segments = 0, samples = 0;   ///< `samples` is the number per segment
+  std::size_t segments = 0, samples = 0;   ///< number of segments, and number of samples per segment
   std::size_t vertices = 0;                ///< number of judged vertices, or of corners if a vertex has several normals
   MotionError error;
   MotionError at_keys;                         ///< the errors only at both ends of each segment
@@ -168,7 +169,7 @@ struct AuditFinding {
     kUnlit,           ///< a rendered normal is zero, infinite or NaN in some sample
     kMissingNormals,  ///< a target moves positions, but only the base has normals
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1 or at keyframes
-    kWrongBetween,    ///< normals are right at weight 1 or at keyframes, but wrong in between
+    kWrongBetween,    ///< normals are correct at weight 1 or at keyframes, but wrong in between
     /// Normals are wrong where an animation or expression combines targets, and more so than with each target alone.
     kWrongTogether,
     kWrongPose,      ///< normals are wrong in the pose in which a file opens, or in a requested pose

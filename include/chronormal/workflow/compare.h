@@ -51,8 +51,8 @@ enum class Access {
 /// Bounds of the largest error of a scheme at any time of a motion (analysis/certify.h). The error is never above the
 /// upper bound.
 struct CertifiedError {
-  double lower = 0;  ///< in radians
-  double upper = 0;  ///< in radians; pi if no smaller bound could be shown
+  double lower = 0;  ///< the lower bound in radians
+  double upper = 0;  ///< the upper bound in radians; pi if no smaller bound could be shown
   /// The first piece of a segment, as an interval of local t, on which the error may reach the upper bound.
   std::size_t segment = 0, element = 0;
   double from = 0, to = 1;
@@ -62,7 +62,7 @@ struct CertifiedError {
 
 struct CompareOptions {
   std::vector<std::string> schemes;  ///< names of schemes, in the order of the rows; if empty, default_schemes()
-  std::size_t samples = 21;          ///< number per segment, both ends included; at least 2
+  std::size_t samples = 21;          ///< number of samples per segment, both ends included; at least 2
   Access access = Access::kRandom;
   /// Is called in the calling thread with the number of units of work that are done, and their total. It may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
@@ -115,7 +115,7 @@ struct Comparison {
   std::vector<SchemeComparison> schemes;
   MotionKind motion = MotionKind::kSequence;  ///< the kind of the motion
   std::vector<ErrorTable> errors = {};        ///< with keep_errors, one table for each requested scheme
-  std::optional<double> tolerance = {};       ///< in degrees, if one was given
+  std::optional<double> tolerance = {};       ///< the tolerance in degrees, if one was given
   /// The index of the cheapest scheme that is certainly within the tolerance; no value if no scheme is.
   std::optional<std::size_t> cheapest = {};
   Weighting weighting = Weighting::kArea;  ///< the weighting for vertices and corners
@@ -145,7 +145,7 @@ struct Comparison {
 /// The scheme with the least evaluation_cost() among those whose error certainly never exceeds a tolerance. Candidates
 /// are options.schemes, or all schemes without a parameter that support the elements.
 struct Choice {
-  std::optional<std::string> scheme;  ///< no value if no scheme is within the tolerance
+  std::optional<std::string> scheme;  ///< the name of the scheme; no value if no scheme is within the tolerance
   Comparison comparison;              ///< all candidates, compared at two samples of each segment
 };
 /// Finds the cheapest scheme whose error never exceeds `tolerance`, which is in degrees and at least 0. Errors: those
@@ -189,7 +189,8 @@ struct BlendError {
 
 /// The errors for one number of targets that are active at the same time.
 struct BlendErrors {
-  std::size_t active = 0;  ///< number of active targets; for an animation, the largest number
+  /// Number of active targets; for an animation, the largest number at any of its weight vectors.
+  std::size_t active = 0;
   std::size_t rows = 0;    ///< number of weight vectors
   std::vector<BlendError> deltas;
 };

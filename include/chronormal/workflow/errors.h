@@ -46,7 +46,7 @@ inline constexpr std::size_t kAuditFineBins = 1 + 18 * std::size_t{kAuditBinsOfD
 
 /// A vertex at a moment. All numbers are those of the file, counted from 0.
 struct AuditPlace {
-  std::optional<std::size_t> mesh, primitive;  ///< numbers in a glTF file
+  std::optional<std::size_t> mesh, primitive;  ///< the numbers of the mesh and of its primitive in a glTF file
   std::size_t vertex = 0;                      ///< the number of the vertex in the primitive, or in the motion
   std::size_t segment = 0;                     ///< the segment of the subject's motion
   double at = 0;                               ///< the weight of the target, or the time in seconds

@@ -51,7 +51,7 @@ struct SegmentInspection {
   std::size_t turned_over = 0;      ///< number of the faces in `collapses` that have the opposite normal afterwards
   std::size_t without_normals = 0;  ///< number of faces without area in the whole segment
   std::size_t flagged = 0;          ///< number of faces that are evaluated in double (NormalCurves)
-  std::size_t bytes = 0;            ///< bytes of memory that its NormalCurves take
+  std::size_t bytes = 0;            ///< bytes of memory that the NormalCurves of the segment take
 };
 
 struct Inspection {
@@ -156,7 +156,7 @@ struct InspectedGltf {
 /// An input, and the results of its inspection.
 struct Inspected {
   std::optional<Input> opened;           ///< no value for a motion of the caller
-  std::string motion_name;               ///< the name of such a motion
+  std::string motion_name;               ///< the name of a motion of the caller
   std::optional<Inspection> inspection;  ///< no value for a glTF file without faces
   std::vector<std::string> keyframe_names;
   std::vector<Motion::SegmentKeys> segments;

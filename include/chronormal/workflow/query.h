@@ -60,7 +60,7 @@ struct QueryColumn {
 
   std::string name;
   Values values;
-  std::size_t width = 1;  ///< 1, or 3 if each entry is a vector of three numbers
+  std::size_t width = 1;  ///< number of numbers in an entry: 1, or 3 for a vector
 
   [[nodiscard]] std::size_t rows() const noexcept;
 };

@@ -39,7 +39,7 @@ enum class NormalRule { kSum, kUnit, kClamped };
 /// The rules by which viewers play a track of weights. A resampled track has 30 samples per second and is linear in
 /// between (steps stay steps).
 enum class TrackRule {
-  kSpecified,  ///< as appendix C of the glTF specification demands
+  kSpecified,  ///< tracks are played as appendix C of the glTF specification demands
   /// A CUBICSPLINE track is resampled from time 0 on, including its last key; other tracks as specified.
   kSplinesResampled,
   kAllResampled,  ///< every track is resampled, from the first key of the animation on

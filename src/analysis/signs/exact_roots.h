@@ -37,7 +37,7 @@ struct ExactRoot {
 };
 
 struct ExactRoots {
-  std::array<ExactRoot, 3> at;  ///< in ascending order
+  std::array<ExactRoot, 3> at;  ///< the roots, in ascending order
   std::size_t count = 0;
   int sign = 0;  ///< the sign of f if f has no root; 0 if f is zero throughout
 

@@ -33,7 +33,7 @@ struct NearCollapse {
 };
 
 struct NearCollapses {
-  std::array<NearCollapse, 2> at;  ///< in ascending order of t
+  std::array<NearCollapse, 2> at;  ///< the collapses, in ascending order of t
   std::size_t count = 0;
   bool everywhere = false;  ///< true if n is zero in the whole segment; count is then 0
 };

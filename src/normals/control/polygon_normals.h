@@ -23,7 +23,7 @@ inline constexpr double kLargestRounding = 0x1p-26;
 /// Control normals in double, and for each of them a bound of the error of its components.
 struct BoundedNormals {
   ControlNormals normals;
-  std::array<double, 3> errors{};  ///< bounds for n0, m and n1
+  std::array<double, 3> errors{};  ///< bounds of the errors of n0, of m and of n1
 
   /// Returns the largest error of a control normal, relative to the size of that control normal.
   [[nodiscard]] double largest_share() const noexcept {
@@ -47,7 +47,7 @@ struct BoundedNormals {
   }
 };
 
-struct PolygonNormals : BoundedNormals {  ///< normals are those that face_control_normals() writes
+struct PolygonNormals : BoundedNormals {  ///< `normals` are those that face_control_normals() writes
   /// The largest component of the sums of absolute products in n0, n1 and 2 m. For m, the products of both cross
   /// products are added.
   double magnitude = 0;

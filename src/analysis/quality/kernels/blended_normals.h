@@ -20,7 +20,7 @@ inline constexpr std::size_t kPosePadding = 16;
 
 /// A finite vector, and its weight in each pose. The weights are zero outside [first, end).
 struct WeightedVector {
-  const float* weights = nullptr;  ///< one for each pose, padded
+  const float* weights = nullptr;  ///< a weight for each pose, padded to a multiple of kPosePadding
   std::size_t first = 0, end = 0;
   Vec3f vector;
 };

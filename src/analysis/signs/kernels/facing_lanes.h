@@ -48,7 +48,7 @@ struct alignas(64) SingleRoots {
   double p[4][kFacingBlock];   ///< the coefficients of each polynomial, three or four
   double error[kFacingBlock];  ///< the error of each coefficient, not counting the rounding of later operations
   double lower[kFacingBlock], upper[kFacingBlock];
-  int before[kFacingBlock];  ///< the sign before the root; 0 if the lane did not find it
+  int before[kFacingBlock];  ///< the sign before the root; 0 if the root was not found
 };
 
 /// Finds the root of each polynomial that certainly has exactly one root. The other polynomials are left to

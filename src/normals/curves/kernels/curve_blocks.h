@@ -85,9 +85,9 @@ inline constexpr int kMaxScaleExponent = 31;
 struct CurveWeights {
   float linear[2];              ///< weights of n0 and n1 of a linear curve
   float quadratic[3];           ///< weights of n0, m and n1 of a quadratic
-  std::int32_t linear16 = 0;    ///< int16 pair: weights of n0 and n1, in units of a scale
-  std::int32_t ends16 = 0;      ///< int16 pair: weights of n0 and n1 of a quadratic, in units of a scale
-  std::int32_t middle16 = 0;    ///< weight of m, in the same units as ends16
+  std::int32_t linear16 = 0;    ///< int16 pair: weights of n0 and n1 of a linear curve, as multiples of a common unit
+  std::int32_t ends16 = 0;      ///< int16 pair: weights of n0 and n1 of a quadratic, as multiples of a common unit
+  std::int32_t middle16 = 0;    ///< weight of m of a quadratic, as a multiple of the unit of ends16
   std::int32_t middle_low = 0;  ///< middle16 / 32
 
   /// Returns the weights at a time. If `compact` is false, the integer weights stay 0, which saves a tenth of a

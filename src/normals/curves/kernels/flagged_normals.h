@@ -60,7 +60,7 @@ inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
 /// The unit normals of the elements of a tile, in float32.
 struct alignas(64) FlaggedUnits {
-  float xyz[3 * kTile];     ///< three numbers for each element
+  float xyz[3 * kTile];     ///< x, y and z of the unit normal of each element
   std::uint32_t uncertain;  ///< bit i is set if the direction of element i is uncertain
 
   [[nodiscard]] Vec3f operator[](std::size_t lane) const noexcept {

@@ -42,7 +42,7 @@ struct TileSummary {
   std::uint32_t uncertain = 0;
   std::uint32_t moving = 0;              ///< bit i is set if element i has degree 1 or 2
   std::uint32_t bending = 0;             ///< bit i is set if element i has degree 2
-  Precision precision = Precision::k11;  ///< a precision that suffices for all other elements
+  Precision precision = Precision::k11;  ///< a precision that suffices for all elements that are not uncertain
 
   void set_degree(std::size_t lane, int degree) noexcept {
     const std::uint32_t bit = 1u << lane;
