@@ -128,7 +128,7 @@ class PieceBounds {
 
   [[nodiscard]] PieceEdge edge(std::uint32_t a, std::uint32_t b, double start, double end) const {
     Bernstein<Vec3d, 3> e;
-    double size = 0;  // the largest coordinate
+    double size = 0;  // the largest absolute coordinate of the control points of both cubics
     for (std::size_t k = 0; k < e.size(); ++k) {
       const Vec3d &p = cubics_.control[k][a], &q = cubics_.control[k][b];
       e[k] = q - p;
@@ -355,7 +355,7 @@ Result<CutStream> cut_into_segments(MotionStream stream, const Path& path, std::
   outline.body_of_vertex = source.body_of_vertex;
   const double sine = portable::sin(path.tolerance / kDegreesPerRadian);
   BendSums bend;
-  double largest = 0;  // the largest coordinate
+  double largest = 0;  // the largest absolute coordinate of all control points
   for (std::size_t s = 0; s < cut.segments; ++s) {
     if (const Status status = cutter->enter(s); !status) return status.error();
     if (s > 0) add_bend(source, s, 1, bend);

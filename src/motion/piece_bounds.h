@@ -101,7 +101,8 @@ struct Pieces {
 template <class Bounds>
 [[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);
-  std::vector<std::size_t> ladder, left;  // number of pieces of each rung, and of faces that it leaves
+  // For each rung, the number of pieces, and the number of faces for which these are not enough.
+  std::vector<std::size_t> ladder, left;
   for (std::size_t n = 1; n <= tried; n *= 2) {
     ladder.push_back(n);
     if (n > 1 && n + n / 2 <= tried) ladder.push_back(n + n / 2);

@@ -57,7 +57,8 @@ class SegmentEnd {
       left = left - to_double(part);
     }
   }
-  static constexpr std::size_t kMostParts = 4;  // a float, and a residual of 53 bits as floats of 24 bits
+  // One float for the position, and three floats of 24 bits for a residual of 53 bits.
+  static constexpr std::size_t kMostParts = 4;
 
   [[nodiscard]] Vec3d residual(std::size_t vertex) const noexcept {
     return has_residuals() ? residuals_[vertex] : Vec3d{};

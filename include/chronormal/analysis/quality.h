@@ -53,7 +53,7 @@ struct Quality {
   double sum_of_squares = 0;   ///< sum of the squared angles, in radians squared
   double max = 0;              ///< the largest angle in radians
   ErrorPlace max_at;           ///< the first place with the largest angle
-  std::size_t count = 0;       ///< number of samples that were summed
+  std::size_t count = 0;       ///< number of samples whose angles were summed
   std::size_t degenerate = 0;  ///< number of samples without an exact normal, which are left out
   std::size_t missing = 0;     ///< number of samples for which the scheme has no normal, which are left out
 

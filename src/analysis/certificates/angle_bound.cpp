@@ -80,7 +80,8 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   const bool is_ahead = *std::min_element(dot_products.begin(), dot_products.end()) > kRounding * p_length * n_length;
 
   double smallest = std::numeric_limits<double>::infinity();
-  double steepest = 0, flattest = std::numeric_limits<double>::infinity();  // squares of tan(angle)
+  // Bounds of the square of tan(angle), from above and from below.
+  double steepest = 0, flattest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k <= 2 * kDegree; ++k) {
     smallest = std::min(smallest, cross_squares[k] + dot_squares[k]);
     const double below = dot_squares[k] - dot_slack;

@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr double kE = kFloatUnitRoundoff;
-constexpr double kScaling = 2 * kE;  // radians: the error of scaling a vector to length 1
+constexpr double kScaling = 2 * kE;  // the error, in radians, of scaling a vector to length 1
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Returns the rounding error of a weighted sum of `count` vectors, if the sum of |weights| |vectors| is 1. The error
@@ -164,7 +164,8 @@ SphericalCurve::SphericalCurve(std::size_t count, ElementCoefficients c) noexcep
 }
 
 CurvePiece SphericalCurve::over(double a, double b) const noexcept {
-  constexpr double kMostTurn = std::numbers::pi - 1e-3;  // beyond this angle, float32 does not determine a slerp
+  // An angle in radians; beyond it, float32 does not determine a slerp.
+  constexpr double kMostTurn = std::numbers::pi - 1e-3;
   if (!are_unit_) return {{}, kInfinity, {}, kInfinity, 0};
   const double t = a + (b - a) / 2, half = (b - a) / 2;
   // The vector that de Casteljau's algorithm has at the middle of the piece, the largest speed of this vector anywhere

@@ -14,7 +14,7 @@
 namespace chronormal {
 namespace {
 
-constexpr std::size_t kBlock = 256;  // number of elements; their control normals are 18 KiB
+constexpr std::size_t kBlock = 256;  // number of elements in a block; their control normals take 18 KiB
 constexpr std::size_t kRefinements = 10;
 constexpr double kSineRounding = 0x1p-46;  // relative rounding error of the sine of a sum of angles
 

@@ -28,7 +28,7 @@ namespace {
 constexpr double kRadius = 2.125;
 constexpr double kGaussError = 32.0 / 15 * 0x1p-32 / (1 - 0x1p-4);
 constexpr double kNearness = 0.5;           // a piece is small enough if k, as defined above, is at most this
-constexpr int kDeepest = 28;                // how often an interval is halved at most
+constexpr int kDeepest = 28;                // largest number of times that the interval is halved
 constexpr double kCurveRounding = 0x1p-47;  // relative rounding error of n(t) and of sums of unit vectors
 
 constexpr std::array<double, 4> kNodes{0.18343464249564980, 0.52553240991632899, 0.79666647741362674,

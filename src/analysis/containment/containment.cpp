@@ -63,7 +63,7 @@ EdgeFaults find_edge_faults(const Topology& topology, const Points& points) {
 // The triangles of all faces. Each point is represented by its first vertex. A triangle that names a point twice has no
 // area at any time, and is left out.
 struct Triangles {
-  std::vector<std::uint32_t> corners;  // three for each triangle
+  std::vector<std::uint32_t> corners;  // three vertices for each triangle
   std::vector<std::uint32_t> faces;
 };
 

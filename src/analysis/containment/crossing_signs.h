@@ -51,7 +51,7 @@ struct MovingPoint {
   Vec3d from_residual = {}, to_residual = {};  ///< the remainders of the rounding to float (motion/segment_end.h)
 };
 
-/// The answer for a triangle and a cell of time.
+/// The answer to the question whether the point crosses a triangle during a cell of time.
 struct Verdict {
   enum Kind {
     kNothing,   ///< the point does not cross the triangle

@@ -80,7 +80,7 @@ struct MovingBox {
     return sign * ((1 - t) * at_from + t * at_to) >= -kSlack * (std::fabs(at_from) + std::fabs(at_to));
   }
 
-  static constexpr double kSlack = 1e-14;  // more than the error of four roundings
+  static constexpr double kSlack = 1e-14;  // a relative error, larger than that of four roundings
 };
 
 /// Returns the boxes of all nodes for a segment. The topology of the segment must have the triangles in the order of

@@ -27,7 +27,7 @@ namespace chronormal::inline internal {
 /// The base normals and the deltas of normals that a viewer adds up.
 struct DeltaNormals {
   std::vector<float> base;          ///< N of each element, (elements, 3)
-  std::vector<BlendTarget> deltas;  ///< D_i; `vertices` are numbers of elements here
+  std::vector<BlendTarget> deltas;  ///< D_i of each target; its `vertices` are numbers of elements
 };
 
 /// Writes N + sum_i w_i D_i of all elements. This is the direction that a viewer renders, not scaled to length 1.

@@ -107,7 +107,7 @@ double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexce
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
-// Returns the largest key of all samples.
+// Returns the largest key of the angles at all samples.
 double largest_key(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) largest = std::max(largest, line_key(from, to, samples[i]));

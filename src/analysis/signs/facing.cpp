@@ -102,7 +102,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
     size = std::max(size, std::fabs(p[k]));
     bound = std::max(bound, f.bounds[k][i]);
   }
-  constexpr double kRoundings = 64;  // number of roundings by restrict_to() and of the coefficients
+  constexpr double kRoundings = 64;  // number of roundings in the coefficients and in restrict_to()
   bound += kRoundings * kUnitRoundoff * size;
   // If both a front and a back are certainly seen, at one of these five times, the answer is kBoth.
   bool shows_front = false, shows_back = false;

@@ -137,7 +137,7 @@ class BlendTerms::PairCounter {
   std::vector<std::size_t> offsets_;  // for each face, its first place in targets_, and the end
   Indices targets_;
   std::vector<bool> is_moved_;
-  Indices last_element_, counts_;  // one number for each target
+  Indices last_element_, counts_;  // for each other target, the last element that was counted, and the count
 };
 
 BlendTerms::BlendTerms(const BlendSet& set, const NormalGroups* groups) : set_(set), groups_(groups) {

@@ -31,7 +31,7 @@ namespace chronormal::inline internal {
 struct BlendTerm {
   std::vector<std::uint32_t> elements;
   std::vector<Vec3d> values;
-  std::vector<double> noise;  ///< bound of the error of each value, by the rounding of double
+  std::vector<double> noise;  ///< bound of the error of each value, which comes from rounding in double
 };
 
 class BlendTerms {
@@ -118,7 +118,7 @@ class BlendTerms {
 
   const BlendSet& set_;
   const NormalGroups* groups_;                               // nullptr if the elements are faces
-  std::vector<std::vector<std::uint32_t>> faces_of_target_;  // in ascending order
+  std::vector<std::vector<std::uint32_t>> faces_of_target_;  // the faces that each target moves, in ascending order
 };
 
 class BlendTerms::Term {

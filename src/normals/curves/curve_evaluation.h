@@ -47,7 +47,7 @@ void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, 
   const auto index_of = [&flagged = curves.flagged.numbers](std::size_t element) {
     return static_cast<std::size_t>(std::lower_bound(flagged.begin(), flagged.end(), element) - flagged.begin());
   };
-  constexpr std::size_t kBatch = 4;  // number of tiles
+  constexpr std::size_t kBatch = 4;  // number of tiles that are evaluated in one call
   const std::size_t begin = index_of(range.first), end = index_of(range.end());
   FlaggedUnits batch[kBatch];
   for (std::size_t tile = begin / kTile; tile * kTile < end; tile += kBatch) {

@@ -102,7 +102,7 @@ struct CurvePart {
   IndexRange elements;
   std::byte* begin = nullptr;  // place of the part's blocks in memory; nullptr if they are only counted
   std::size_t bytes = 0;
-  std::vector<CurveData::Run> runs;  // offsets count from `begin`
+  std::vector<CurveData::Run> runs;  // the runs of the part, whose offsets count from `begin`
   FlaggedElements flagged;
   std::vector<CurveData::ExactElement> exact;
   std::vector<std::int32_t> exact_digits;

@@ -391,7 +391,7 @@ class Call {
   LocalTime t_;
   VectorView<float> result_;
   std::size_t first_;
-  bool by_kernel_;  // false if elements are evaluated one by one
+  bool by_kernel_;  // true if kernels evaluate the elements; false if they are evaluated one by one
   bool stream_;
   MovingTriangles triangles_;
   FaceNormal* normals_ = nullptr;

@@ -23,13 +23,13 @@ constexpr std::size_t kFitBlock = 64;
 
 constexpr std::size_t kSamples = 16;      // number of samples of the error, with which the bound is compared
 constexpr double kTightness = 2;          // a bound of up to this multiple of the largest sampled error is tight enough
-constexpr double kFineEnough = 1e-9;      // radians; a bound of up to this is tight enough
+constexpr double kFineEnough = 1e-9;      // an angle in radians; a bound of up to this is tight enough
 constexpr int kDeepest = 20;              // largest number of times that the segment is halved
 constexpr std::size_t kMostPieces = 256;  // largest number of pieces of the segment for one element
 
 // The control normals of a face, as intervals that contain the exact values.
 struct IntervalNormals {
-  std::array<std::array<Interval, 3>, 3> control;  // n0, m, n1
+  std::array<std::array<Interval, 3>, 3> control;  // x, y and z of n0, of m and of n1
   // True if the face has an area at some time that is more than rounding error.
   bool area = false;
 };

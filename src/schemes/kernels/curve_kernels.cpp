@@ -128,7 +128,7 @@ auto Visit(Formula formula, Visitor visit) {
 template <class Write>
 void WriteBlocks(const CoefficientBlocks& curves, VectorView<float> result, std::size_t stream_from, Write write) {
   if (result.count == 0) return;
-  std::size_t done = 0;  // number of blocks
+  std::size_t done = 0;  // number of blocks that are already written
   const bool packed = result.is_packed();
   if (packed || result.stride == 1) {
     done = result.count / kBlock;

@@ -27,7 +27,7 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 inline constexpr std::size_t kIntervals = 20;  // number of intervals between samples, as in ExactSamples
 // The search ends if a better arc could gain at most this fraction of the mean error.
 inline constexpr double kGain = 1e-4;
-inline constexpr double kNoError = 1e-10;  // radians; if the error is smaller, there is no search
+inline constexpr double kNoError = 1e-10;  // an angle in radians; if the mean error is smaller, there is no search
 inline constexpr double kLargestG = 0.77;  // the g of an arc of 150 degrees
 
 // Returns the sine of x, which must be in [0, 0.16], with the rounding error of double.

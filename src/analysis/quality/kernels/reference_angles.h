@@ -31,7 +31,8 @@ class ReferenceTriangles {
  private:
   Segment segment_;
   IndexRange faces_;
-  std::vector<double> edges_;  // in groups of lanes, 20 values per triangle
+  // The values of each triangle that do not depend on t: 20 values per triangle, in groups of lanes.
+  std::vector<double> edges_;
 };
 
 /// The numbers that take the place of an angle where there is none.

@@ -26,14 +26,15 @@ class TrianglesInMotion {
 
   struct Normal {
     double x, y, z;
-    double size;  ///< the largest absolute component
+    double size;  ///< the largest absolute value of x, y and z
   };
   /// Writes the normals of all triangles at a t in [0, 1], one for each triangle.
   void normals(double t, std::vector<Normal>& result) const;
 
  private:
   std::size_t count_ = 0;
-  std::vector<float> positions_;  // in groups of lanes, 18 values per triangle
+  // The positions of the corners at both ends: 18 values per triangle, in groups of lanes.
+  std::vector<float> positions_;
 };
 
 /// Vectors as planes of x, y and z, and a fourth number w for each vector.

@@ -295,7 +295,7 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {
-  constexpr std::size_t kAhead = 2;  // number of tiles
+  constexpr std::size_t kAhead = 2;  // number of tiles by which vertices are prefetched in advance
   const Topology& topology = *segment.topology;
   const std::uint32_t* const corners = topology.corners().data() + 3 * first;
   if (HWY_LIKELY(first + kTile <= end)) {

@@ -135,7 +135,7 @@ class Glance {
 
  private:
   static constexpr std::size_t kCount = std::size(kInstants);
-  static constexpr double kUp = 1 + 0x1p-40;  // allows for all roundings
+  static constexpr double kUp = 1 + 0x1p-40;  // the factor that allows for all rounding errors of these comparisons
   Doubles square_[kCount], limit_[kCount];
 };
 

@@ -88,7 +88,7 @@ struct CurveWeights {
   std::int32_t linear16 = 0;    ///< int16 pair: weights of n0 and n1 of a linear curve, as multiples of a common unit
   std::int32_t ends16 = 0;      ///< int16 pair: weights of n0 and n1 of a quadratic, as multiples of a common unit
   std::int32_t middle16 = 0;    ///< weight of m of a quadratic, as a multiple of the unit of ends16
-  std::int32_t middle_low = 0;  ///< middle16 / 32
+  std::int32_t middle_low = 0;  ///< weight of the low part of m in kQuadratic11: middle16 / 32, rounded
 
   /// Returns the weights at a time. If `compact` is false, the integer weights stay 0, which saves a tenth of a
   /// microsecond.

@@ -29,7 +29,8 @@ inline constexpr std::size_t kWorkingSets = 4;
 
 class PrefetchRule {
  public:
-  static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};  // bytes; 0 means no prefetch
+  // Distances in bytes; 0 means no prefetch.
+  static constexpr std::array<std::size_t, 5> kDistances = {2048, 0, 4096, 8192, 16384};
   // Number of trials of each distance.
   static constexpr std::size_t kTrials = 16;
   // Bytes of curves that a trial reads.

@@ -100,7 +100,7 @@ std::size_t RingUnitNormals(const RingPoints& points, const RingSlices& all, Ind
 
 std::size_t TriangleUnitNormals(const RingPoints& points, const std::uint32_t* corners, std::size_t face_count,
                                 IndexRange faces, VectorView<float> result, bool stream) {
-  constexpr std::size_t kAhead = 4 * kRingRowsAhead;  // number of faces
+  constexpr std::size_t kAhead = 4 * kRingRowsAhead;  // number of faces by which points are prefetched in advance
   return WithLayout(result, stream, [&](auto layout) HWY_ATTR {
     std::size_t zeros = 0;
     for (std::size_t i = 0; i < faces.count; i += kRingLanes) {

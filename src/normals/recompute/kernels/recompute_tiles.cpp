@@ -186,7 +186,7 @@ HWY_INLINE hn::Mask<FloatTag> InRange(Floats smallest, Floats largest) {
 
 struct Normals {
   Lanes3 n;
-  Floats product;  // the A B of recompute_tiles.h
+  Floats product;  // the product A B, as in recompute_tiles.h
   Floats smaller;  // the smaller one of A and B
   hn::Mask<FloatTag> trusted;
 };
