@@ -60,8 +60,8 @@ std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyfr
   return keys;
 }
 
-// Holds the keyframes that determine the cubics of a segment. They are its two ends and one more keyframe on each side,
-// or two more on the only other side for the first and the last segment.
+// Holds the keyframes that determine the cubics of a segment. They are its two ends and one more keyframe on each side.
+// At the first and the last segment only one side has more keyframes, and two of these are held.
 Status hold_cubics(MotionStream& stream, std::size_t segment) {
   const std::size_t end = stream.motion().keyframes.size() - 1;
   const std::size_t before = segment - std::min<std::size_t>(segment, 1);

@@ -46,7 +46,7 @@ struct PieceEdge {
   double farther = 0, rounding = 0;
 };
 
-/// Returns a bound of the rounding of an edge whose ends have no coordinate larger than `size`.
+/// Returns a bound of the rounding error of an edge whose ends have no coordinate larger than `size`.
 [[nodiscard]] inline double edge_rounding(double size) noexcept {
   return 2 * std::sqrt(3.0) * kFloatUnitRoundoff * size;
 }
@@ -95,9 +95,9 @@ struct Pieces {
   std::size_t beyond = 0;  ///< number of faces for which the count is not enough
 };
 
-/// Returns the fewest pieces that suffice for all faces for which some number of pieces suffices, or `most` if that is
-/// fewer. bounds.not_within(faces, pieces) returns those of the faces for which so many pieces are not enough, in their
-/// order; nullptr stands for all faces.
+/// Returns the smallest number of pieces that is enough for every face, but at most `most`. Faces for which no number
+/// of pieces is enough do not matter. bounds.not_within(faces, pieces) returns those of the faces for which so many
+/// pieces are not enough, in their order; nullptr stands for all faces.
 template <class Bounds>
 [[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);

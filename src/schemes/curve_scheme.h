@@ -286,8 +286,8 @@ class CurveScheme final : public Scheme {
     }
   }
 
-  // Returns the coefficients of an example for counting operations. It is a face whose normal turns from +x to +y, so
-  // that no formula takes a shortcut.
+  // Returns the coefficients of an example element for counting operations. The example is a face whose normal turns
+  // from +x to +y, so that no formula takes a shortcut.
   [[nodiscard]] std::vector<float> example_coefficients() const {
     const ControlNormals turning{{1, 0, 0}, {0.7, 0.6, 0.2}, {0, 1, 0}};
     const Segment segment = example_segment();

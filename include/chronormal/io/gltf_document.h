@@ -94,7 +94,7 @@ inline constexpr std::array<BakeEncodingName, 5> kBakeEncodings = {{{BakeEncodin
 ///      "extras": [{"target": 2, "linear": [], "quadratic": [[0, 1, 1.0]]}]}
 struct GltfBakeMark {
   BakeEncoding encoding = BakeEncoding::kExact;
-  bool sequence = false;                ///< true if the targets are keyframes, which have no meaning one by one
+  bool sequence = false;  ///< true if the targets are keyframes, which have no meaning one by one
   /// The correction targets, in the order of the mesh's targets; empty if the mark lists none.
   std::vector<GltfExtraTarget> extras;
   /// True if the deltas are fitted to the animations of the file. The deltas are then meaningless at weights that no
@@ -195,9 +195,9 @@ struct GltfKeys {
 struct GltfGeometry {
   /// The vertices of each triangle, (F, 3); strips and fans are converted to triangles.
   std::vector<std::uint32_t> corners;
-  std::vector<float> positions;        ///< the positions of the vertices, (V, 3), in units of length of the file
-  std::vector<float> normals;          ///< the stored normals, (V, 3), or empty if the primitive has none
-  std::vector<float> tangents;         ///< the stored tangents, (V, 4), or empty if the primitive has none
+  std::vector<float> positions;  ///< the positions of the vertices, (V, 3), in units of length of the file
+  std::vector<float> normals;    ///< the stored normals, (V, 3), or empty if the primitive has none
+  std::vector<float> tangents;   ///< the stored tangents, (V, 4), or empty if the primitive has none
   /// The deltas of one target, (V, 3) each. An array is empty if the target has no such deltas.
   struct Target {
     std::vector<float> positions, normals, tangents;

@@ -41,10 +41,10 @@ struct FittedCurves;
 /// The input that a scheme is prepared from: some elements of one segment, and their control normals.
 struct ElementBlock {
   const Segment* segment = nullptr;
-  IndexRange elements;                      ///< the elements; schemes that need faces read the faces with these numbers
+  IndexRange elements;  ///< the elements; schemes that need faces read the faces with these numbers
   /// The control normals, one for each element; `recompute` does not read them.
   std::span<const ControlNormals> normals;
-  bool are_faces = true;                    ///< false for vertices or corners, which have no edges
+  bool are_faces = true;  ///< false for vertices or corners, which have no edges
   /// A function that returns the exact normal of the i-th element of the block at t, not scaled to length 1. It is
   /// empty if the control normals are exact. Otherwise the control normals are only a fit, which is exact at both ends
   /// and at t = 1/2.

@@ -116,7 +116,7 @@ struct AuditSubject {
   enum class Kind { kTarget, kTrack, kSequence, kExpression, kOpening, kPoses };
 
   Kind kind = Kind::kTarget;
-  std::string name;                         ///< name of the target, animation or expression; may be empty
+  std::string name;  ///< name of the target, animation or expression; may be empty
   /// Numbers in a glTF file; `target` is also set for targets over a base mesh (--base).
   std::optional<std::size_t> mesh, target;
   /// `animation` and `track` are set for a track, together with its node. For a pose in which the file opens, `node` is

@@ -191,7 +191,7 @@ struct BlendError {
 struct BlendErrors {
   /// Number of active targets; for an animation, the largest number at any of its weight vectors.
   std::size_t active = 0;
-  std::size_t rows = 0;    ///< number of weight vectors
+  std::size_t rows = 0;  ///< number of weight vectors
   std::vector<BlendError> deltas;
 };
 

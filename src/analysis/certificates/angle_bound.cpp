@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// The length of a vector below which the float32 formulas of schemes treat it in a different way.
+// The length of a vector below which the float32 formulas of schemes do not scale the vector to length 1, but use a
+// fallback.
 constexpr double kShortest = 1.1e-8;
 
 // A bound of the rounding error of a sum of a few products, where each product is at most 1.

@@ -18,8 +18,9 @@ namespace {
 constexpr std::size_t kAxisRefinements = 10;
 // The sine of 84 degrees; a wider cone would hardly ever pass the culling test.
 constexpr double kWidest = 0.995;
-constexpr double kTestSlack = 0x1p-20;    // the error of the culling test in float32: some ten roundings of 2^-24
-constexpr double kRoundUp = 1 + 0x1p-22;  // the factor for rounding up to float, and for the rounding before that
+constexpr double kTestSlack = 0x1p-20;  // the error of the culling test in float32: some ten roundings of 2^-24
+// The factor that covers rounding a bound up to float, and the roundings before that.
+constexpr double kRoundUp = 1 + 0x1p-22;
 constexpr double kSumRounding = 0x1p-46;  // relative rounding error of sums of products in double
 constexpr double kSteps = 127;            // number of steps of a component in 8 bits, from 0 to 1
 

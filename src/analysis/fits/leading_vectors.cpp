@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kMore = 8;  // number of additional columns, with which the iteration converges faster
 constexpr int kIterations = 16, kMostSweeps = 30;
-constexpr double kNothing = 1e-12;  // relative to the largest eigenvalue; smaller eigenvalues are rounding errors
+constexpr double kNothing = 1e-12;  // a share of the largest eigenvalue; smaller eigenvalues are rounding errors
 constexpr double kDiagonal = 1e-13;
 
 // The columns of a matrix, each an array of n numbers.

@@ -141,7 +141,7 @@ class BlendTerms::Term {
 
     const BlendTarget* target;
     std::uint32_t first = 0;
-    // Places in the target's list for the vertices from `first` on; empty if these are too scattered.
+    // For the vertices from `first` on, their places in the target's list; empty if the vertices are too scattered.
     std::vector<std::uint32_t> of_vertices;
   };
 

@@ -25,8 +25,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the number of elements in a part. It is small enough that their blocks stay in a cache until they are moved,
-// and that all threads are busy to the end. It depends only on the number of elements, and so is the same for any
+// Returns the number of elements in a part. A part is so small that its blocks stay in a cache until they are moved,
+// and that all threads are busy to the end. Its size depends only on the number of elements, and so is the same for any
 // number of threads.
 std::size_t part_size(std::size_t size) {
   constexpr std::size_t kParts = 16;
@@ -38,7 +38,7 @@ std::size_t part_size(std::size_t size) {
 // vertex. If vertices are in random order, this halves the cache misses.
 class EndsSideBySide {
  public:
-  // Prepares the copy. `memory` is used for it if it is large enough. Nothing is copied yet.
+  // Prepares the copy. The copy uses `memory` if that is large enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -205,8 +205,8 @@ template <class MakeSource>
 CurveData build(std::size_t size, const CurveOptions& options, Threads threads, CurveData* reuse,
                 MakeSource make_source) {
   Build build(size, options, reuse);
-  // If there are so few elements, all are built on this thread: starting another thread takes as long as building a few
-  // hundred elements.
+  // A few elements are all built on this thread: starting another thread takes as long as building a few hundred
+  // elements.
   if (threads == Threads::kAll && size > 2 * part_size(size)) {
     build.make_parts(make_source);
   } else if (size > 0) {

@@ -23,7 +23,7 @@ struct FlaggedElements {
 
   [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
 
-  /// Returns the control normals in the tile of an element, which are scaled by a power of two.
+  /// Returns the control normals of an element as its tile has them, scaled by a power of two.
   [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }

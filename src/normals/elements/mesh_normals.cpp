@@ -56,8 +56,8 @@ std::vector<float> packed_copy(VectorView<const float> positions) {
   return result;
 }
 
-// Returns a motion with the base, and with the mesh at full weight of each target, as keyframes. They show which
-// vertices always stay at one point.
+// Returns a motion with the base, and with the mesh at full weight of each target, as keyframes. These keyframes show
+// which vertices coincide in the base and at full weight of every target.
 Motion star_of(const BlendSet& set) {
   Motion star;
   star.topology = set.topology;
@@ -444,7 +444,7 @@ struct MeshNormals::Parts {
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
   std::vector<float> normal_of_corner;       // kept until the outputs that share a normal are known
-  // The groups, which all objects for one mesh share as soon as they are known. It is nullptr for faces.
+  // The groups, which all objects for one mesh share as soon as the groups are known; nullptr for faces.
   std::shared_ptr<const NormalGroups> groups;
   bool shares = false;      // true if outputs share elements; false if output i is always element i
   CurveData curves, spare;  // curves of the current segment, and memory for those of the next

@@ -11,7 +11,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The largest number of pieces of a path for which the code searches an order.
+// The largest number of pieces of a path for which the code looks for an order in which they adjoin.
 constexpr std::size_t kMostSearched = 64;
 using Path = std::vector<std::uint32_t>;  // first the centre, and then the points of the path
 

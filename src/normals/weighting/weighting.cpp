@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kElementsAtOnce = 1024;
 
 // The largest relative error of the normal of a face, and the largest angle, in radians, by which such errors may turn
-// a sum of faces. The angle 2^-23 = 1.2e-7 rad is not exceeded until faces cancel to a hundredth.
+// a sum of faces. The angle 2^-23 = 1.2e-7 rad is only exceeded if faces cancel so far that their sum is shorter than a
+// hundredth of the sum of their lengths.
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
 // Returns the normal of a face. Double computes it, or integers if double is not precise enough.

@@ -48,7 +48,7 @@ struct BlockResult {
   }
 };
 
-// Prefetches the coefficients that are about 2 KiB further, since they are read soon.
+// Prefetches the coefficients that are about 2 KiB further in memory, since they are read soon.
 HWY_INLINE void PrefetchBlock(const float* block, std::size_t plane_count) {
   constexpr std::size_t kAhead = 2048 / sizeof(float);
   constexpr std::size_t kCacheLine = 64 / sizeof(float);

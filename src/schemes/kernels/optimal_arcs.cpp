@@ -40,8 +40,8 @@ HWY_INLINE Real small_cosine(Real x) {
   return Real(1.0) - z * (Real(1.0 / 2) - z * (Real(1.0 / 24) - z * (Real(1.0 / 720) - z * Real(1.0 / 40320))));
 }
 
-// Returns the angle in radians between two unit vectors, given the square of their distance. Below a right angle it is
-// angle_of_squared_chord() of mean_error.h; beyond, it is too large.
+// Returns the angle in radians between two unit vectors, given the square of their distance. Below a right angle the
+// result is that of angle_of_squared_chord() of mean_error.h; for larger angles it is too large.
 HWY_INLINE Real angle_of_chord(Real square) {
   const Real z = Real(0.25) * square;
   const Real series =

@@ -48,8 +48,8 @@ HWY_INLINE DoubleRow LoadLastThree(const float* from) {
   return LoadDoubleRow(row);
 }
 
-// Returns a row that multiplies x, y and z by a factor and the fourth component by 0. The fourth float that was loaded
-// belongs to the next vector.
+// Returns a row that multiplies x, y and z by a factor and the fourth component by 0. It is for rows whose fourth float
+// belongs to the next vector in memory.
 HWY_INLINE DoubleRow ThreeTimes(double factor) {
   const double row[kBlendLanes] = {factor, factor, factor, 0};
   return LoadDoubleRow(row);
@@ -88,8 +88,8 @@ void MoveFloatPoints(std::span<const std::uint32_t> vertices, const float* delta
   for (std::size_t i = 0; i < last; ++i)
     MoveFloatPoint(deltas + 3 * i, weight, points + kBlendLanes * std::size_t{vertices[i]});
 #else
-  // The fourth component of a point must not change. In the row of deltas, it belongs to the next three floats, so its
-  // factor is 0.
+  // The fourth component of a point must not change. The fourth float of a loaded row of deltas belongs to the next
+  // delta, so its factor is 0.
   const hn::FixedTag<float, 4> tag;
   const float factors[4] = {weight, weight, weight, 0};
   const auto w = hn::LoadU(tag, factors);

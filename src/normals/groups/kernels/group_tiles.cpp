@@ -149,8 +149,8 @@ HWY_INLINE void SumRing(const PointColumns* points, std::size_t rows, ExactTile&
   }
 }
 
-// Returns an upper bound of the sum of the absolute products in any component, where the factors may be of any ends of
-// the segment.
+// Returns an upper bound of the sum of the absolute products in any component, where each factor may be from either end
+// of the segment.
 HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, std::size_t lane) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;

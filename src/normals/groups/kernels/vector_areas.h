@@ -17,7 +17,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kAreaRow = 4;
 
-/// Writes twice the vector area of each triangle. corners has three points for each triangle, and areas has one row.
+/// Writes twice the vector area of each triangle. For each triangle, corners has three points, and areas has one row.
 void triangle_areas(const double* points, std::span<const std::uint32_t> corners, double* areas) noexcept;
 
 /// Writes the sums of the areas of the faces around some elements. The first row of `areas` is that of face first_face.
