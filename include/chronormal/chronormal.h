@@ -30,7 +30,8 @@
 #include "chronormal/analysis/cones.h"    // cones and bounds of clusters over an interval, means over a shutter
 // The points inside a closed mesh, and the times when they cross its surface.
 #include "chronormal/analysis/containment.h"
-#include "chronormal/analysis/quality.h"  // the exact reference, and angular errors: sum, mean, rms, max and where
+// Exact reference normals, and statistics of angular errors: sum, mean, rms and maximum.
+#include "chronormal/analysis/quality.h"
 // The times when a face collapses, and the side from which a viewer sees the face. Both are exact.
 #include "chronormal/analysis/signs.h"
 #include "chronormal/analysis/surface.h"  // doubled vertices, edges, pieces, coinciding faces

@@ -47,7 +47,7 @@ namespace chronormal {
 struct ErrorBounds {
   double lower = 0;         ///< a lower bound in radians: the error at `at` is at least this
   double upper = 0;         ///< an upper bound in radians: no error is larger; pi if no smaller bound could be shown
-  double at = 0;            ///< the t, in [0, 1], of the error `lower`
+  double at = 0;            ///< a t in [0, 1] at which the error is at least `lower`
   double from = 0, to = 1;  ///< the piece of [0, 1], in t, that has the largest bound
 };
 

@@ -91,8 +91,8 @@ class NormalGroups {
   /// of its point. Precondition: the points belong to this topology. Takes O(corners log corners), as do all functions
   /// below that state no other cost.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
-  /// Makes one element of each point as above, but without some corners. The corners of a point that are left out
-  /// become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
+  /// Makes one element of each point like the function above, but leaves out some corners. All left-out corners of a
+  /// point become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 

@@ -96,8 +96,8 @@ struct AuditOptions {
   /// For glTF, the lowest and the highest weight at which each target is judged alone. Both are finite, and the first
   /// is smaller.
   std::array<double, 2> weights = {0, 1};
-  /// For glTF, poses that are judged in addition to the motions of the file. A pose is judged in the meshes whose
-  /// targets it names, or that have as many targets as it has weights. If is_posed is true and there are no poses,
+  /// For glTF: if is_posed is true, the poses are judged in addition to the motions of the file. A pose is judged in
+  /// the meshes whose targets it names, or that have as many targets as it has weights. If there are no poses,
   /// kRandomPoses random poses are judged for each mesh whose weights a program may set (docs/cli.md).
   bool is_posed = false;
   std::vector<RigPose> poses = {};

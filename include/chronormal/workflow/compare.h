@@ -102,7 +102,8 @@ struct SchemeComparison {
   /// Operations per element and sample, for the kind of access that was measured.
   OperationCounts operations;
   std::vector<Quality> samples = {};             ///< with keep_samples, the errors of each sample, segment by segment
-  std::optional<CertifiedError> certified = {};  ///< present if certificates were requested
+  /// Bounds of the largest error; no value unless certificates were requested.
+  std::optional<CertifiedError> certified = {};
 };
 
 struct Comparison {

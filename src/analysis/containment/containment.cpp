@@ -125,7 +125,7 @@ std::optional<double> first_root(const Bernstein<double, 3>& p) {
 
 // The data of a segment that the passages of all points need.
 struct MeshInSegment {
-  Segment segment;  // the segment of the triangles
+  Segment segment;  // the segment, whose topology is the triangles
   std::span<const std::uint32_t> faces;
   std::span<const BoxNode> nodes;
   std::vector<MovingBox> boxes;

@@ -32,7 +32,8 @@ struct BoxNode {
 };
 
 struct BoxTree {
-  std::vector<BoxNode> nodes;        ///< the root is first, and parents come before their children
+  /// The nodes of the tree: the root is first, and parents come before their children.
+  std::vector<BoxNode> nodes;
   std::vector<std::uint32_t> order;  ///< numbers of the triangles, ordered so that those of a node are consecutive
 };
 

@@ -43,7 +43,7 @@ struct StoredTarget {
   std::size_t moved_faces = 0, moved_corners = 0;
   double reach = 0;  ///< the largest absolute component of the target's deltas
   StoredTerm term;
-  std::vector<StoredPair> pairs;  ///< pairs with later targets, in ascending order
+  std::vector<StoredPair> pairs;  ///< the pairs of this target with later targets, in the order of these targets
 };
 
 class BlendStorage {

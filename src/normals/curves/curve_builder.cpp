@@ -294,7 +294,7 @@ struct CurveSlices::State {
 
   struct Step {
     std::size_t count = 0;
-    double share = 0;  // the share of all work that is done, approximately
+    double share = 0;  // the approximate share of all work that is done
     std::size_t done = 0;
   };
 

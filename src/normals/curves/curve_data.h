@@ -39,7 +39,7 @@ struct CurveData {
   std::array<std::size_t, 3> degree_counts{};
   AlignedBytes blocks;
   std::vector<Run> runs;
-  /// Block b has the control normals of its elements times 2^-exponents[b]; empty if all exponents are 0.
+  /// Block b has the control normals of its elements times 2^-exponents[b]. The list is empty if all exponents are 0.
   std::vector<std::int16_t> exponents;
   FlaggedElements flagged;  ///< the elements that are evaluated in double
   /// A flagged element for which double does not suffice at every t. The list of these is in ascending order of

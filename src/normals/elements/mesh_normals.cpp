@@ -82,7 +82,7 @@ bool are_the_outputs(const NormalGroups& groups) {
 
 // ---- values in tiles on the stack ----------------------------------------------------------------------------------
 
-// The values of a result in vectors, as x y z.
+// The normals of some elements as vectors x y z.
 struct Vectors {
   template <std::size_t kCount>
   struct Array {
@@ -93,7 +93,7 @@ struct Vectors {
     [[nodiscard]] Vec3f operator[](std::size_t i) const { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
   };
 };
-// The values of a result in encodings of four bytes.
+// The normals of some elements in an encoding of four bytes.
 template <class Encoded>
 struct Words {
   template <std::size_t kCount>
@@ -104,7 +104,7 @@ struct Words {
   };
 };
 
-// The type of the values that a form of results writes.
+// The type of memory for normals in a form of results.
 template <class Output>
 struct ValuesOf {
   using type = Vectors;

@@ -18,7 +18,9 @@ namespace chronormal::inline internal {
 
 struct SampledNormal {
   Vec3d normal;
-  double to_area = 0;  ///< the sum of |n| over the corners, divided by the sum of the lengths of their terms
+  /// The factor for a length by area: the sum of |n| over the corners, divided by the sum of the lengths of their
+  /// terms.
+  double to_area = 0;
 
   [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }
 };

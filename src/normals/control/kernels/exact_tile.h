@@ -21,7 +21,7 @@ struct alignas(64) ExactTile {
 /// The control normals of sixteen elements in double, and bounds of their errors, as in BoundedNormals.
 struct BoundedTile : ExactTile {
   double errors[3][kTile];     ///< bounds of the errors of all components of n0, of m and of n1
-  std::uint32_t left_out = 0;  ///< bits of the elements that other code must compute
+  std::uint32_t left_out = 0;  ///< bits of the elements that are left to other code
 };
 
 /// The control normals of sixteen faces, and the lengths of their edges.

@@ -148,7 +148,7 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
 // Returns an upper bound of the components of the edges from the first corner, at both ends of the segment.
 HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
-  return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the factor is for the rounding of the differences
+  return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the factor covers the rounding of the differences
 }
 
 // Returns the bounds of MagnitudeAbove() separately for n0, m and n1. Each is computed from the ends of the segment on

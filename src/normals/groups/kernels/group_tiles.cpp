@@ -1,7 +1,7 @@
 // Adds up control normals along the paths around sixteen elements at a time:
 //
 //     indices --LoadRing--> both ends of each point, a column for each lane --SumRing--> control normals in double
-//                                                                 --RoundTile--> float32, and which of them need a look
+//                                                                 --RoundTile--> float32, and the elements to examine
 //
 // Let c be the centre of a path and p its points, at two times. Every second point adds one product to n0, n1 and m:
 // (p[i] - c) x (p[i + 1] - p[i - 1]). In n0 and n1 both factors are of the same time, and in m they are of different
