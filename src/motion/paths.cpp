@@ -248,8 +248,8 @@ std::vector<float> VelocityShares::velocities(std::span<const std::span<const fl
   return result;
 }
 
-// Returns the weights of the keys in the derivative, at one key, of the polynomial through this key and its neighbours,
-// in Lagrange form.
+// Returns the weights of the positions in the derivative, at a key, of the polynomial through this key and its
+// neighbours, in Lagrange form.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());

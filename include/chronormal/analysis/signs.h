@@ -52,8 +52,8 @@ struct Collapses {
 /// away from zero. Otherwise integer arithmetic takes a few microseconds.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face) noexcept;
 
-/// Finds the collapses of a face whose control normals are known. They must be those that face_control_normals() gives
-/// for this segment.
+/// Finds the collapses of a face whose control normals are known. `normals` must be those that face_control_normals()
+/// gives for this segment.
 [[nodiscard]] Collapses find_collapses(const Segment& segment, std::size_t face,
                                        const ControlNormals& normals) noexcept;
 

@@ -75,7 +75,7 @@ struct GltfExtraTarget {
 /// encoding are marked as kHarmless.
 enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
-/// The encodings by name, for the command line, for JSON and for the mark in a file.
+/// An encoding, and its name on the command line, in JSON and in the mark of a file.
 struct BakeEncodingName {
   BakeEncoding encoding;
   std::string_view name;
@@ -220,8 +220,8 @@ struct GltfOptions {
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
   std::size_t max_expansion = 100;  ///< the limit of memory, as a multiple of the file's size (InputOptions)
   bool strict = false;              ///< true to refuse files for which GltfDocument::notes() would not be empty
-  /// Finds buffers and images by their paths below the asset's folder. If it is empty, they are read from the file
-  /// system.
+  /// A function that finds buffers and images by their paths below the asset's folder. If it is empty, they are read
+  /// from the file system.
   FileResolver resolve = {};
 };
 

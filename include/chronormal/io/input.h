@@ -75,9 +75,9 @@ struct InputOptions {
   /// True to keep the velocities that the mesh files of a sequence store. All files are then read when the input is
   /// opened. Velocities in formats with a whole motion are always kept.
   bool velocities = false;
-  /// Returns the bytes of files by their names. If it is empty, files are read from the file system. Otherwise `files`
-  /// are names and not patterns or folders, and the buffers of a glTF file are requested by their paths below its
-  /// folder.
+  /// A function that returns the bytes of files by their names. If it is empty, files are read from the file system.
+  /// Otherwise `files` are names and not patterns or folders, and the buffers of a glTF file are requested by their
+  /// paths below its folder.
   FileResolver resolve = {};
   /// Is called after each file has been read, with the number of files read so far and the number of all files.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
@@ -199,8 +199,8 @@ class Input {
   /// Returns the smoothing group of each face in the first keyframe (io/mesh/mesh_frame.h), or an empty span if the
   /// file has no groups.
   [[nodiscard]] std::span<const std::uint32_t> group_of_face() const noexcept;
-  /// Returns the name of the file that stores the normals and smoothing groups. It is empty if normals and groups are
-  /// not read from a file of this format.
+  /// Returns the name of the file that stores the normals and smoothing groups. The name is empty if the input has a
+  /// format from which normals and groups are not read.
   [[nodiscard]] const std::string& shaded_by() const noexcept;
 
   /// Return facts about the motion of a document, valid after motion() was called. parts() returns the primitives from

@@ -251,9 +251,9 @@ class MotionStream {
   /// Holds all keyframes, so that the whole motion is in memory.
   [[nodiscard]] Status hold_all();
 
-  /// Calls the watcher at once for every keyframe that is in memory. Later, calls it for each keyframe that is read, in
-  /// the thread that reads the keyframe and before anyone else can use the keyframe. There is one watcher at a time; an
-  /// empty function removes it. Errors: those of the watcher, from this call and from each hold.
+  /// Calls the watcher immediately for every keyframe that is in memory. Later, calls it for each keyframe that is
+  /// read, in the thread that reads the keyframe and before anyone else can use the keyframe. There is one watcher at a
+  /// time; an empty function removes it. Errors: those of the watcher, from this call and from each hold.
   [[nodiscard]] Status watch(Watcher watcher);
 
   /// Returns true if keyframes stay in memory once they were read, so that holding all of them costs no additional

@@ -142,7 +142,7 @@ class NormalGroups {
   /// Returns the number of elements without corners, which are those of isolated vertices. Their normal is (0, 0, 0).
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
-  /// Frees the data that only sums weighted by angle and curves need. Afterwards corners(e), element_of_corner() and,
+  /// Frees the data that only curves, and sums weighted by angle, need. Afterwards corners(e), element_of_corner() and,
   /// if outputs are corners, element_of_output() must not be called. No curves and no NormalRecompute or FloatRecompute
   /// may be made for these groups afterwards.
   void forget_corners() noexcept;

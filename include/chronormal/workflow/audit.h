@@ -227,7 +227,7 @@ struct Audit {
   /// True if normals are stored for every keyframe; otherwise the viewer has to compute the normals at keyframes.
   bool stored = true;
   std::array<double, 2> span = {};  ///< for a sequence: the times of its first and last keyframe
-  std::optional<CutPath> cut = {};  ///< for curved paths; set by the caller that has cut them, for reports
+  std::optional<CutPath> cut = {};  ///< the cut of curved paths; the caller that has cut them sets it, for reports
   std::vector<AuditSubject> subjects;
   /// The number of targets, tracks and expressions that move nothing for which normals can be judged. They are not
   /// subjects.

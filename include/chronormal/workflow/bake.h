@@ -266,7 +266,7 @@ struct SequenceBake {
     std::size_t beyond = 0;
   };
   std::optional<Keys> keys = {};
-  std::optional<CutPath> cut = {};  ///< for curved paths; set by the caller that has cut them, for reports
+  std::optional<CutPath> cut = {};  ///< the cut of curved paths; the caller that has cut them sets it, for reports
 };
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped

@@ -101,7 +101,7 @@ struct SchemeComparison {
   double bytes = 0;        ///< number of bytes per element that an evaluation reads
   /// Operations per element and sample, for the kind of access that was measured.
   OperationCounts operations;
-  std::vector<Quality> samples = {};             ///< with keep_samples, the errors of each sample, segment by segment
+  std::vector<Quality> samples = {};  ///< with keep_samples, the errors of each sample, segment by segment
   /// Bounds of the largest error; no value unless certificates were requested.
   std::optional<CertifiedError> certified = {};
 };
@@ -121,7 +121,8 @@ struct Comparison {
   std::optional<std::size_t> cheapest = {};
   Weighting weighting = Weighting::kArea;  ///< the weighting for vertices and corners
   std::array<double, 2> span = {};         ///< the times of the first and the last keyframe
-  std::optional<CutPath> cut = {};         ///< for curved paths; set by the caller that has cut them, for reports
+  /// The cut of curved paths; the caller that has cut them sets it, for reports.
+  std::optional<CutPath> cut = {};
 };
 
 /// Compares schemes on the faces of a motion, or on its vertices or corners, over all its segments.
@@ -160,7 +161,7 @@ struct BlendCompareOptions {
   /// Number of targets with nonzero weights; 0 stands for 1, 2, 4, 8, 16 and all, up to the number of targets.
   std::size_t active = 0;
   std::uint64_t seed = 1;  ///< seed of random weights, which are the same on every system
-  /// The elements of a motion. The elements of a glTF file follow from its stored normals.
+  /// The elements of a motion whose normals are compared. The elements of a glTF file follow from its stored normals.
   ElementOptions elements = {};
   /// An animation of a glTF file, by name or index, from which the weights come: up to `rows` of its weight vectors,
   /// evenly spaced. If it is empty, weights are random.
