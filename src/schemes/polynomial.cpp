@@ -102,7 +102,7 @@ class Polynomial final : public Scheme {
     return std::make_unique<PolynomialPlayback>(normals_, start, step, anchor_interval);
   }
 
-  // The operations are counted for an element of degree 2 that is evaluated in float32.
+  // Returns the operations for an element of degree 2 that is evaluated in float32.
   [[nodiscard]] OperationCounts operations() const override {
     using C = Counting;
     const Vec3<C> n0{C(1), C(0), C(0)}, m{C(0.7f), C(0.6f), C(0.2f)}, n1{C(0), C(1), C(0)};

@@ -38,7 +38,7 @@ class Recompute final : public Scheme {
   [[nodiscard]] bool is_exact() const noexcept override { return true; }
   [[nodiscard]] std::size_t fallback_count() const noexcept override { return 0; }
 
-  // The bytes are those of the indices of all corners, and of six floats for each vertex, three at each end. A closed
+  // Returns the bytes of the indices of all corners, and of six floats for each vertex, three at each end. A closed
   // triangle mesh has half as many vertices as faces.
   [[nodiscard]] std::size_t bytes() const noexcept override {
     const std::size_t faces = segment_.topology == nullptr ? 0 : segment_.topology->face_count();

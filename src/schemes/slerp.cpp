@@ -26,8 +26,8 @@ struct Slerp {
 
   [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
 
-  // The curve is played by a rotation per step. The paper cites Barrera (2004) for such playback; this is the form that
-  // drifts least.
+  // Returns the number of planes of a state that is played. The curve is played by a rotation per step. The paper cites
+  // Barrera (2004) for such playback; this is the form that drifts least.
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
   void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[6]), step * static_cast<double>(c[6]));

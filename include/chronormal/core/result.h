@@ -19,7 +19,7 @@ namespace chronormal {
 
 /// The kind of a failure. The values are the exit codes of the program.
 enum class ErrorCode {
-  kFailed = 1,        ///< reading or writing failed, or something inside the program
+  kFailed = 1,        ///< reading or writing failed, or the program itself failed
   kUsage = 2,         ///< the user asked for something that does not exist
   kInvalidInput = 3,  ///< the data are wrong; the place says where in the data
 };

@@ -84,7 +84,8 @@ class ExactArea {
     }
   }
 
-  // The sum of the cross products of neighbouring corners is twice the vector area of a face, whatever the origin.
+  // Returns the sum at a time. The sum of the cross products of neighbouring corners is twice the vector area of a
+  // face, whatever the origin.
   [[nodiscard]] Vec3d at(double time) const {
     const UnitFraction t = UnitFraction::of(time < 0x1p-200 ? 0 : time);
     std::array<WideInteger<kAreaDigits>, 3> sum;

@@ -81,7 +81,7 @@ FaceNormal rounded(const NormalAtTime& normal) {
   return {n.x, n.y, n.z, static_cast<float>(error)};
 }
 
-// The result for a triangle, with the same bits as those of the kernel.
+// The normal of a triangle and its error bound, with the same bits as in the kernel.
 struct QuickNormal {
   Vec3f n, unit;
   float error = 0;

@@ -68,9 +68,9 @@ struct Interval {
   return {std::max(product.low, 0.0), product.high};
 }
 
-/// Returns an interval that contains the angles, in radians, of all vectors (x, y) with y >= 0. It lies around the
-/// angle of the point in the middle, with the largest possible difference on both sides. The arc tangent of
-/// core/portable_math.h is assumed to be within 16 eps of the true value.
+/// Returns an interval that contains the angles, in radians, of all vectors whose components are in the intervals x and
+/// y, and whose y is not negative. It lies around the angle of the point in the middle, with the largest possible
+/// difference on both sides. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the true value.
 [[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);

@@ -181,9 +181,9 @@ struct Quadratic11 {
     const std::int32_t* const p = reinterpret_cast<const std::int32_t*>(block) + lane;
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
-  // The ends are in the upper 11 bits of their halves, which multiplies their values by 32. The two parts of m, moved
-  // to the same place, are multiplied by 2048. The part of m that is in the low bits of the halves is added first, so
-  // that no partial sum leaves the range of int32.
+  // Returns one component of n(t). The ends are in the upper 11 bits of their halves, which multiplies their values by
+  // 32. The two parts of m, moved to the same place, are multiplied by 2048. The part of m that is in the low bits of
+  // the halves is added first, so that no partial sum leaves the range of int32.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);
@@ -232,7 +232,8 @@ template <bool kPastCaches>
 struct ToOctahedral : Accesses<kPastCaches> {
   using Accesses<kPastCaches>::kStream;
   std::uint32_t* bits;
-  // The octahedral encoding is the same for vectors of any length, so no square root is needed.
+  // Encodes and writes the vectors of elements from i on. The octahedral encoding is the same for vectors of any
+  // length, so no square root is needed.
   template <class Kind>
   HWY_INLINE void Put(const Lanes3& v, std::size_t i) const {
     const Floats one = hn::Set(kFloats, 1.0f);
