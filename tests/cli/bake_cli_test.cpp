@@ -168,7 +168,8 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
   expect_words(audit("exact.glb"), {"nothing to do"});
 }
 
-// The program reads files above 64 MiB one keyframe at a time, without keeping their stored normals.
+// The program reads files above 64 MiB one keyframe at a time, without keeping their stored normals. The audit of such
+// a file must still judge them.
 TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
   constexpr std::size_t kLine = 1 << 20, kLines = 24;
   const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";

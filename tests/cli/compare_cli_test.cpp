@@ -42,7 +42,7 @@ class CompareFigures : public testing::Test {
   [[nodiscard]] std::string output(const std::string& form) const { return run(form).out; }
   [[nodiscard]] int exit_code_of(const std::string& form) const { return run(form).exit_code; }
 
-  static constexpr double kLess = 18.43494882292201;  // degrees
+  static constexpr double kLess = 18.43494882292201;  // 45 - atan(1/2), in degrees
   static constexpr double kSum = 180 + kLess;
   static constexpr double kMean = kSum / 12;
   static constexpr double kRms = 52.23332855092279;  // sqrt((180^2 + kLess^2) / 12)

@@ -102,10 +102,10 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
 }
 
 TEST_F(Paths, that_bend_a_little_too_much_are_not_said_to_bend_by_the_limit) {
-  write_turn(2 * std::asin(0.502), 0);  // the bend of a turn is the sine of half its angle
+  write_turn(2 * std::asin(0.502), 0);  // a turn by the angle a per frame bends paths by sin(a / 2)
   EXPECT_NE(run("inspect 'f*.obj' --path catmull-rom:1").err.find("which bend by 0.51 of their length (at most 0.50"),
             std::string::npos);
-  write_turn(std::asin(1) / 1.5, 0);  // a turn by 60 degrees, except for rounding
+  write_turn(std::asin(1) / 1.5, 0);  // a turn by 60 degrees bends paths by 1/2, except for rounding
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom:1").err.find("too far apart"), std::string::npos);
 }
 

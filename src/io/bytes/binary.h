@@ -51,8 +51,8 @@ void append(std::string& text, T value, std::endian order) {
 
 /// Reads up to `count` coordinates of type Real (float or double) from the bytes at `at`, subtracts the origin, and
 /// rounds them to float32. Stops before the first coordinate that has a coordinate_fault(), and returns the number of
-/// coordinates that were read. `first` is the index of the first coordinate in a list (V, 3); it tells which axis of
-/// the origin applies.
+/// coordinates that were read. `first` is the index of the first coordinate in its list of positions (V, 3), so that
+/// first % 3 tells its axis.
 template <class Real>
 [[nodiscard]] std::size_t load_coordinates(const char* at, std::size_t count, std::endian order, float* result,
                                            const std::array<double, 3>& origin = {}, std::size_t first = 0) noexcept {

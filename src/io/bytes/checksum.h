@@ -13,15 +13,15 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the checksum of a longer text whose last bytes are `bytes`. `so_far` is the checksum of all bytes before
-/// them.
+/// Returns the checksum of a text that ends with `bytes`. `so_far` is the checksum of the text before `bytes`, and 0 if
+/// there is none.
 [[nodiscard]] std::uint32_t checksum_of(std::string_view bytes, std::uint32_t so_far = 0);
 
 /// Returns the checksum of two blocks of bytes in a row from the checksum of each block. `second_size` is the size of
 /// the second block in bytes.
 [[nodiscard]] std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
 
-/// A checksum that grows with numbers and is the same on machines of either byte order.
+/// A checksum of numbers and texts that are added one after the other. It is the same on machines of either byte order.
 class NumberChecksum {
  public:
   void add(std::uint64_t number);
@@ -47,7 +47,7 @@ class NumberChecksum {
 /// Appends a last member, "checksum", to the text of a JSON object. It has the checksum of all bytes before this
 /// member: {"a": 1} becomes {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
 [[nodiscard]] std::string with_checksum(std::string object);
-/// Returns true if a text ends with a checksum that matches the text.
+/// Returns true if a text ends with a checksum, as with_checksum() appends it, that matches the text before it.
 [[nodiscard]] bool has_its_checksum(std::string_view text);
 
 }  // namespace chronormal::inline internal

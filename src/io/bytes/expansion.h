@@ -5,8 +5,8 @@
 ///     expansion.add_read(file.size());              // whatever is read counts
 ///     if (Status s = expansion.check(wanted, place); !s) return s;      // before memory is taken
 ///
-/// A file may ask for 32 MiB, or for `times` the bytes that were read, whichever is larger. Requests of the user (times
-/// to sample, poses) do not count.
+/// A file may ask for 32 MiB, or for `times` the bytes that were read, whichever is larger. Memory that the user asks
+/// for, such as poses or moments to sample, does not count.
 ///
 /// Threads    a plain value; no thread needs care.
 #ifndef CHRONORMAL_IO_BYTES_EXPANSION_H_
@@ -39,9 +39,9 @@ class Expansion {
 
   /// Returns the largest number of bytes that a file may ask for.
   [[nodiscard]] std::uint64_t most() const noexcept;
-  /// Checks that the file may ask for `bytes` bytes. Pass 2^64 - 1 if the computation of the number overflowed. Errors:
-  /// kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow this
-  /// number.
+  /// Checks that the file may ask for `bytes` bytes. Pass 2^64 - 1 if the computation of this number overflowed.
+  /// Errors: kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow
+  /// this number.
   [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
 
  private:

@@ -53,8 +53,8 @@ class FileBytes {
  private:
   FileBytes() = default;
 
-  std::string_view view_;   // the mapping, or the memory of a resolver's owner
-  bool is_mapped_ = false;  // if false, view_ points into the memory of a resolver's owner
+  std::string_view view_;   // the mapped file, or the bytes that `resolve` returned
+  bool is_mapped_ = false;  // true if view_ is a mapping that the destructor must end
   std::string owned_;       // the bytes, if they were read and not mapped
 };
 

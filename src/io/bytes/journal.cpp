@@ -37,7 +37,8 @@ Result<Journal> Journal::open(const std::string& path, std::string_view run) {
       ErrorCode::kFailed, path,
       "the journal of --resume needs this name, but this file is no journal; remove it, or choose another output"};
   if (!status->is_file()) return foreign;
-  // On a file system without locks, two runs that write the same output do not notice each other.
+  // On a file system without locks, lock_file() always succeeds, so two runs that write the same output do not notice
+  // each other.
   if (!lock_file(file) || !(status = status_of(file)) || status->is_removed)
     return Error{ErrorCode::kFailed, path,
                  "another run is writing to the same output; wait until that run has ended, or choose another output"};

@@ -25,9 +25,9 @@ namespace chronormal::inline internal {
 
 class Journal {
  public:
-  /// Opens the journal at `path`, even if it belongs to another run, or begins a new one with the text `run`, which
-  /// must not contain line feeds. Errors: kFailed with the path as the place, if the file is not a journal, another
-  /// process has locked it, or the system refuses.
+  /// Opens the journal at `path`. If there is none, begins a journal with the text `run`, which must not contain line
+  /// feeds. An existing journal may belong to another run; run() tells. Errors: kFailed with the path as the place, if
+  /// the file is not a journal, another process has locked it, or the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
   /// Return the text of the run that began the journal, the texts of the records that it had when it was opened, and
@@ -59,7 +59,7 @@ class Journal {
   std::string run_;
   std::vector<std::string> records_;
   std::size_t count_ = 0;            // number of all records, including new ones
-  std::vector<std::uint64_t> ends_;  // offset at which the line of the run ends, and then the end of each record
+  std::vector<std::uint64_t> ends_;  // offsets in bytes at which the first line and then each record end
 };
 
 }  // namespace chronormal::inline internal

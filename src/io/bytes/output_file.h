@@ -61,7 +61,8 @@ class OutputFile {
   [[nodiscard]] Status put(std::uint64_t at, std::string_view bytes);
 
   /// Ends the file and closes its descriptor, but leaves the temporary name; finish() renames the file later. A caller
-  /// can so complete several files before the first of them appears. Nothing may be appended after this call.
+  /// can thus complete several files before the first of them appears under its name. Nothing may be appended after
+  /// this call.
   [[nodiscard]] Status seal();
 
   /// Ends the file and renames it to its path.

@@ -13,7 +13,7 @@
 namespace chronormal::inline internal::scan {
 namespace {
 
-// Drops a plus sign, which std::from_chars does not take.
+// Drops a plus sign, which std::from_chars does not accept.
 std::string_view without_plus(std::string_view word) noexcept {
   if (word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+') word.remove_prefix(1);
   return word;
@@ -72,7 +72,7 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
     return NumberFault::kNone;
   }
   if (std::isfinite(value)) return NumberFault::kNone;
-  // The number is spelt in letters: nan, inf or infinity.
+  // A word in letters (nan, inf or infinity) was not meant as a finite number. A word of digits is too large.
   const bool spelt = word.find_first_of("nN") != std::string_view::npos;
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
 }
@@ -82,7 +82,7 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   const NumberFault fault = parse_float(word, rounded);
   if (fault != NumberFault::kNone) return fault;
   word = without_plus(word);
-  // If the number is too small for a double, this value is the result.
+  // This value stays if from_chars() finds the number too small for a double.
   value = double{rounded};
   double wide = 0;
   if (from_chars(word.data(), word.data() + word.size(), wide).ec == std::errc{}) value = wide;

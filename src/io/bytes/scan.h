@@ -19,9 +19,9 @@ namespace chronormal::inline internal::scan {
 
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
-/// Checks that bytes may be text, before line ends are searched in them. Text has no page of zero bytes. A sparse file,
-/// however, has zero bytes wherever nothing was ever written, and may seem to be a terabyte long. Errors: kInvalidInput
-/// with the place "NAME, byte N".
+/// Checks that bytes may be text: a text has no 4096 zero bytes in a row. Sparse files have zero bytes wherever nothing
+/// was ever written, and may seem to be a terabyte long, so they must be refused before line ends are searched. Errors:
+/// kInvalidInput with the place "NAME, byte N".
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
 /// An iterator over the lines of a text, without their line ends. Lines are counted from 1.
@@ -42,7 +42,7 @@ class Lines {
 
   [[nodiscard]] std::string_view line() const noexcept { return line_; }
   [[nodiscard]] std::size_t number() const noexcept { return number_; }
-  /// offset of the byte behind the line and its line end
+  /// Returns the offset of the first byte behind the line and its line end.
   [[nodiscard]] std::size_t position() const noexcept { return position_; }
 
  private:
@@ -73,8 +73,9 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// last decimal digit: 0.001 for "1.250".
 [[nodiscard]] NumberFault parse_double(std::string_view word, double& value, double& last_digit);
 
-/// Takes the next word off a line if it is a number in plain digits that two exact operations can convert. The result
-/// equals that of parse_float(), but takes less time. For any other word, returns false and leaves the line unchanged.
+/// Takes the next word off a line if it is a decimal number without an exponent, and short enough to be converted
+/// exactly by a division or multiplication of two doubles. The result equals that of parse_float(), but takes less
+/// time. For any other word, returns false and leaves the line unchanged.
 [[nodiscard]] bool take_plain_float(std::string_view& line, float& value) noexcept;
 
 /// Reads the whole word as an integer.

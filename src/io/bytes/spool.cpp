@@ -41,7 +41,7 @@ void Spool::clear() {
 }
 
 Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) const {
-  // The most bytes that are handed over at once. A part of this size stays in a fast cache.
+  // The most bytes that are handed over at once. A part of this size fits into a cache of the processor.
   constexpr std::uint64_t kPart = std::uint64_t{1} << 18;
   if (!status_) return status_;
   assert(at <= size_ && size <= size_ - at);
@@ -70,7 +70,7 @@ Status Spool::hand_over(std::uint64_t at, std::uint64_t size, const Take& take) 
 }
 
 Status Spool::give_away(std::uint64_t at, std::uint64_t size, const Take& take) {
-  // The number of bytes that one call to the system frees. A large number makes few calls.
+  // The most bytes that one call to the system frees. If this number is large, few calls are needed.
   constexpr std::uint64_t kForgotten = std::uint64_t{8} << 20;
   for (std::uint64_t given = 0; given < size;) {
     const std::uint64_t part = std::min(size - given, kForgotten);

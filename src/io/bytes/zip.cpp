@@ -25,8 +25,8 @@ constexpr std::uint32_t kEnd64Word = 0x06064B50, kLocator64Word = 0x07064B50;
 constexpr std::size_t kMemberSize = 30, kEntrySize = 46, kEndSize = 22, kEnd64Size = 56, kLocator64Size = 20;
 constexpr std::uint16_t kStored = 0, kDeflated = 8, kZip64Field = 1;
 constexpr std::uint32_t kSaturated = 0xFFFFFFFF;  // a number that says "see the zip64 field"
-// Limits the size of unpacked data. One deflated byte stores at most 1032 bytes (kMostPerByte), and the whole data a
-// few bytes more (kSlack).
+// Bounds of the size of unpacked data: at most 1032 bytes for each deflated byte (kMostPerByte), and a few bytes more
+// for the whole member (kSlack).
 constexpr std::uint64_t kMostPerByte = 1032, kSlack = 64;
 
 std::uint16_t load16(std::string_view text, std::size_t at) {

@@ -24,7 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes at the beginning of a file in which its layout must be found. Otherwise the file has no layout.
+/// The number of bytes at the beginning of a file from which its layout must be found. If they are too few, the file
+/// counts as one without a layout.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {

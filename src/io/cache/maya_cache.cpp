@@ -140,7 +140,7 @@ Result<std::vector<std::string>> list_frame_files(const std::filesystem::path& f
     entries.increment(code);
   }
   if (code) return Error{ErrorCode::kFailed, utf8_of(folder), code.message()};
-  // Messages then do not depend on the order in which the file system lists files.
+  // The order in which the file system lists files must not change the messages.
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -214,8 +214,8 @@ Result<PositionCache> read_maya_cache(const std::string& xml_path, const CacheOp
     return use(opened.value().bytes(), list.value());
   };
   // The first file decides which channel is read, because a channel that is sampled less often may be missing from
-  // other files. The first file also decides the origin from which positions are measured. Every file is checked for
-  // positions that need the origin, because they have more digits than float32.
+  // other files. The first file also decides the origin from which positions are measured. The origin is subtracted
+  // only if some position has more digits than float32 holds, so every file is searched for such a position.
   maya::FarPoints far;
   for (const std::string& file : files) {
     const bool is_first = &file == files.data();

@@ -10,8 +10,8 @@
 ///     CHNM  name of a channel, SIZE  int32 points, FVCA or DVCA  points x 3 of float32 or float64; any number of these
 ///     ...   other chunks, which are skipped
 ///
-/// Maya counts 6000 ticks a second. A frame is TimePerFrame ticks of the description, or 250 (24 frames a second) if it
-/// does not say. A cache may be sampled more or less often than once a frame.
+/// Maya counts 6000 ticks a second. A frame lasts as many ticks as the description says under TimePerFrame, or 250
+/// ticks (24 frames a second) if it has no TimePerFrame. A cache may be sampled more or less often than once a frame.
 ///
 /// A channel has the points of one mesh. The reader takes the channel that the caller names; otherwise the channel with
 /// as many points as the mesh has vertices, and of several such channels the only one whose ChannelInterpretation is

@@ -131,7 +131,7 @@ class ChunkReader {
   std::vector<Points> list_;
 };
 
-// Returns the names of channels with their numbers of points, "'a' (36), 'b' (72)", cut short.
+// Returns the names of channels with their numbers of points: "'a' (36), 'b' (72)". A long list is cut short.
 std::string names_of(const std::map<std::string_view, std::uint32_t>& channels) {
   constexpr std::size_t kMostNames = 8;
   std::string text;

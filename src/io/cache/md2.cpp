@@ -137,7 +137,8 @@ class Md2Reader {
       frame += k == 0 || begins ? 0 : 1;
       motion.keyframes[k].time = frame / frames_per_second;
     }
-    // The model has several clips, and at least one of them has two frames.
+    // Several clips of one frame each are not an animation, because no segment would remain. They are read as one
+    // sequence.
     const bool are_clips = clips > 1 && frame > 0;
     for (std::size_t k = 0; k < motion.keyframes.size() && !are_clips; ++k)
       motion.keyframes[k].time = static_cast<double>(k) / frames_per_second;

@@ -39,7 +39,7 @@ struct Array {
     for (const std::uint64_t length : shape) count *= length;
     return count;
   }
-  /// Returns the byte after the last element.
+  /// Returns the offset of the first byte after the last element.
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// Return the element at index `item`. The array must have the kind that is named behind each function.
   [[nodiscard]] double real(std::size_t item) const noexcept;  ///< kFloat

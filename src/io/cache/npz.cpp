@@ -113,14 +113,15 @@ Result<PositionCache> read_positions(const Array& array, const std::string& name
   return cache;
 }
 
-// VTK and PyVista store the number of corners before the corners of each face.
+// Explains the faces that VTK and PyVista store: the number of corners comes before the corners of each face.
 constexpr const char* kPadded =
     "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
     "faces.reshape(-1, 4)[:, 1:]";
 
-// Returns true if each row of `width` numbers begins with width - 1, which is then the number of corners that follow.
-// The faces around the vertex with the number width - 1 may begin with this number too. Such faces are told apart: each
-// contains this number only once, and no two of them share the edge opposite to this vertex.
+// Returns true if each row of `width` numbers begins with width - 1, the number of corners that follow. Rows of plain
+// faces may all begin with this number too, if they are the faces around the vertex that has it. In this case, each
+// face contains the number only once, and no two faces share the edge opposite to this vertex; the function then
+// returns false.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
   const auto count = static_cast<std::uint32_t>(width - 1);

@@ -104,7 +104,8 @@ Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
 
 namespace {
 
-// Returns the times of the keys of several channels, each of which drives a single weight. The times ascend.
+// Returns the times of the keys of several channels, each of which drives a single weight. The result has each time
+// once, in ascending order.
 Result<std::vector<float>> times_of_all(gltf::Bytes& bytes, const gltf::TrackSource& source) {
   std::vector<float> times;
   std::set<std::size_t> inputs;
@@ -163,7 +164,7 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
 // Drops the tracks whose numbers cannot be read, with a note for each array at fault. An array without a buffer view is
 // not checked here, but when its keys are read.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
-  // The key is the accessor, and true if the accessor has times.
+  // Maps an accessor, and true if it has times, to true if its numbers can be read.
   std::map<std::pair<std::size_t, bool>, bool> known;
   const auto can_read = [&](std::size_t accessor, bool has_times) {
     const auto [found, is_new] = known.try_emplace({accessor, has_times}, true);
@@ -187,7 +188,7 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
       if (!can_read_all(sources[t])) continue;
       now[t] = kept;
-      // A track with the same keys has the same numbers, so it was kept as well.
+      // The earlier track with the same keys reads the same arrays, so it was kept as well.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
       if (kept != t) {
         tracks[kept] = std::move(tracks[t]);

@@ -30,7 +30,7 @@ struct GltfEdit::State {
 
   [[nodiscard]] Status apply(const Change& change, JsonText& json) const;
   [[nodiscard]] Result<gltf::EditLayout> lay_out(gltf::LayoutTarget target);
-  /// Returns the target of the layout for a path. An empty path means the file of the source itself.
+  /// Returns the form and the name that the result has at `path`. An empty path means the file of the source itself.
   [[nodiscard]] Result<gltf::LayoutTarget> target_of(const std::string& path) const;
 
   GltfDocument::State& document;

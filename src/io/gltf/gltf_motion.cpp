@@ -74,7 +74,8 @@ class Assembly {
   [[nodiscard]] bool is_skinned(std::size_t node) const {
     return with_skins_ && document_.nodes()[node].mesh && document_.nodes()[node].has_skin;
   }
-  // Returns the skin of such a node, which is read once, or nullptr if it cannot be read.
+  // Returns the skin of a node for which is_skinned() is true, or nullptr if the skin cannot be read. Each skin is read
+  // once.
   [[nodiscard]] std::shared_ptr<const GltfSkin> skin_of(std::size_t node) {
     const auto [posed, is_new] = skins_.try_emplace(node);
     if (!is_new) return posed->second.skin;
@@ -87,7 +88,7 @@ class Assembly {
     posed->second.pose = posed->second.skin->pose(0, false);
     return posed->second.skin;
   }
-  // Returns the part as one behind a skin, or nullptr. Valid after read().
+  // Returns the data of a part whose vertices a skin moves, or nullptr for other parts. Valid after read().
   [[nodiscard]] const GltfSkinnedPart* skinned(std::size_t part) const {
     return skinned_parts_[part] ? &*skinned_parts_[part] : nullptr;
   }
@@ -95,7 +96,7 @@ class Assembly {
     return std::any_of(skinned_parts_.begin(), skinned_parts_.end(), [](const auto& part) { return part.has_value(); });
   }
 
-  // Poses all skins, and returns true if a joint is not where it was.
+  // Moves the joints of all skins to their pose at a time. Returns true if any joint is not where it was before.
   bool pose(double time, bool just_before) {
     bool has_moved = false;
     for (auto& [node, posed] : skins_) {
@@ -109,7 +110,7 @@ class Assembly {
     return has_moved;
   }
 
-  // Writes the positions of some vertices of a part before a skin.
+  // Writes the positions that some vertices of a part have before its skin moves them.
   void unskinned(std::size_t part, std::span<const std::uint32_t> vertices, std::span<const double> weights,
                  std::span<Vec3d> all) const {
     const GltfGeometry& geometry = geometries_[part];
@@ -135,7 +136,7 @@ class Assembly {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     const bool all_skinned = std::all_of(parts().begin(), parts().end(), [&](const GltfPart& part) {
       return part.node && is_skinned(*part.node);
-    });  // and thus rounded
+    });  // such vertices are rounded to float32, and need no residuals
     constexpr std::size_t kBytesPerCorner = 2 * sizeof(std::uint32_t);
     // Each keyframe also takes memory for its segment and its place on the heap.
     constexpr std::size_t kBytesPerKeyframe = 128;
@@ -242,7 +243,7 @@ class Assembly {
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
   // Finishes the motion. `beyond` is the number of faces that miss the tolerance behind skins, and key_times has the
-  // ends of the intervals that were cut; it is empty if nothing was.
+  // ends of the intervals that were cut into pieces; it is empty if no interval was cut.
   [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
     if (has_skins()) {
       CutPath& cut = result_.cut.emplace();
@@ -267,8 +268,8 @@ class Assembly {
     std::vector<AffineTransform> pose;
   };
 
-  // Returns the coordinates of some vertices of a part at the given weights: in the space of the mesh or of the world,
-  // or behind the skin of the part in its pose.
+  // Returns the coordinates of some vertices of a part at the given weights. They are in the space of the mesh, in the
+  // world, or where the skin of the part moves the vertices in its current pose.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -306,9 +307,9 @@ class Assembly {
   const GltfDocument& document_;
   bool world_, with_skins_;
   std::optional<std::size_t> animation_;
-  std::map<std::size_t, PosedSkin> skins_;                     // of nodes
+  std::map<std::size_t, PosedSkin> skins_;                     // the key is the node
   std::vector<std::optional<GltfSkinnedPart>> skinned_parts_;  // one for each part
-  double largest_ = 0;                                         // coordinate, if there are skins
+  double largest_ = 0;                                         // largest absolute coordinate, if there are skins
   GltfMotion result_;
   std::size_t vertex_count_ = 0;
   std::vector<GltfGeometry> geometries_;     // one for each part
@@ -498,8 +499,8 @@ class AnimationReader {
                              std::to_string(kMostPieces) + " straight pieces");
   }
 
-  // Returns the number of pieces of an interval between two keys, from `fewest` to `most`, that keeps normals behind
-  // skins within the tolerance, and the number of faces for which it does not.
+  // Returns the number of pieces, from `fewest` to `most`, into which an interval between two keys is cut, so that
+  // normals behind skins stay within the tolerance. Also returns the number of faces whose normals do not.
   [[nodiscard]] Pieces pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
     struct OfParts {
       std::vector<GltfSkinPieces> parts;
@@ -638,7 +639,7 @@ class AnimationReader {
   const GltfMotionOptions& options_;
   Assembly assembly_;
   std::vector<WeightCurve> curves_;
-  // The key is the same_keys_as of a track.
+  // Maps the same_keys_as of a track to an index in curves_.
   std::map<std::size_t, std::size_t> curve_of_track_;
   std::vector<std::size_t> curve_of_part_;
   std::size_t weight_bytes_ = 0, beyond_ = 0;

@@ -30,12 +30,13 @@ struct JointShare {
   double share = 0;
 };
 
-/// Bounds of the motion of a joint, or of a node above one, over an interval of time in which no curve has a key: of the
-/// linear part of its matrix in the world, and of the second derivative of the offset of this matrix, as the sum of
-/// what each bone from the root to this one adds. Where two bones meet, the difference of their `path_bend` from that
-/// of the bone where they part bounds how they bend against each other.
+/// Bounds of the motion of a bone, which is a joint or a node above one, over an interval of time in which no curve has
+/// a key. The first three bound the linear part of its matrix in the world. `path_bend` bounds the second derivative of
+/// the offset of this matrix, as the sum of what each bone from the root to this one adds. If the paths from the root
+/// to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how the joint bends relative
+/// to it.
 struct BoneBounds {
-  double size = 1, speed = 0, bend = 0;  ///< of the value, the first and the second derivative (per second)
+  double size = 1, speed = 0, bend = 0;  ///< of its value, first and second derivative (units: seconds)
   double path_bend = 0;
 };
 
@@ -66,7 +67,7 @@ class GltfSkin {
   /// the jump, or just before it if just_before is set. O(joints and nodes above them).
   [[nodiscard]] std::vector<AffineTransform> pose(double time, bool just_before) const;
 
-  /// Returns whether joints jump in the animation.
+  /// Returns true if joints jump in the animation.
   [[nodiscard]] bool jumps() const noexcept;
 
   /// Returns bounds for all bones between two neighbouring key times, or times between these. They are infinite for a

@@ -1,9 +1,10 @@
 // Bounds how fast joints move and how much their paths bend.
 //
-// Over an interval of length h, a curve f with |f''| <= b is nowhere longer than its longer end plus h^2 b / 8, and f'
-// differs from the slope of the chord by at most h b / 2. A rotation that turns by w(t) per second has a matrix R with
-// |R'| = w and |R''| <= w^2 + |w'|. The rest is the product rule, from a joint's scale, rotation and translation to its
-// matrix, and from the roots to the joints. Lengths of matrices are those of the longest image of a unit vector.
+// Over an interval of length h, a curve f with |f''| <= b has |f| at most h^2 b / 8 above the larger of its values at
+// the ends, and f' differs from the slope of the chord by at most h b / 2. A rotation that turns by w(t) per second has
+// a matrix R with |R'| = w and |R''| <= w^2 + |w'|. The product rule gives all other bounds: from a joint's scale,
+// rotation and translation those of its matrix, and from the roots down those of the joints. The length of a matrix is
+// that of the longest image of a unit vector.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -74,8 +75,8 @@ double angle_between(const std::array<double, 4>& a, const std::array<double, 4>
   return 4 * portable::atan2(std::min(chord, diagonal), std::max(chord, diagonal));
 }
 
-// Bounds the rotation by a cubic q: of u = q / |q|, |u'| <= |q'| / |q|, and |u''| along the sphere is at most |q''| /
-// |q| + 2 |q'|^2 / |q|^2. The rotation turns by 2 |u'|.
+// Bounds the rotation u = q / |q| by a cubic curve q of quaternions: |u'| <= |q'| / |q|, and |u''| along the sphere is
+// at most |q''| / |q| + 2 |q'|^2 / |q|^2. The rotation turns by 2 |u'|.
 Bound rotation_bound(const Interval<4>& q) {
   const Bound all = q.bound(length_of<4>);
   std::array<double, 4> middle{};
@@ -92,7 +93,8 @@ Bound rotation_bound(const Interval<4>& q) {
   return {1, turn, turn * turn + 2 * (all.bend / shortest + 2 * speed * speed)};
 }
 
-// Returns a bound of the length of the linear part of a matrix, which is exact for a rotation with an even scale.
+// Returns a bound of the length of the linear part of a matrix, which is exact for a rotation with the same scale on
+// all axes.
 double length_of(const AffineTransform& matrix) {
   double largest = 0;
   for (const Vec3d& a : matrix.columns) {
@@ -110,7 +112,7 @@ bool GltfSkin::jumps() const noexcept {
 }
 
 std::optional<std::size_t> GltfSkin::meeting_bone(std::size_t a, std::size_t b) const noexcept {
-  // A parent comes before its children.
+  // Parents come before their children, so the bone with the larger index is not above the other one.
   while (a != b) {
     std::size_t& later = a > b ? a : b;
     if (!bones_[later].parent) return std::nullopt;

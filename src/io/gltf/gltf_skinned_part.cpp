@@ -53,7 +53,7 @@ double GltfSkinPieces::bend_of_edge(std::span<const BoneBounds> bones, std::span
                                     std::span<const Vec3d> to, std::uint32_t p, std::uint32_t q) const {
   const GltfSkin& skin = part_.skin();
   const double h = before_.to - before_.from;
-  // Each joint of either vertex is seen once, with the shares of both.
+  // Calls body(joint, share of p, share of q) once for each joint that moves p or q.
   const auto each_joint = [&](const auto& body) {
     const auto share_of = [&](std::uint32_t vertex, std::uint32_t joint) {
       double sum = 0;
@@ -70,7 +70,7 @@ double GltfSkinPieces::bend_of_edge(std::span<const BoneBounds> bones, std::span
       }
     }
   };
-  // The bone at which the paths of all joints meet whose shares differ.
+  // The bone at which the paths to the root meet, of all joints that have different shares in p and q.
   std::optional<std::size_t> meeting;
   bool is_first = true;
   each_joint([&](std::uint32_t joint, double of_p, double of_q) {

@@ -39,7 +39,8 @@ class GltfSkinnedPart {
     return std::span(shares_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
   }
 
-  /// Returns the place of a vertex of the part behind the skin, for a pose of it.
+  /// Returns the position of a vertex of the part behind the skin. `pose` has the joint matrices, and `before` is the
+  /// position before the skin.
   [[nodiscard]] Vec3d place(std::span<const AffineTransform> pose, std::size_t vertex,
                             const Vec3d& before) const noexcept;
 
@@ -54,7 +55,7 @@ struct GltfUnskinned {
   double from = 0, to = 1;
   /// Writes the positions of some vertices of the part at a time.
   std::function<void(std::span<const std::uint32_t> vertices, double time, bool just_before, std::span<Vec3d> all)> at;
-  /// A bound of |p''| for each vertex; empty if all are 0.
+  /// A bound of the acceleration |p''| of each vertex before the skin; empty if all are 0.
   std::vector<double> bend;
 };
 
@@ -62,12 +63,13 @@ struct GltfUnskinned {
 /// in motion/piece_bounds.h).
 class GltfSkinPieces {
  public:
-  /// Computes bounds for the triangles of the part. `sine` is that of the largest angle between normals.
+  /// Computes bounds for the triangles of the part. `sine` is the sine of the largest allowed angle between a normal on
+  /// the pieces and the normal on the curves.
   GltfSkinPieces(const GltfSkinnedPart& part, const Topology& topology, const GltfPart& range, GltfUnskinned before,
                  double sine);
 
-  /// Returns those of the faces of the topology that belong to the part, and for which the pieces are not enough, in
-  /// their order. nullptr stands for all faces. `faces` must ascend
+  /// Returns those of `faces` that belong to the part and for which this number of pieces is not enough, in their
+  /// order. `faces` must ascend; nullptr stands for all faces of the topology.
   [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
                                                       std::size_t pieces) const;
 

@@ -125,8 +125,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
                   "--from and --to");
   std::vector<Motion::Keyframe> kept;
   for (const std::size_t k : frames.value()) {
-    // The velocities at the ends of the chosen range may depend on this keyframe and on keyframes that were not chosen.
-    // For curves and loops, the keyframe is therefore copied and not moved.
+    // The velocities at the ends of the chosen range are computed later, and may depend on this keyframe and on
+    // keyframes that were not chosen. On curves and in loops, the keyframe is therefore copied and not moved.
     Motion::Keyframe& keyframe = motion.keyframes[k];
     kept.push_back(options.is_curved() || options.loop ? keyframe : std::move(keyframe));
   }
@@ -206,10 +206,10 @@ void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion&
 // Returns a warning if a cache seems to belong to another mesh, or to have the vertices of this mesh in another order.
 // Otherwise returns an empty text.
 //
-// A motion usually keeps the lengths of edges, or changes them smoothly. If the vertices are in a wrong order, edges
-// are as long as the distances between arbitrary points, which are much longer in all but the smallest meshes. For
-// small meshes, the coordinates are compared too, separately on each axis. If the cache has the same coordinates as the
-// mesh in another order, its vertices are in another order.
+// A motion usually keeps the lengths of edges, or changes them smoothly. If the vertices are in a wrong order, each
+// edge connects two arbitrary points of the mesh, so edges become much longer in all but the smallest meshes. For small
+// meshes, the coordinates are compared too, separately on each axis. If the cache has the same coordinates as the mesh
+// in another order, its vertices are in another order.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
   // A list of this size is sorted quickly.

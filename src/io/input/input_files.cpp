@@ -129,7 +129,8 @@ Origin far_origin_of_file(std::span<const float> positions) {
   return origin == Origin{} ? Origin{positions[0], positions[1], positions[2]} : origin;
 }
 
-// Reads a mesh around wanted.origin, which was found in float32. If it is still far from there, the origin moves closer.
+// Reads a mesh and subtracts wanted.origin, which was found from float32 positions. While the mesh is still far from
+// this origin, moves the origin closer to the mesh and reads the mesh again.
 Result<MeshFrame> read_around(std::string_view bytes, const std::string& file_name, const std::string& place,
                               WantedOfMesh& wanted) {
   constexpr int kMost = 4;  // float32 finds 24 bits of an origin at a time, and a double has 53

@@ -25,7 +25,8 @@ struct ReadMotion {
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;  ///< as in Input
-  /// The files of a sequence that are examined for more digits than float32, if the first file has no such digits.
+  /// The files of a sequence that are examined for coordinates with more digits than float32 holds, if the first file
+  /// has none.
   std::vector<std::string> other_files = {};
   std::uint64_t bytes_read = 0;           ///< total size of the files in bytes
   std::vector<std::string> notes = {};    ///< notes as in Input
@@ -62,9 +63,9 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 [[nodiscard]] Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view bytes,
                                                const std::string& path, const std::string& place, ReadMotion& read);
 
-/// Reads a mesh of a motion, whose positions are measured from wanted.origin. If the mesh is so far from this point that
-/// float32 loses digits, the mesh is read as if it were alone, and residuals keep the rest of the distance. Errors: those
-/// of read_mesh().
+/// Reads a mesh of a motion, whose positions are measured from wanted.origin. If the mesh is so far from this point
+/// that float32 loses digits, the mesh is read with an origin of its own, and its positions relative to wanted.origin
+/// are kept in positions and residuals together. Errors: those of read_mesh().
 [[nodiscard]] Result<MeshFrame> read_mesh_from(std::string_view bytes, const std::string& file_name,
                                                const std::string& place, const WantedOfMesh& wanted);
 

@@ -310,8 +310,8 @@ void reorder(std::vector<std::string>& files, const std::vector<std::size_t>& or
   files = std::move(sorted);
 }
 
-// Returns true if a shell may have listed the files in this order. Shells sort by bytes, or as most languages sort,
-// where only letters and digits count at first.
+// Returns true if a shell may have listed the files in this order. Shells sort names by bytes, or by the rules of a
+// language, most of which compare letters and digits before all other characters.
 bool stand_as_listed(const std::vector<std::string>& files) {
   const auto letters_of = [](const std::string& name) {
     std::string letters;

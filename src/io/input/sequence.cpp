@@ -169,8 +169,8 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Selects the files that are examined for more digits than float32 if the first file has no such digits. These are the
-// last file, whose mesh has most likely moved, and others evenly in between.
+// Selects the files that are examined for coordinates with more digits than float32 holds, if the first file has none.
+// These are the last file, whose mesh has most likely moved, and others evenly in between.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;

@@ -43,7 +43,7 @@ bool has_comment(std::string_view line) {
 
 // The shading of the faces that were read so far.
 struct Shading {
-  std::vector<float> normals;                   // (vn, 3)
+  std::vector<float> normals;                   // three numbers for each "vn"
   std::vector<std::uint32_t> normal_of_corner;  // for each corner, the index of its normal plus 1, or 0 for none
   bool has_normals = false;                     // true if some corner has a normal
   std::map<std::string, std::uint32_t, std::less<>> groups;

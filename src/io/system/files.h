@@ -72,7 +72,7 @@ struct FileStatus {
 [[nodiscard]] std::optional<FileStatus> status_of(const std::string& path);
 [[nodiscard]] std::optional<FileStatus> status_of(int descriptor);
 
-/// The way in which a file is opened. A file must exist unless `makes` allows to create it.
+/// The way in which a file is opened. The file must exist, unless `makes` says that it may be created.
 struct Opening {
   bool reads = false, writes = false;
   enum class Makes { kNothing, kMissing, kNew } makes = Makes::kNothing;  ///< kNew: an existing file is an error

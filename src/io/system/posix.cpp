@@ -305,7 +305,7 @@ constexpr Request kRequests[] = {
     {SIGXCPU, "stopped, since it used more time than allowed (SIGXCPU)"},
 };
 
-// Must be set before the handlers are installed.
+// The functions that the signal handlers call. They are set before the handlers are installed.
 Endings watched{};
 
 extern "C" void end_by_request(int signal) {
@@ -331,7 +331,7 @@ void install(int signal, void (*handler)(int), unsigned flags = SA_RESETHAND) {
   action.sa_handler = handler;
   // SA_RESETHAND has no meaning for SIG_IGN.
   action.sa_flags = static_cast<int>(flags);
-  (void)sigfillset(&action.sa_mask);  // a macro on macOS
+  (void)sigfillset(&action.sa_mask);  // without ::, because it is a macro on macOS
   (void)::sigaction(signal, &action, nullptr);
 }
 

@@ -15,7 +15,7 @@
 namespace chronormal {
 namespace {
 
-// The files for all frames of a sequence are open at the same time.
+// The number of places in the list. It is large, because the files for all frames of a sequence exist at the same time.
 constexpr std::size_t kMostFiles = std::size_t{1} << 16U;
 
 std::array<std::atomic<char*>, kMostFiles> names{};

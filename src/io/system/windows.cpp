@@ -364,8 +364,8 @@ bool rename_file(const char* from, const char* to, bool replace) noexcept {
   if (::MoveFileExW(wide(from).c_str(), target.c_str(), how) != 0) return true;
   (void)fail();
   if (!replace || errno != EACCES) return false;
-  // Windows reports "access denied" if somebody has the target open. Opening the target alone tells this case from
-  // others.
+  // Windows reports "access denied" if somebody has the target open, and also for other reasons. If this process can
+  // open the target, the reason is that somebody has it open.
   const HANDLE old = ::CreateFileW(target.c_str(), DELETE, kShared, nullptr, OPEN_EXISTING, 0, nullptr);
   if (old == INVALID_HANDLE_VALUE) return fail();
   (void)::CloseHandle(old);
@@ -475,7 +475,7 @@ std::size_t columns_of_terminal(int stream) noexcept {
 
 namespace {
 
-// Must be set before the handlers are installed.
+// The functions that the handlers call. They are set before the handlers are installed.
 Endings watched{};
 
 // Ends the process with the exit code that Windows uses. The system runs this function in a thread of its own. Under

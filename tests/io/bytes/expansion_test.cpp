@@ -1,5 +1,5 @@
 // Tests the limits on the memory and the output that a small file can cause. Every file here declares far more data
-// than it stores, and can be read only with --max-expansion.
+// than it stores, and can be read only with a large --max-expansion.
 
 #include "io/bytes/expansion.h"
 

@@ -369,8 +369,8 @@ TEST(Npy, no_keyframe_lies_in_one_piece_in_the_order_of_Fortran) {
   }
 }
 
-// Zip archives of more than 4 GiB have fields of the extension zip64. In this test, all members after some byte have
-// these fields.
+// Zip archives of more than 4 GiB have fields of the extension zip64. In this test, all members that lie behind byte
+// `from` have these fields.
 TEST(Zip, members_with_zip64_fields_read_back) {
   const std::array<zip::Part, 3> parts = {{{"positions.npy", kPositions}, {"faces.npy", kFaces}, {"empty", ""}}};
   for (const std::uint64_t from : {0U, 1U, 60U, 100U, 150U, 1000U}) {

@@ -26,7 +26,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMostGrowth = std::size_t{256} << 20;
 
-// Reads any number of files, counts refused files, and collects complaints about broken invariants.
+// A reader of any number of files that counts refused files and collects complaints about broken invariants.
 class Batch {
  public:
   // Reads a file. A sanitizer makes reading slow, so with a sanitizer only every seventh file is read.
@@ -69,7 +69,7 @@ void expect_good_batch(std::size_t least_count, const std::function<void(Batch&)
   EXPECT_GT(refused, 0U);
   EXPECT_EQ(run.text, std::to_string(count) + " " + std::to_string(refused) + " ");
   if (!test::is_sanitized()) {
-    EXPECT_LT(run.peak_growth, kMostGrowth);  // a sanitizer keeps freed memory, so it would fail
+    EXPECT_LT(run.peak_growth, kMostGrowth);  // not under a sanitizer, which keeps freed memory
   }
   std::printf("%zu files, %zu of them refused, in %.2f s, %zu KiB\n", count, refused, run.seconds,
               run.peak_growth / 1024);

@@ -108,7 +108,8 @@ TEST(GltfHuge, numbers_and_texts_of_a_million_digits) {
   EXPECT_TRUE(read_apart("exponent", std::string(kHead) + "\"extras\": 1e-" + digits + "}").starts_with("a.gltf"));
   EXPECT_TRUE(read_apart("version", std::string(R"({"asset": {"version": ")") + digits + "\"}}")
                   .starts_with("a.gltf, /asset/version: "));
-  // An unknown extension that the file does not use is only a note. The error is that nothing in the file moves.
+  // An unknown extension that the file requires but does not use gives only a note. The error is another one: nothing
+  // in the file moves.
   EXPECT_TRUE(read_apart("extension", std::string(kHead) + R"("extensionsRequired": [")" + digits + "\"]}")
                   .starts_with("a.gltf: nothing in this file moves"));
 }
@@ -208,7 +209,7 @@ TEST(GltfHuge, hundred_thousand_channels_are_read_in_a_breath) {
   }
 }
 
-// Finds the invalid files of other projects, and skips the test if they are missing.
+// A fixture that finds the invalid files of other projects, and skips the test if they are missing.
 class HostileData : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -168,7 +168,8 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // If all parts of an animation are skipped, the animation keeps its number. To select this animation is an error.
+    // If all parts of an animation are skipped, the animation keeps its number. Reading this animation is then an
+    // error.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("drives no morph targets"), std::string::npos) << error.text();
     // The targets themselves can still be read.

@@ -19,7 +19,7 @@ namespace {
 using test::GltfBuilder, test::GltfFixture;
 
 struct Spline {
-  std::vector<float> times, values;  // shapes (K) and (K, 3, 2), for K keys and 2 targets
+  std::vector<float> times, values;  // (K) and (K, 3, 2): in-tangent, value, out-tangent of 2 targets
 };
 
 GltfMotion cut(const Spline& spline, double tolerance) {

@@ -18,8 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using test::GltfBuilder, test::GltfFixture;
 
-// Makes a folder outside/asset/ with the files of a model, links and a pipe, and a file outside/secret.bin, which must
-// not be read.
+// A fixture that makes a folder outside/asset/ with the files of a model, links and a pipe, and a file
+// outside/secret.bin, which must not be read.
 class GltfUris : public ::testing::Test {
  protected:
   void SetUp() override {

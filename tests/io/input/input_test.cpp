@@ -165,7 +165,8 @@ TEST_F(OpenInput, nothing_is_overwritten_without_force_or_left_after_an_error) {
   EXPECT_EQ(folder_.entry_count(), entries);
 }
 
-// Writes files into pipes. A pipe can be read only once: a second reader would wait forever, or find nothing.
+// A set of pipes into which threads write files. A pipe can be read only once: a second reader would wait forever, or
+// find nothing.
 class Pipes {
  public:
   explicit Pipes(const test::TemporaryFolder& folder) : folder_(folder) {}

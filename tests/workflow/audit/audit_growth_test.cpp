@@ -48,7 +48,7 @@ GltfBuilder clips(std::size_t count, bool are_shared) {
 
 TEST(AuditGrowth, a_subject_takes_little_more_than_the_bins_that_it_fills) {
   if (!test::AllocationCounter::works()) GTEST_SKIP() << "operator new is a sanitizer's";
-  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // in bytes; the bins of a histogram would take 36 kB
+  constexpr std::size_t kMany = 400, kMostPerSubject = 6000;  // bytes; a whole histogram would take 36 kB
   for (const GltfBuilder& builder : {clips(kMany, true), clips(kMany, false), triangle(kMany)}) {
     const test::GltfFixture fixture(builder);
     ASSERT_TRUE(fixture.ok()) << fixture.error();
@@ -70,7 +70,7 @@ TEST(AuditGrowth, a_bake_takes_little_memory_for_each_clip_that_shares_its_array
     EXPECT_TRUE(bake(*fixture, {}, edit).ok());
     return counter.peak_bytes();
   };
-  constexpr std::size_t kFew = 400, kMany = 1200, kMostPerClip = 30000;  // in bytes
+  constexpr std::size_t kFew = 400, kMany = 1200, kMostPerClip = 30000;  // bytes of memory
   EXPECT_LT(peak_bytes(kMany), peak_bytes(kFew) + (kMany - kFew) * kMostPerClip);
 }
 

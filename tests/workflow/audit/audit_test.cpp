@@ -194,8 +194,9 @@ TEST(Audit, error_does_not_depend_on_the_tilt_of_the_author_under_translation_bu
 }
 
 TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats) {
-  // The file stores N = c0, D = c1 and C = c2, divided by |c0| at each vertex, as a bake would. The test computes these
-  // from three normals of the oracle.
+  // The sum of face normals is c0 + c1 w + c2 w^2 for the weight w. The file stores the normal N = c0, the delta D = c1
+  // of the target, and the delta C = c2 of a correction target, all divided by |c0| at each vertex, as a bake would.
+  // The test computes them from three normals of the oracle.
   ShadedMesh mesh = random_sheet(4, 5, 1, 0);
   ShadedMesh::Target extra;
   extra.positions.assign(mesh.positions.size(), 0);

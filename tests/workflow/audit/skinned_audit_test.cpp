@@ -352,9 +352,9 @@ TEST(SkinnedAudit, bind_pose_gives_the_figures_without_a_skin_and_so_do_turns_an
 }
 
 TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing) {
-  // The normal of the folding face goes from (0, 0, 1) to (-1, 0, 0), while vertex 3 renders (0, 0, 1). On the screen,
-  // the joint halves the z of normals. The true normal, (-sin, 0, cos) of the fold angle, is therefore turned towards
-  // -x.
+  // The normal of the folding face goes from (0, 0, 1) to (-1, 0, 0), while the rendered normal of vertex 3 stays (0,
+  // 0, 1). On the screen, the joint halves the z of normals. The true normal, (-sin, 0, cos) of the fold angle, is
+  // therefore turned towards -x.
   const Audit result = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0.5}}}), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const MotionError& error = result.subjects[0].error;

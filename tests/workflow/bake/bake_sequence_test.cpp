@@ -697,8 +697,8 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// Formats a number with so many digits as the documents do. If it rounds to zero, the text is "below" and a one in the
-// last digit.
+// Formats a number with as many digits as the documents show. If it rounds to zero, the text is "below" and a one in
+// the last digit.
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

@@ -128,7 +128,7 @@ TEST(BakeSkin, tolerance_holds_behind_a_joint_that_flattens) {
     float weight;
     double tolerance, height;
   };
-  std::size_t would_not_do = 0;  // number of choices without the skin that exceed the tolerance
+  std::size_t would_not_do = 0;  // choices without the skin that exceed the tolerance with it
   // In the last four cases, every candidate that keeps the tolerance before skinning exceeds it after skinning.
   for (const Case& c : {Case{2, 0.2F, 1, 0.25},
                         {3, 0.2F, 1, 0.25},

@@ -191,7 +191,7 @@ TEST(BakeStream, memory_does_not_grow_with_the_number_of_keyframes) {
     // Linux counts the pages of a thread in batches of 64, so each of the two peaks may be wrong by one batch.
     constexpr std::size_t kBatches = 2 * 64 * 4096;
     EXPECT_LT(growth[1], growth[0] + kBatches + (bytes[1] - bytes[0]) / 6) << name_of(encoding);
-    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // the test would notice output in memory
+    EXPECT_LT(kBatches, (bytes[1] - bytes[0]) / 3);  // so an output in memory would fail the test
   }
 }
 

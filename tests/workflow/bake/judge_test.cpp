@@ -28,7 +28,8 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-// Returns the edges of triangles, and edges between vertices that share a normal, which form chains.
+// Returns all edges of the triangles. Adds edges that link the vertices that share a normal, each vertex to the next
+// one.
 std::set<Edge> edges_of(const GltfShading& shading) {
   std::set<Edge> edges;
   const Topology& topology = shading.set.topology;

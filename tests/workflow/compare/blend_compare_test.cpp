@@ -31,7 +31,7 @@ using test::ShadedMesh;
 using Json = GltfBuilder::Json;
 
 constexpr double kNoise = 1e-4;       // largest error, in degrees, from rounding normals and their deltas to float32
-constexpr double kExactLimit = 1e-6;  // in radians
+constexpr double kExactLimit = 1e-6;  // largest error of exact deltas, in radians
 
 Result<BlendComparison> try_comparing(const GltfBuilder& builder, const BlendCompareOptions& options) {
   const GltfFixture fixture(builder);

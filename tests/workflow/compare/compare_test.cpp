@@ -56,8 +56,8 @@ TEST(Compare, one_face_by_hand) {
 }
 
 TEST(Compare, vertices_may_be_more_than_faces) {
-  // The mesh has 4 vertices and 1 face. Schemes that search must not confuse a vertex with the face that has the same
-  // index.
+  // The mesh has 4 vertices and 1 face, so three vertices have an index that no face has. No scheme may look up a face
+  // by the index of a vertex.
   const Motion motion = fixtures::make_motion(fixtures::make_polygons(4, {0, 4}, {0, 1, 2, 3}),
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                                               {{0, 0, 0}, {1, 0, 0}, {1, 1, 1}, {0, 1, 0.5}});
@@ -405,7 +405,8 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// If the normals of its faces cancel, a vertex is judged only if it has a normal. Integers decide whether it has.
+// A vertex whose face normals cancel exactly has no normal, and is not judged there. The test finds such vertices with
+// integers.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;

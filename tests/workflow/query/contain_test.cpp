@@ -55,7 +55,7 @@ void expect_sums(const Motion& motion, const PointPaths& paths) {
   const auto& inside = column<std::uint8_t>(answer, "", "inside");
   ASSERT_EQ(inside.size(), paths.count());
   EXPECT_GT(points.size(), paths.count() / 10);
-  std::vector<int> winding(inside.begin(), inside.end());  // at the start, the meshes do not intersect themselves
+  std::vector<int> winding(inside.begin(), inside.end());  // 0 or 1 at the start, as no mesh intersects itself then
   for (std::size_t i = 0; i < points.size(); ++i) {
     winding[static_cast<std::size_t>(points[i])] += inward[i] != 0 ? 1 : -1;
     if (i > 0 && points[i] == points[i - 1]) {

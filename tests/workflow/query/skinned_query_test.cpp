@@ -208,7 +208,8 @@ void each_moment(const Rig& rig, const Motion& motion, const Body& body) {
   }
 }
 
-// Returns the largest angle between the normals of pieces and the true normals, less what rounding explains.
+// Returns the largest angle between the normals of pieces and the true normals, minus the angle that rounding may
+// cause.
 Real worst_angle(const Rig& rig, const Motion& motion) {
   Real worst = 0;
   each_moment(rig, motion, [&](const Segment& segment, Real t, Real, const std::vector<Vector>& places) {

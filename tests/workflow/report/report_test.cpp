@@ -31,7 +31,7 @@ namespace {
 
 using test::ReportFile;
 
-constexpr double kAgree = 1e-3;  // in degrees
+constexpr double kAgree = 1e-3;  // largest allowed difference of two errors, in degrees
 
 // Opens an input and makes its report.
 Result<Report> report_of(InputOptions input, const ReportOptions& options = {}) {

@@ -134,7 +134,7 @@ TEST(Viewers, targets_of_unit_length_look_alike_everywhere) {
     for (std::size_t c = 0; c < 3; ++c) sum[c] = normal[c] + weight * delta[c];
     const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
     for (const Viewer& viewer : kViewers) {
-      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // degrees, by the viewer's rounding
+      const double step = viewer.normals == NormalRule::kClamped ? 1.2 : 0.07;  // largest rounding error, in degrees
       EXPECT_LT(degrees_between(shown_of(viewer, normal, {delta}, {weight}), sum), step / length) << viewer.name;
     }
   }
@@ -152,8 +152,8 @@ TEST(Viewers, a_long_delta_turns_by_its_direction_alone_where_unit_normals_are_k
 }
 
 TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
-  // Filament 1.53.4 renders this normal, except for its eight bits per colour. For N + D = (0, 0, 3), Filament makes
-  // the frame (0, -3, -8), (24, 0, 0), which is not a rotation.
+  // Filament 1.53.4 renders the normals that this test expects, up to the rounding of colours to eight bits. For N + D
+  // = (0, 0, 3), Filament makes the frame (0, -3, -8), (24, 0, 0), which is not a rotation.
   const Vec3f along = kept_normal(viewer_named("filament"), {0, 0, 1});
   EXPECT_NEAR(along.z, 1, 1e-6);
   const Vec3f longer = kept_normal(viewer_named("filament"), {0.6F, 0, 2.4F});
@@ -168,7 +168,7 @@ TEST(Viewers, filament_does_not_keep_the_direction_of_a_long_normal) {
 }
 
 TEST(Viewers, keep_components_as_their_tools_write_them) {
-  // The values that glTF Transform 4.5 and gltfpack 1.3 write.
+  // The first two lines expect the values that glTF Transform 4.5 and gltfpack 1.3 write.
   EXPECT_EQ(kept_delta(viewer_named("quantize"), {}, {0.3F, -0.3F, 7}), (Vec3f{9811 / 32767.0F, -9811 / 32767.0F, 1}));
   EXPECT_EQ(kept_delta(viewer_named("gltfpack"), {}, {0.3F, -0.3F, -7}), (Vec3f{38 / 127.0F, -38 / 127.0F, -1}));
   EXPECT_EQ(kept_delta(viewer_named("playcanvas"), {}, {0.1F, 1e-9F, 1e6F}), (Vec3f{0.0999755859375F, 0, INFINITY}));

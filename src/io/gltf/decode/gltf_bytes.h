@@ -61,8 +61,8 @@ class Bytes {
   [[nodiscard]] Result<View> view(std::size_t index);
 
   /// Returns the numbers of an accessor that parse_model() has checked: count elements of `components` numbers each.
-  /// Normalised integers become fractions (f = c / 127, at least -1, and so on), and other integers keep their value.
-  /// Errors: those of buffer(); numbers that are not finite; sparse indices that do not ascend.
+  /// Normalised integers become fractions (an int8 c becomes max(c / 127, -1), for example), and other integers keep
+  /// their value. Errors: those of buffer(); numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
   /// Returns the numbers of an accessor as times of keys, which must ascend from 0 or more.
@@ -71,8 +71,8 @@ class Bytes {
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
-  /// Returns the limit of the memory that the asset may ask for. Each file of a buffer counts once, if it can be
-  /// opened.
+  /// Returns the limit of the memory that the asset may ask for. The limit grows with the bytes that are read: each
+  /// file of a buffer counts once, if it can be opened.
   [[nodiscard]] const Expansion& expansion();
 
   /// Releases memory that holds parts of buffers in separate files. The system reads these parts again when they are

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-// Turns off warnings, because the headers of the Draco library do not pass ours.
+// Turns off compiler warnings that the headers of the Draco library cause.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wconversion"
 #pragma GCC diagnostic ignored "-Wsign-conversion"
@@ -42,8 +42,8 @@ draco::DataType data_type(Component component) {
   return draco::DT_INVALID;
 }
 
-// Copies the values of an attribute to floats. The conversion of the library is not used, because it trusts flags in
-// the file.
+// Copies the values of an attribute to floats. The conversion of the library is not used, because it believes flags in
+// the file without a check.
 Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
                       std::vector<float>& result) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));

@@ -63,7 +63,8 @@ const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_
 }
 
 // Returns the value of a member that is a whole number, also if it is written as 4.0. Returns nothing if the member is
-// missing or is no such number; the reader has checked all members except those of extensions that it does not know.
+// missing or is not such a number. This happens in extensions that the reader does not know; it has checked all other
+// members.
 std::optional<std::size_t> to_count(const JsonMember* member) {
   constexpr double kMost = 9007199254740992;  // 2^53
   if (member == nullptr) return std::nullopt;

@@ -15,8 +15,8 @@ using Range = UnusedArrays::Range;
 
 constexpr std::size_t kRangeAlignment = 4;
 
-// Lists extensions that need no check: their objects refer to textures, nodes and materials, but neither to accessors
-// nor to buffer views.
+// The extensions whose names begin with one of these texts need no check: their objects refer to textures, nodes and
+// materials, but neither to accessors nor to buffer views.
 constexpr std::string_view kKnownExtensions[] = {"KHR_materials_",
                                                  "KHR_texture_",
                                                  "EXT_texture_",
@@ -37,7 +37,7 @@ bool is_known(std::string_view extension) {
                      [&](std::string_view known) { return extension.starts_with(known); });
 }
 
-// Returns true if a value and everything inside it uses only extensions of the list above.
+// Returns true if a value and everything inside it uses only extensions of kKnownExtensions.
 bool has_known_extensions_only(const Json& value) {
   if (value.is_object()) {
     const auto extensions = value.find("extensions");
@@ -273,7 +273,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     std::vector<Range>& ranges = result.ranges[b];
     if (sizes[b]) ranges = aligned_difference(joined(std::move(unused[b])), joined(std::move(used[b])));
     if (result.bytes_of(b) > 0 && result.bytes_of(b) == sizes[b]) {
-      // The only range is the whole buffer. The first bytes of the buffer must stay.
+      // The only range is the whole buffer. Its first bytes must stay, because glTF has no empty buffers.
       ranges.front().begin = kRangeAlignment;
       if (ranges.front().begin == ranges.front().end) ranges.clear();
     }

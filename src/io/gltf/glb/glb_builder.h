@@ -53,14 +53,14 @@ class GlbBuilder {
   /// once. The preconditions are those of GltfEdit.
   std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
-  /// Adds an accessor of SCALAR (rows x width), and returns its index. Row by row, fill(row, values) writes one row
-  /// over zeros.
+  /// Adds an accessor of SCALAR (rows x width), and returns its index. fill(row, values) is called for each row in
+  /// order, with zeros in `values`, and writes the numbers of this row.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Renumbers the accessors of arrays: accessor order[i] becomes the i-th after the triangles, and the bytes of the
-  /// arrays get the same order. Nothing may be added after this call. `order` must contain each accessor of an array
-  /// once.
+  /// Renumbers the accessors of arrays: accessor order[i] becomes accessor i after that of the triangles, and the bytes
+  /// of the arrays get the same order. Nothing may be added after this call. `order` must contain each accessor of an
+  /// array once.
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.

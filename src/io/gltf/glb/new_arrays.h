@@ -35,14 +35,14 @@ class NewArrays {
   /// index of the array.
   std::size_t add(std::span<const float> values, std::size_t components, const GltfVectors& options);
 
-  /// Stores a table of scalars row by row: fill(row, values) writes one row over zeros. At most a few rows are in
-  /// memory in addition to the spool. Unlike an array of add(), a table has bytes even if all numbers are zero, has no
-  /// bounds, and is not compared with other arrays.
+  /// Stores a table of scalars row by row: fill(row, values) gets a row of zeros, and writes its numbers. At most a few
+  /// rows are in memory in addition to the spool. Unlike an array of add(), a table has bytes even if all numbers are
+  /// zero, has no bounds, and is not compared with other arrays.
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Puts the arrays into another order: place i gets the array that was order[i], which has the index i from now on.
-  /// No array may be added after this call. `order` must contain each index once.
+  /// Puts the arrays into another order: the array with the index order[i] gets the index i. No array may be added
+  /// after this call. `order` must contain each index once.
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.

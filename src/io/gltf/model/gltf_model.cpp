@@ -119,7 +119,7 @@ void Parser::check_required(const JsonView& root) {
   // in its mesh, and in objects that have bytes.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
-    // Primitives of points and lines are not read.
+    // Primitives of points and lines are not read, so their extensions do not matter.
     const auto mode = value.find("mode");
     if (mode != value.end() && mode->is_number_unsigned() && mode->get<std::size_t>() < 4) return false;
     const auto found = value.find("extensions");
@@ -240,8 +240,8 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
     item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
                                " bytes do not fill the buffer view, which has " + std::to_string(view.length) +
                                " bytes");
-  // Every 8 bytes of the result take at least one bit of the compressed data. A result that would be longer is refused,
-  // because a small file must not ask for much memory.
+  // A bit of the compressed data stands for at most 8 bytes of the result, and a byte for at most 64. This check
+  // refuses results that are longer than four times as much, because a small file must not ask for much memory.
   if (view.length / 256 > result.length)
     item.complain("byteLength", "the compressed data are too short for the " + std::to_string(view.length) +
                                     " bytes that they should hold");

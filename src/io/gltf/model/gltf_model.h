@@ -1,5 +1,5 @@
-/// The JSON of a glTF file as structs whose references have been checked, so that the bytes can be read by them.
-/// Private to io.
+/// The JSON of a glTF file as structs whose references have been checked, so that readers of the bytes can rely on
+/// them. Private to io.
 ///
 /// The public half (meshes, nodes, animations) is in chronormal/io/gltf_document.h. This half has the places of their
 /// arrays. A buffer view is checked against its buffer. An accessor that a primitive or a sampler names is checked

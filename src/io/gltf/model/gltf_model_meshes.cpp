@@ -110,7 +110,7 @@ void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vecto
   for (std::size_t p = 0; p < sources.size() && !complaint_.first(); ++p) {
     const JsonView item = primitives.item(p);
     const std::size_t own = sources[p].targets.size();
-    if (own < mesh.target_count) {  // never if there are no targets
+    if (own < mesh.target_count) {  // own + 1 <= target_count, so target_count is not 0
       (void)understands([&] {
         item.complain("targets", "the primitive has " + number(own) + " targets, but another one of its mesh has " +
                                      number(mesh.target_count) +
