@@ -1,6 +1,6 @@
 # Sets the compiler options of every target of the project.
 #
-#   -ffp-contract=off                   a * b + c stays two roundings: the same bits from every compiler
+#   -ffp-contract=off                   a * b + c is rounded twice: the same bits from every compiler
 #   -fno-math-errno -fno-trapping-math  let sqrt and selects become vector instructions; results do not change
 #
 # A parent project keeps its own build type and flags. Options for all targets are only set if this project is not a

@@ -1,5 +1,5 @@
-# Adds the targets of the product: libraries and the program. chronormal_add_product() describes them. They are built
-# once for users and, if tests are built, once more with sanitizers for the tests.
+# Adds the targets of the product: libraries and the program. The function chronormal_add_product() defines them. They
+# are built once for users and, if tests are built, once more with sanitizers for the tests.
 #
 #   chronormal       core, simd, motion, normals, schemes, analysis
 #   chronormal_io    io and workflow                                      (CHRONORMAL_IO)

@@ -2,7 +2,8 @@
 add_compile_options(-fwasm-exceptions)
 add_link_options(-fwasm-exceptions)
 include(cmake/sources.cmake)
-# The option that compiles code without time-consuming loops for size, since browsers download and compile the module.
+# The option that makes code small, because browsers download and compile the module. It is for code without loops that
+# take time.
 set(for_size $<$<CONFIG:Release>:-Os>)
 target_compile_options(pugixml PRIVATE ${for_size})
 target_compile_options(draco PRIVATE ${for_size})

@@ -183,7 +183,7 @@ def private_names(text):
 
 LICENSE = "".join(f"// {line}".rstrip() + "\n" for line in (ROOT / "LICENSE").read_text().strip().split("\n"))
 VERSION = re.search(r"project\(chronormal VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
-# A product followed by a sum must stay two roundings, so that the bits are the same on every machine.
+# A product followed by a sum must be rounded twice, so that the bits are the same on every machine.
 ROUNDINGS = """#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif

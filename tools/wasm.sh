@@ -1,6 +1,6 @@
-# Builds the program for other systems, with libraries from Debian's sources. One of these is a wasm module by Debian's
-# Emscripten, from which the npm package is made. ./run and ./test source this file; the package also needs
-# tools/web.sh.
+# Builds the program for other systems, with libraries from Debian's sources. For browsers and Node.js, Debian's
+# Emscripten makes a wasm module, from which the npm package is made. ./run and ./test source this file; the package
+# also needs tools/web.sh.
 
 # fetch_sources FOLDER: unpacks the source packages that tools/packages.txt lists under [wasm-sources] from Debian's
 # archive into FOLDER, unless they are already there.
@@ -46,7 +46,7 @@ build_wasm() {
   build_report_page || return 1  # the page that `chronormal report` needs
   mkdir -p "$build"
   (
-    # Debian's builds of the system libraries are used. They also exist with support for exceptions.
+    # Uses Debian's builds of the system libraries of Emscripten, which also exist with support for exceptions.
     export NODE_PATH=/usr/share/nodejs EM_NODE_JS
     EM_NODE_JS=$(command -v node)
     unset CMAKE_CXX_COMPILER_LAUNCHER

@@ -1,4 +1,5 @@
-// Measures the error of every path against double: on the grid, far from the origin, and on the built-in morphs.
+// Measures the error of every path, which is a way to compute normals, against normals in double: on the grid, far from
+// the origin, and on the built-in morphs.
 
 #include <fmt/core.h>
 

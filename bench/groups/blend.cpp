@@ -19,7 +19,7 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kTargets = 100, kDenseTargets = 5;
-constexpr double kMoved = 0.025;       // share of the vertices that a target moves, as in a face with 102 targets
+constexpr double kMoved = 0.025;       // share of vertices that a target moves, as in a human face of 102 targets
 constexpr double kDisplacement = 0.1;  // displacement as a multiple of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
 // The limit in radians for the error of the linear sum. The sum is inexact by design, so the limit reveals gross
@@ -36,7 +36,7 @@ BlendSet make_sparse(const Mesh& mesh) {
   std::mt19937_64 random(1);
   const auto uniform = [&random] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
   for (std::size_t k = 0; k < kTargets; ++k) {
-    // Half of the targets surround the same few places, so that they overlap like the targets of a face.
+    // Half of the targets surround the same few places, so that they overlap like the targets of a human face.
     const std::size_t centre = k % 2 == 0 ? random() % vertices : (k % 10) * vertices / 40;
     const Vector push = {uniform() - 0.5, uniform() - 0.5, uniform() - 0.5};
     std::vector<std::pair<double, std::uint32_t>> near;

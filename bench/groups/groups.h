@@ -13,9 +13,9 @@ namespace chronormal::bench {
 void run_faces(Suite& suite, const Size& size);
 void run_vertices(Suite& suite, const Size& size);
 /// Measures meshes other than the torus: thin triangles, varied valence, a sphere that collapses, and meshes by other
-/// people in CHRONORMAL_DATA (a dance, a face).
+/// people in CHRONORMAL_DATA (a dance, a human face).
 void run_meshes(Suite& suite);
-/// Measures every scheme, at random access and played.
+/// Measures every scheme, both at random t and in playback with small steps.
 void run_schemes(Suite& suite, const Size& size);
 
 /// Measures certificates of the largest errors of schemes, and dense sampling for comparison.
@@ -41,7 +41,7 @@ struct SchemeQuality {
 [[nodiscard]] std::vector<SchemeQuality> scheme_qualities();
 [[nodiscard]] std::vector<std::string> benchmark_schemes();
 
-/// The error of a path over all elements and many t, in radians.
+/// The error of a path, which is a way to compute normals, over all elements and many t, in radians.
 struct Accuracy {
   std::string path, mesh, elements;
   double bound = 0;  ///< the bound that the path promises, in radians

@@ -40,7 +40,7 @@ Vec3d way_at(const Segment& segment, std::size_t face, const View& view, double 
   return viewer - lerp(to_double(segment.from[a]), to_double(segment.to[a]), t);
 }
 
-// Finds the sides of a face that the viewer sees by sampling, as a renderer without exact answers does.
+// Finds by samples which sides of a face the viewer sees, as a renderer without exact answers does.
 ShutterSide side_by_samples(const Question& q, std::size_t face, const View& view, int samples) {
   bool is_front = false, is_back = false;
   for (int i = 0; i < samples; ++i) {

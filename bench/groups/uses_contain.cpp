@@ -1,5 +1,6 @@
 // Finds all crossings of moving points through a closed mesh that deforms, over a whole segment. Also times common
-// practice: a test for single instants, called at many instants. An element is a point.
+// practice: a test for single instants, called at many instants. Times are given for each element, which is a point
+// here.
 
 #include <fmt/core.h>
 

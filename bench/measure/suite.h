@@ -1,5 +1,5 @@
-/// Runs groups of cases. It compares the result of each case with the oracle, then times all cases in random order,
-/// together with the speed of memory, and makes a row of the table from each case.
+/// Runs groups of cases, which are functions to be timed. It compares the result of each case with the oracle, then
+/// times all cases in random order, together with the speed of memory, and makes a row of the table from each case.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 
@@ -25,7 +25,7 @@ struct Size {
   [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
 };
 
-/// A check of a result at one t after the run.
+/// A comparison with the oracle of the normals that a case has computed for one t.
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;

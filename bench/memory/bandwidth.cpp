@@ -33,7 +33,7 @@ std::uint64_t Read(const std::byte* from, std::size_t bytes) {
   return hn::GetLane(hn::SumOfLanes(tag, hn::Add(hn::Add(sum0, sum1), hn::Add(sum2, sum3))));
 }
 
-// Sets to = from, or to = from + 3 third if kTriad is true. If kStream is true, stores bypass the caches.
+// Sets to = from, or to = from + 3 * third if kTriad is true. If kStream is true, stores bypass the caches.
 template <bool kTriad, bool kStream, bool kPrefetch>
 void Stream(const std::byte* from, const std::byte* third, std::byte* to, std::size_t bytes) {
   const hn::ScalableTag<float> tag;

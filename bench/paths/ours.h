@@ -1,4 +1,5 @@
-/// Makes the cases of chronormal's own paths, with the same code for faces and for vertices.
+/// Makes the cases of chronormal's own paths, which are its ways to compute normals, with the same code for faces and
+/// for vertices.
 #ifndef BENCH_PATHS_OURS_H_
 #define BENCH_PATHS_OURS_H_
 

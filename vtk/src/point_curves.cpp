@@ -1,4 +1,4 @@
-// Makes cubics from the positions of points at up to four time steps.
+// Makes the cubic path of each point from its positions at up to four time steps.
 #include "point_curves.h"
 
 #include <algorithm>

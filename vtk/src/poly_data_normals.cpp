@@ -117,7 +117,7 @@ Faces find_faces(vtkPolyData* mesh) {
 }
 
 // Evaluates eq. 5 of docs/theory.md in double, for positions that are not in float. The edges e(t), f(t) of each
-// triangle of the fan have the product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
+// triangle of the fan have the cross product (1-t)^2 e0 x f0 + t(1-t) (e0 x f1 + e1 x f0) + t^2 e1 x f1.
 ControlNormals control_normals_in_double(vtkPolyData* from, vtkPolyData* to, std::span<const std::uint32_t> face) {
   struct Edge {
     Vec3d from, to;

@@ -37,8 +37,8 @@ class NumberChecksum {
   std::uint32_t value_ = 0;
 };
 
-/// Returns a line with the checksum of a text, a blank, the text and a line feed: "1a2b3c4d TEXT". The text must not
-/// contain a line feed.
+/// Returns a line that consists of the checksum of a text, a blank, the text and a line feed: "1a2b3c4d TEXT". The text
+/// must not contain a line feed.
 [[nodiscard]] std::string checked_line(std::string_view text);
 /// Returns the text in a line that checked_line() made, or nothing if the line is damaged. Pass the line without its
 /// line feed.

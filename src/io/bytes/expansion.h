@@ -30,18 +30,18 @@ class Expansion {
 
   explicit Expansion(std::size_t times = kUsual, std::uint64_t bytes_read = 0) noexcept
       : times_(times), read_(bytes_read) {}
-  /// Allows everything, for input that did not come from a file.
+  /// Returns an Expansion that allows any size, for input that did not come from a file.
   [[nodiscard]] static Expansion unlimited() noexcept { return Expansion(static_cast<std::size_t>(-1), kAlways); }
 
   void add_read(std::uint64_t bytes) noexcept { read_ += bytes; }
   /// Returns the number of bytes that were read.
   [[nodiscard]] std::uint64_t bytes_read() const noexcept { return read_; }
 
-  /// Returns the largest number of bytes that a file may ask for.
+  /// Returns the largest number of bytes of memory or output that a file may ask for.
   [[nodiscard]] std::uint64_t most() const noexcept;
-  /// Checks that the file may ask for `bytes` bytes. Pass 2^64 - 1 if the computation of this number overflowed.
-  /// Errors: kInvalidInput; the message gives the number of bytes, and the value of --max-expansion that would allow
-  /// this number.
+  /// Checks that the file may ask for `bytes` bytes of memory or output. Pass 2^64 - 1 if the computation of this
+  /// number overflowed. Errors: kInvalidInput; the message gives the number of bytes, and the value of --max-expansion
+  /// that would allow this number.
   [[nodiscard]] Status check(std::uint64_t bytes, const std::string& place) const;
 
  private:

@@ -11,8 +11,8 @@
 namespace chronormal {
 namespace {
 
-// Reads to the end of the file, or until there are more than `most` bytes. Returns false and sets errno on failure.
-// `expected` is the present size of the file in bytes.
+// Reads to the end of the file, or until `bytes` has more than `most` bytes. If `waits` is true, waits for bytes that a
+// pipe does not have yet. Returns false and sets errno on failure. `expected` is the present size of the file in bytes.
 bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most, std::string& bytes) {
   const std::size_t first_block = std::max(std::size_t{1} << 16, expected + 1);
   std::size_t size = 0;

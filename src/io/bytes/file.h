@@ -19,7 +19,8 @@
 
 namespace chronormal::inline internal {
 
-/// The most bytes that are read from a pipe, a terminal, or a file without a size. They are all held in memory.
+/// The largest number of bytes that may be read from a pipe, a terminal, or a file without a size. All of these bytes
+/// are held in memory.
 inline constexpr std::size_t kMostOfStream = std::size_t{1} << 30;
 
 /// The bytes of a file, which are valid as long as the object lives. A regular file is mapped: if another program
@@ -61,7 +62,7 @@ class FileBytes {
 /// A file whose parts are read in any order. Nothing is mapped, so the file may be larger than memory, and another
 /// program may shorten it while it is read.
 ///
-/// Threads    several may call read() at the same time.
+/// Threads    several threads may call read() at the same time.
 class PositionedFile {
  public:
   /// Opens a regular file. Returns nothing if the path is not a regular file or cannot be opened.

@@ -39,8 +39,8 @@ class Journal {
   /// Returns true if the journal has no records, neither of an earlier run nor of this one.
   [[nodiscard]] bool is_empty() const noexcept { return count_ == 0; }
 
-  /// Writes a record behind the last one, without delay; records() does not list the new record. Errors: kFailed with
-  /// the path as the place.
+  /// Writes a record to the end of the file at once; records() does not list the new record. Errors: kFailed with the
+  /// path as the place.
   [[nodiscard]] Status append(std::string_view record);
   /// Keeps the first `count` of the records that the journal had when it was opened, and drops all others. Errors:
   /// kFailed with the path as the place.

@@ -1,4 +1,4 @@
-// Lists the kinds of files that people hand over by mistake.
+// Lists the kinds of files that people pass to the program by mistake.
 #include "io/bytes/known_kinds.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Writes a new file under a temporary name in the folder of the target, and renames it when all bytes are written.
-// Sends the bytes for a stream to the stream at once.
+// Bytes for a stream are written to the stream at once.
 #include "io/bytes/output_file.h"
 
 #include <algorithm>

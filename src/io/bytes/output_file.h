@@ -29,7 +29,7 @@ class OutputFile {
   /// byte is written.
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
-  /// Goes on with a file of which an interrupted run wrote the first `kept` bytes; with 0, begins the file. Until
+  /// Continues a file of which an interrupted run wrote the first `kept` bytes. If `kept` is 0, begins the file. Until
   /// finish(), the bytes are in the file partial_name(path), and they stay there if the object or the process ends
   /// early. Errors: those of create(); kUsage for a path that is not a file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
@@ -51,7 +51,7 @@ class OutputFile {
   /// lies in memory if the output is a stream or a device. Errors: those of Spool::beside().
   [[nodiscard]] Result<Spool> spool() const;
 
-  /// Writes bytes behind everything that was appended.
+  /// Appends bytes to the file.
   [[nodiscard]] Status append(std::string_view bytes) { return append(std::span(&bytes, 1)); }
   /// Appends several pieces, one behind the other.
   [[nodiscard]] Status append(std::span<const std::string_view> pieces);

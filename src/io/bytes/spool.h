@@ -31,10 +31,10 @@ class Spool {
   /// The function that gets bytes from the spool. Each call gets the bytes that follow the bytes of the previous call.
   using Take = std::function<Status(std::string_view bytes)>;
 
-  /// Puts bytes aside in memory.
+  /// Makes a spool that keeps bytes in memory.
   Spool() = default;
-  /// Puts bytes aside in a file in the folder of `target`. Errors, here and in all later calls: kFailed with `place` as
-  /// the place.
+  /// Makes a spool that keeps bytes in a file in the folder of `target`. Errors, here and in all later calls: kFailed
+  /// with `place` as the place.
   [[nodiscard]] static Result<Spool> beside(const std::string& target, const std::string& place);
 
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }

@@ -228,7 +228,7 @@ Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) 
 
   // Writes the fields that are the same in both headers of a member, beginning with "version needed".
   const auto put_common = [&](std::string& text, const StoredMember& member, bool is_large) {
-    put16(text, is_large ? 45 : 20);  // version needed
+    put16(text, is_large ? 45 : 20);  // version that a reader needs
     put16(text, 0);                   // flags
     put16(text, kStored);
     put16(text, 0);     // time
@@ -257,12 +257,12 @@ Frame frame_of(std::span<const StoredMember> members, std::uint64_t zip64_from) 
     frame.headers.push_back({header, std::move(file)});
 
     put32(directory, kEntryWord);
-    put16(directory, 45);  // made by
+    put16(directory, 45);  // version of the writer
     put_common(directory, member, is_large);
     const std::size_t field = (is_large ? 16U : 0U) + (is_far ? 8U : 0U);
     put16(directory, field == 0 ? 0 : field + 4);
-    put16(directory, 0);  // comment
-    put16(directory, 0);  // disk
+    put16(directory, 0);  // length of the comment
+    put16(directory, 0);  // number of the disk
     put16(directory, 0);  // internal attributes
     put32(directory, 0);  // external attributes
     put32(directory, short_form(header));

@@ -127,7 +127,7 @@ class ChunkReader {
   std::string_view bytes_;
   const std::string& name_;
   bool is_wide_ = false;
-  std::optional<std::int32_t> start_;  // start of the file in ticks
+  std::optional<std::int32_t> start_;  // start time of the file in ticks
   std::vector<Points> list_;
 };
 

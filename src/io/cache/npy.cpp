@@ -232,7 +232,7 @@ Result<std::string> read_text(std::string_view bytes, const std::string& place) 
     if (c > 127) return invalid_input(place, "the text must be ASCII");
     text += static_cast<char>(c);
   }
-  // NumPy fills the string with zero bytes.
+  // NumPy pads a short string with zero bytes at its end.
   while (text.ends_with('\0')) text.pop_back();
   return text;
 }

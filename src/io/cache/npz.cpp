@@ -255,8 +255,8 @@ class Archive {
     return result;
   }
 
-  // Finds the layout of an array of positions that can be read sample by sample. Such an array is not compressed and in
-  // C order.
+  // Finds the layout of an array of positions that can be read sample by sample. Such an array is not compressed, and
+  // is in C order.
   [[nodiscard]] Result<std::optional<CacheLayout>> find_stored(std::string_view array) {
     constexpr std::uint16_t kStored = 0;
     const zip::Member* const member = find(array);

@@ -149,7 +149,7 @@ class NpzOutput {
   struct Member {
     std::string name, start;
     std::uint64_t size = 0;
-    std::uint64_t end = 0;  // offset in the file at which the written bytes end
+    std::uint64_t end = 0;  // offset in the file at which the written bytes of this array end
     std::uint32_t checksum = 0;
   };
   [[nodiscard]] zip::Frame frame() const;

@@ -96,8 +96,8 @@ Result<GltfDocument> GltfDocument::open(const std::string& path, const GltfOptio
 Result<GltfDocument> GltfDocument::read(FileBytes file, const std::string& name,
                                         const std::optional<std::string>& folder, const GltfOptions& options) {
   Result<GltfDocument> document = read(file.bytes(), name, folder, options);
-  // Views of the bytes stay valid after `file` is moved. The bytes are either mapped, or in a string that is too long
-  // to be stored inside the string object.
+  // Views of the bytes stay valid after `file` is moved, because the bytes are either mapped, or in a string that is
+  // too long to be stored inside the string object.
   if (document) document.value().state_->file = std::move(file);
   return document;
 }

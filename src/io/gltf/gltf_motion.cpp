@@ -59,7 +59,7 @@ class Assembly {
       }
       return;
     }
-    // A skin belongs to a node, so a mesh with a skin is added for each node that has one.
+    // A skin belongs to a node, so a mesh is added once for each node that carries it with a skin.
     std::vector<std::vector<std::size_t>> skinned(document_.meshes().size());
     for (std::size_t n = 0; n < document_.nodes().size(); ++n)
       if (is_skinned(n)) skinned[*document_.nodes()[n].mesh].push_back(n);

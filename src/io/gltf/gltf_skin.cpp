@@ -77,7 +77,7 @@ void GltfSkin::add_bones(const GltfDocument& document) {
   const gltf::Model& model = document.state_->model;
   bone_of_node_.assign(model.nodes.size(), kNoBone);
   for (const std::uint32_t joint : joints_) {
-    // The nodes from the joint upwards to the first node that is a bone already.
+    // The nodes from the joint upwards that are not bones yet.
     std::vector<std::uint32_t> path;
     for (std::optional<std::uint32_t> at = joint; at && bone_of_node_[*at] == kNoBone; at = model.nodes[*at].parent)
       path.push_back(*at);

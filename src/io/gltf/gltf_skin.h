@@ -24,7 +24,7 @@
 
 namespace chronormal::inline internal {
 
-/// A joint that moves a vertex, and the part of the movement that the vertex takes over from it, from 0 to 1.
+/// A joint that moves a vertex, and the share of this joint in the position of the vertex, from 0 to 1.
 struct JointShare {
   std::uint32_t joint = 0;
   double share = 0;

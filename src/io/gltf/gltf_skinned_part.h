@@ -30,7 +30,7 @@ namespace chronormal::inline internal {
 
 class GltfSkinnedPart {
  public:
-  /// Reads the shares of the vertices of a part. Errors: those of GltfSkin::read_shares()
+  /// Reads the shares of the vertices of a part. Errors: those of GltfSkin::read_shares().
   [[nodiscard]] static Result<GltfSkinnedPart> read(const GltfDocument& document, const GltfPart& part,
                                                     std::shared_ptr<const GltfSkin> skin);
 

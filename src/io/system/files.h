@@ -100,7 +100,7 @@ void never_wait(int descriptor) noexcept;
 [[nodiscard]] std::optional<std::span<char>> read_at(int descriptor, std::uint64_t at, std::span<char> bytes);
 /// Writes all bytes to a file from byte `at` on. This may move the place at which write_bytes() writes next.
 [[nodiscard]] bool write_at(int descriptor, std::uint64_t at, std::string_view bytes);
-/// Makes a file `size` bytes long, and lets write_bytes() write at this end next.
+/// Makes a file `size` bytes long. The next call of write_bytes() then appends to the file.
 [[nodiscard]] bool set_end(int descriptor, std::uint64_t size);
 /// Tells the system that nobody will read these bytes again. If the system supports it, their space on the disk becomes
 /// free.

@@ -334,14 +334,14 @@ void forget_bytes(int /*descriptor*/, std::uint64_t /*at*/, std::uint64_t /*size
 
 std::uint64_t written_bytes(int /*descriptor*/, std::uint64_t size, std::uint64_t /*enough*/) { return size; }
 
-// The permissions of the folder apply to new files.
+// Does nothing, because new files have the permissions of their folder.
 bool take_permissions(int /*descriptor*/, const FileStatus& /*old*/) { return true; }
 
 bool flush_file(int descriptor) {
   return ::FlushFileBuffers(handle_of(descriptor)) != 0 || ::GetLastError() == ERROR_INVALID_FUNCTION || fail();
 }
 
-// MOVEFILE_WRITE_THROUGH has already written the rename to the disk.
+// Does nothing, because MOVEFILE_WRITE_THROUGH has already written the rename to the disk.
 void flush_folder_of(const std::string& /*path*/) {}
 
 // A lock on Windows also keeps other processes from reading the locked bytes. A byte far beyond the end of any file is

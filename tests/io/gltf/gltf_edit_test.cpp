@@ -28,7 +28,8 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Checks that an edit of a GLB file changes nothing but what it should.
+// Checks that an edit of a GLB file keeps everything else: the JSON beside the changed values, the bytes of the BIN
+// chunk, and all further chunks.
 void expect_the_rest_unchanged(const std::string& before, const GltfEdit& edit) {
   const GlbParts source = take_apart(before), result = take_apart(bytes_or_error(edit));
   EXPECT_EQ(fuzz::difference_beside(fuzz::JsonTokens(source.json.substr(0, source.json.find_last_of('}') + 1)),

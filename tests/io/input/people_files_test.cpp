@@ -87,7 +87,7 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1}))
                 .find("begins with its number of corners"),
             std::string::npos);
-  // Only the first face has a vertex that does not exist.
+  // A single face after its number of corners gives the same message, although its vertices do not exist.
   EXPECT_NE(
       read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
       std::string::npos);

@@ -47,7 +47,7 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
   return target;
 }
 
-// ---- by hand
+// ---- errors that were computed by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
   // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. At vertices 1 and 2, an upward
@@ -160,7 +160,7 @@ TEST(Audit, flat_rule_shows_faces) {
   EXPECT_NEAR(result.error.sum, 4 * 45, 1e-12);
 }
 
-// ---- theorems
+// ---- errors that follow from theory
 
 TEST(Audit, rigid_translation_has_no_error) {
   ShadedMesh mesh = random_sheet(1, 5, 0, 0.4);
@@ -221,7 +221,7 @@ TEST(Audit, quadratic_terms_in_an_extra_target_leave_only_the_rounding_of_floats
   EXPECT_EQ(result.findings[0].count, 1U);
 }
 
-// ---- against an oracle
+// ---- errors that an oracle computes
 
 void expect_same(const MotionError& error, const std::vector<Real>& expected) {
   ASSERT_EQ(error.judged, expected.size());
@@ -663,7 +663,7 @@ TEST(Audit, nothing_that_moves_is_nothing_to_judge) {
   EXPECT_TRUE(audit_of(mesh.file()).subjects.empty());
 }
 
-// ---- faults
+// ---- the faults that an audit names
 
 TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   // At weight 1, the sum of both face normals is (-4, 0, 4), and N + D is its unit vector. The normal of vertex 3 goes
@@ -751,7 +751,7 @@ TEST(Audit, extra_targets_that_lost_their_normals_are_a_note) {
   EXPECT_EQ(result.findings[1].count, 1U);
 }
 
-// ---- tracks
+// ---- tracks of weights
 
 TEST(Audit, tracks_with_the_same_keys_are_subjects_of_their_own_nodes) {
   GltfBuilder builder = hinge().file();
@@ -855,7 +855,7 @@ TEST(Audit, bad_options_are_refused) {
     EXPECT_EQ(make_audit_rule(audit_rule_name(rule)).value(), rule);
 }
 
-// ---- sequences
+// ---- sequences of meshes
 
 // Makes a triangle whose vertex 2 moves from y through z to -y. At the three keyframes, n is (0, 0, 1), (0, -1, 0) and
 // (0, 0, -1).

@@ -120,7 +120,7 @@ void expect_subject(const AuditSubject& subject, const Sums& shown, const Sums& 
   EXPECT_NEAR(subject.skinning->mean(), skinning.mean(), 1e-7);
 }
 
-// ---- against the oracle
+// ---- errors that the oracle computes
 
 TEST(SkinnedAudit, targets_are_seen_through_the_skin_as_the_file_poses_it) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

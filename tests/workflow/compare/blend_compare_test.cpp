@@ -114,7 +114,7 @@ Motion star_of(const BlendSet& set) {
   return motion;
 }
 
-// ---- against oracles
+// ---- errors that oracles compute
 
 TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {

@@ -86,7 +86,7 @@ SampleOptions of_faces() {
   return options;
 }
 
-// Returns the shares of keyframes in a pose of targets.
+// Returns the factors by which a pose of targets multiplies the positions of the keyframes: the base, then the targets.
 std::vector<exact::Rational> shares_of(const std::vector<double>& weights) {
   std::vector<exact::Rational> shares = {1};
   for (const double weight : weights) {

@@ -350,7 +350,7 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
     for (std::size_t v = 0; v < 4 * kSide; ++v) {
       for (std::vector<Vector>& of_key : stored) {
         if (v % 3 == 0) of_key[v] = bent(of_key[v], random, 0.2);
-        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // points to the back
+        if (v % 4 == 0) of_key[v] = scaled(Real(-1), of_key[v]);  // turns the normal to the back of the surface
       }
     }
     mesh.store(stored[0], {stored[1], stored[2]});

@@ -30,7 +30,7 @@ struct UnusedArrays {
     std::size_t begin = 0, end = 0;
   };
 
-  /// the ranges that are left out of each buffer, ascending and apart; empty if nothing is left out
+  /// the ranges that are left out of each buffer, ascending, and without common bytes; empty if nothing is left out
   std::vector<std::vector<Range>> ranges;
   std::vector<std::size_t> view_offsets;  ///< new start of each view in its buffer; empty if no view moves
   /// Changes to the JSON that follow from leaving out bytes, as pairs of a JSON pointer and a new value.

@@ -15,7 +15,7 @@
 namespace chronormal::inline internal::gltf {
 namespace {
 
-constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // JSON numbers are exact up to this
+constexpr std::size_t kMostBytes = addressable(std::uint64_t{1} << 53);  // JSON numbers are exact up to this size
 
 constexpr std::array<std::string_view, 5> kUnderstood = {"KHR_mesh_quantization", "EXT_meshopt_compression",
                                                          "KHR_meshopt_compression", "KHR_draco_mesh_compression",

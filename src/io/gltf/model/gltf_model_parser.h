@@ -94,8 +94,8 @@ class Parser {
   void parse_transform(const JsonView& item, std::size_t index);
   void check_nodes(const JsonView& root);
   void connect_nodes();
-  /// Gives a mark to each mesh that has no mark of a bake, if a node that carries the mesh, or the parent of such a
-  /// node, has one.
+  /// Gives each mesh without a mark of a bake the mark of a node that carries the mesh, or of the parent of such a
+  /// node.
   void read_marks_of_nodes();
   /// Returns the member "weights" of a mesh or node, or nothing if there is none.
   static std::vector<double> parse_weights(const JsonView& item);
