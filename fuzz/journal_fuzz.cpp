@@ -10,7 +10,7 @@
 #include "cache_invariants.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static std::string path;  // removed at the end
+  static std::string path;  // the path of a file that is removed when the process ends
   if (path.empty()) {
     path = "/tmp/chronormal_fuzz_XXXXXX";
     const int file = ::mkstemp(path.data());

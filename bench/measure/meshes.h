@@ -37,7 +37,7 @@ class Mesh {
 
  private:
   Topology topology_;
-  AlignedArray<float> from_, to_;  // (V, 3)
+  AlignedArray<float> from_, to_;  // positions of the vertices, (V, 3)
 };
 
 }  // namespace chronormal::bench

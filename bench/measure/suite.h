@@ -56,7 +56,7 @@ struct Row {
   std::size_t repetitions = 0;
   double bytes_read = 0, bytes_written = 0;  ///< for each element and evaluation
   double share_of_bandwidth = 0;             ///< time that the memory needs, divided by least_ns; 0 if unknown
-  double verified_error = 0, limit = 0;      ///< radians
+  double verified_error = 0, limit = 0;      ///< in radians
   std::size_t verified_elements = 0;
 };
 

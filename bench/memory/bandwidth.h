@@ -22,8 +22,8 @@ namespace chronormal::bench {
 
 struct Bandwidth {
   std::size_t bytes = 0;  ///< size of the working set
-  double read = 0;        ///< GB/s
-  double stream = 0;      ///< GB/s
+  double read = 0;        ///< bandwidth of reading in GB/s
+  double stream = 0;      ///< bandwidth of streaming in GB/s
   double copy = 0;        ///< GB/s of the best copy; `stream` may be larger
 };
 

@@ -10,7 +10,8 @@
 
 namespace chronormal::bench {
 
-/// The arrays of a mesh: positions at both ends (V, 3), corners (F, 3), and scratch memory for positions (V, 3).
+/// The arrays of a mesh: positions at both ends (V, 3), corners unit normals, (F, 3), and scratch memory for positions
+/// (V, 3).
 struct LoopMesh {
   std::span<const float> from, to;
   std::span<const std::uint32_t> corners;

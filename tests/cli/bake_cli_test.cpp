@@ -320,7 +320,7 @@ TEST_F(BakeCli, the_last_of_several_files_is_where_to_write) {
   EXPECT_EQ(run("f_0.obj f_1.obj f_2.obj frames.glb").exit_code, 0);
   expect_error("moving.glb", 2, "the output is missing");
   expect_error("f_0.obj f_1.obj f_2.obj", 2, "the output is missing");
-  expect_error("moving.glb still.glb", 1, "still.glb");  // the output exists already
+  expect_error("moving.glb still.glb", 1, "still.glb");  // an output exists already, and may not be overwritten
 }
 
 TEST_F(BakeCli, avatars_are_read_and_written_as_glb_under_their_own_extension) {

@@ -69,7 +69,7 @@ TEST_F(CompareTruth, table_json_and_csv_say_the_same) {
     std::getline(lines, line);
     const std::string names = row["path"].get<std::string>() + "," + row["scheme"].get<std::string>() + ",";
     EXPECT_NE(line.find(names), std::string::npos) << line;
-    if (row["mean_degrees"] < 0.01) continue;  // small means have an exponent, and fewer digits, in the table
+    if (row["mean_degrees"] < 0.01) continue;  // the table shows fewer digits of small numbers
     char mean[32];
     std::snprintf(mean, sizeof mean, "%.4f", row["mean_degrees"].get<double>());
     EXPECT_NE(table.out.find(mean), std::string::npos) << names << mean << '\n' << table.out;

@@ -19,7 +19,7 @@ namespace chronormal::inline internal::zip {
 struct Member {
   std::string_view name;
   std::uint16_t flags = 0;
-  std::uint16_t method = 0;  ///< 0 stored, 8 deflated
+  std::uint16_t method = 0;  ///< compression method: 0 is stored, 8 is deflated
   std::uint32_t checksum = 0;
   std::uint64_t packed_size = 0;  ///< size in the file, in bytes
   std::uint64_t size = 0;         ///< size after unpacking, in bytes

@@ -43,9 +43,9 @@ struct Array {
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// Return the element at index `item`. The array must have the kind that is named behind each function.
   [[nodiscard]] double real(std::size_t item) const noexcept;  ///< kFloat
-  /// kinds other than kFloat; 2^64 - 1 if the element is negative
+  /// kinds other than for kFloat; 2^64 - 1 if the element is negative
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;
-  [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< kInteger
+  [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< for kInteger
 
   /// Returns the shape and the type for messages: "(2, 3, 3) of '<f4'".
   [[nodiscard]] std::string text() const;

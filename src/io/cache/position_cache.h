@@ -6,7 +6,7 @@
 /// vertices when it exports a mesh breaks the match unnoticed. The positions of the mesh itself are not used.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
-/// Units      times: seconds.
+/// Units      times: in seconds.
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
 #define CHRONORMAL_IO_CACHE_POSITION_CACHE_H_

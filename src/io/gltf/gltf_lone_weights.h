@@ -12,7 +12,7 @@ namespace chronormal::inline internal::gltf {
 
 /// The keys of a channel for one weight, with as many values as keys, or three times as many for a cubic spline.
 struct LoneKeys {
-  std::span<const float> times;   ///< ascending; at least one
+  std::span<const float> times;   ///< ascending times of keys, at least one
   std::span<const float> values;  ///< for a cubic spline: in-tangent, value, out-tangent of each key
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
 };

@@ -376,7 +376,7 @@ class AnimationReader {
  private:
   Status read_curves() {
     const std::vector<GltfTrack>& tracks = document_.animations()[animation_].tracks;
-    std::map<std::size_t, std::optional<std::size_t>> of_nodes;  // the track of a node's weights
+    std::map<std::size_t, std::optional<std::size_t>> of_nodes;  // the track that drives the weights of each node
     for (std::size_t t = 0; t < tracks.size(); ++t) of_nodes[tracks[t].node] = t;
     for (std::size_t n = 0; n < document_.nodes().size(); ++n) {
       if (!assembly_.is_skinned(n)) continue;

@@ -46,7 +46,7 @@ class GltfSkinnedPart {
 
  private:
   std::shared_ptr<const GltfSkin> skin_;
-  std::vector<std::size_t> first_;  // (V + 1)
+  std::vector<std::size_t> first_;  // for each vertex the index of its first share, (V + 1)
   std::vector<JointShare> shares_;
 };
 

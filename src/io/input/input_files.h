@@ -24,13 +24,13 @@ struct ReadMotion {
   std::optional<MotionStream> stream = {};  ///< the motion as a stream, if its keyframes are still in files
   StoredNormals normals;
   std::vector<std::uint32_t> group_of_face;
-  std::string shaded_by;  ///< as in Input
+  std::string shaded_by;  ///< the same as in class Input
   /// The files of a sequence that are examined for coordinates with more digits than float32 holds, if the first file
   /// has none.
   std::vector<std::string> other_files = {};
   std::uint64_t bytes_read = 0;           ///< total size of the files in bytes
-  std::vector<std::string> notes = {};    ///< notes as in Input
-  std::optional<FileSeries> series = {};  ///< as in Input
+  std::vector<std::string> notes = {};    ///< the same as in class Input
+  std::optional<FileSeries> series = {};  ///< the same as in class Input
 };
 
 /// A function that returns the files of a folder that belong to the input, in any order.

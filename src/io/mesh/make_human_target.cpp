@@ -21,7 +21,7 @@ using scan::NumberFault;
 // A stream of zlib. inflateInit2() initialises it, and the destructor calls inflateEnd().
 struct Inflater {
   z_stream stream{};
-  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // 16 means gzip only
+  bool is_ready = ::inflateInit2(&stream, 16 + MAX_WBITS) == Z_OK;  // adding 16 means that only gzip is accepted
 
   Inflater() = default;
   Inflater(const Inflater&) = delete;

@@ -84,7 +84,7 @@ Descriptor TemporaryFile::nameless(const std::string& target) {
 
 void TemporaryFile::open(const std::string& name, const Opening& how) {
   name_ = copy_of(name);
-  if (name_ == nullptr) return;  // errno has the reason
+  if (name_ == nullptr) return;  // copy_of() has set errno to the reason
   place_ = stays_ ? kMostFiles : enter(name_);
   Opening without_links = how;
   without_links.follows_links = false;

@@ -33,7 +33,7 @@ TEST(Journal, records_are_read_back_by_the_next_run) {
   EXPECT_FALSE(next.value().is_empty());
   ASSERT_TRUE(next.value().keep_first(1).ok());
   ASSERT_TRUE(next.value().append("two").ok());
-  next = Journal::open(folder / "other", kRun);  // closes the first journal
+  next = Journal::open(folder / "other", kRun);  // the assignment closes the first journal
   EXPECT_EQ(Journal::open(path, kRun).value().records(), (std::vector<std::string>{"one", "two"}));
   ASSERT_TRUE(next.value().remove().ok());
   EXPECT_EQ(folder.entry_count(), 1U);

@@ -339,7 +339,7 @@ TEST(GltfDraco, quantised_floats_are_within_a_step_of_the_true_ones) {
   builder.add_mesh(test::draco_primitive(builder, coded, grid.positions.size() / 3, grid.corners.size(), false, {}));
   const GltfGeometry geometry = geometry_of(GltfFixture(builder));
   ASSERT_EQ(geometry.positions.size(), grid.positions.size());
-  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // x and y go from 0 to this number
+  const float range = *std::max_element(grid.positions.begin(), grid.positions.end());  // of x and y, from 0
   for (std::size_t i = 0; i < grid.positions.size(); ++i)
     EXPECT_NEAR(geometry.positions[i], grid.positions[i], range / 4095) << i;
 }

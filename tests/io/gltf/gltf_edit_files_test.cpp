@@ -266,7 +266,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   constexpr std::uintmax_t kSize = 4294967296;
   folder.write("b.bin", std::string(static_cast<std::size_t>(kSize / 99), '\0'));
   std::error_code error;
-  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // makes a hole up to the largest allowed size
+  std::filesystem::resize_file(folder / "b.bin", kSize, error);  // extends the file by a hole
   if (error) GTEST_SKIP() << "the file system has no files of 4 GiB: " << error.message();
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", kSize}, {"uri", "b.bin"}}};

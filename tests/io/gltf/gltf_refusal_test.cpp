@@ -1,5 +1,5 @@
-// Checks that the reader refuses files that the glTF specification forbids, with a JSON pointer to the fault. Each case
-// is one line.
+// Checks that the reader refuses files that the glTF specification forbids, with a JSON pointer to the fault. Each line
+// of the table of cases makes one fault.
 #include <gtest/gtest.h>
 
 #include <algorithm>

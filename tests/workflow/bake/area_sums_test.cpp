@@ -27,7 +27,7 @@ using Vector = std::array<double, 3>;
 PointRows rows_of(const Motion::Keyframe& keyframe) {
   PointRows rows(keyframe.positions.size() / 3 * 4);
   for (std::size_t i = 0; i < keyframe.positions.size(); ++i)
-    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // has digits beyond float32
+    rows[i / 3 * 4 + i % 3] = double{keyframe.positions[i]} * 1.1;  // a number with more digits than float32 holds
   for (std::size_t v = 0; v < rows.size() / 4; ++v) rows[4 * v + 3] = std::nan("");
   return rows;
 }

@@ -92,7 +92,7 @@ std::vector<VectorD> exact_normals(const ShownGlb& glb, const Surface& surface, 
 }
 
 struct Judged {
-  double mean = 0, max = 0;  // in degrees
+  double mean = 0, max = 0;  // average and largest error, in degrees
   // The numbers of all samples, and of the samples that are not judged because n is nearly zero.
   std::size_t count = 0, nearly = 0;
 };

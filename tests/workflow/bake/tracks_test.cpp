@@ -23,7 +23,8 @@ double stated_error(const std::vector<ExtraWeight>& extras) {
 }
 
 TEST(Tracks, errors_of_extra_weights_add_up) {
-  // In the worst case, all correction targets turn the same normal in the same direction.
+  // The stated error must hold in the worst case, in which all correction targets turn the same normal in the same
+  // direction.
   const std::vector<ExtraWeight> extras = {{0, 0, 1, -1, 0.5}, {0, 1, 0, 1, 0.7}, {1, 1, 1, -1, 0.2}};
   double sum = 0;
   for (const ExtraWeight& extra : extras) {

@@ -250,8 +250,8 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
   std::cout << "seed " << kSeed << '\n';
   for (int i = 0; i < kMeshes; ++i) {
     Random random(kSeed + static_cast<std::uint64_t>(i));
-    // The surfaces have only ordinary faces. Whether a face collapses is decided relative to the size of the
-    // coordinates, which differs between the two places.
+    // The surfaces have no faces that nearly collapse. A face counts as collapsed relative to the size of the
+    // coordinates, so the answer for such a face could differ between the two places.
     Twins twins;
     for (const int k : {0, 1, 2}) {
       const Motion shaken = fixtures::shaken(fixtures::icosphere(1), 0.3, 100 * static_cast<std::uint64_t>(i) + 7);

@@ -1,5 +1,5 @@
-// Tests the content of a report as a page reads it. tests/support/report_file.h computes the error at each of the worst
-// places from the container alone.
+// Tests the content of a report as a page reads it. tests/support/report_file.h reads the container, which has all data
+// of a report, and computes the error at each of the worst places from it alone.
 
 #include "workflow/report/report.h"
 
@@ -118,7 +118,7 @@ std::string decoded(std::string_view text) {
   for (const char c : text) {
     const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const std::size_t digit = digits.find(c);
-    if (digit == std::string_view::npos) continue;  // padding
+    if (digit == std::string_view::npos) continue;  // base64 ends with padding
     bits = bits << 6U | static_cast<std::uint32_t>(digit);
     count += 6;
     if (count < 8) continue;

@@ -60,7 +60,7 @@ TEST(ContinuedSamples, refuse_what_cannot_be_continued) {
     ASSERT_FALSE(refused.ok()) << path;
     EXPECT_EQ(refused.error().code, code) << refused.error().text();
   }
-  EXPECT_EQ(folder.entry_count(), 1U);  // only the journal
+  EXPECT_EQ(folder.entry_count(), 1U);  // the folder has only the journal
 }
 
 }  // namespace

@@ -159,7 +159,8 @@ TEST(FarFiles, targets_of_makehuman_keep_the_digits_of_base_and_delta) {
         numbers[axis] = static_cast<float>(middle[axis] + random.uniform(-1e-3, 1e-3));
         numbers[3 + axis] = static_cast<float>(random.uniform(-1e-3, 1e-3));
         triangles[0][c][axis] = double{numbers[axis]};
-        triangles[1][c][axis] = double{numbers[axis]} + double{numbers[3 + axis]};  // exact at these sizes
+        triangles[1][c][axis] =
+            double{numbers[axis]} + double{numbers[3 + axis]};  // numbers of these sizes have an exact sum
       }
       std::array<char, 400> line{};
       std::snprintf(line.data(), line.size(), "v %.9g %.9g %.9g\n", double{numbers[0]}, double{numbers[1]},

@@ -168,7 +168,8 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   }
 }
 
-// One time, two and many times must give the same bytes, in every order, and normals within 1e-6 rad of integers.
+// A request for one time, for two or for many, in any order, must give the same bytes at a time. Normals must be within
+// 1e-6 rad of those of integers.
 TEST(NormalSampler, normals_at_a_time_have_the_same_bits_whatever_is_asked_beside_it) {
   fixtures::Random random(4949);
   for (const auto& family : test::hard_motions()) {

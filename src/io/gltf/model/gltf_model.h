@@ -115,14 +115,14 @@ struct SkinSource {
 
 /// A channel of an animation that drives a single weight.
 struct ElementSource {
-  std::size_t target = 0, input = 0, output = 0;  ///< input, output: accessors
+  std::size_t target = 0, input = 0, output = 0;  ///< input and output are accessors
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
 
   friend bool operator==(const ElementSource&, const ElementSource&) = default;
 };
 
 struct TrackSource {
-  std::size_t sampler = 0, input = 0, output = 0;  ///< input, output: accessors
+  std::size_t sampler = 0, input = 0, output = 0;  ///< input and output are accessors
   /// The channels of single weights, in the order of targets, if the track consists of such channels. In this case,
   /// `input` and `output` above belong to the first channel, and weights without a channel keep their value in `rest`.
   std::vector<ElementSource> elements = {};
@@ -136,7 +136,7 @@ struct NodeChannel {
   std::uint32_t node = 0;
   Path path = Path::kTranslation;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
-  std::size_t input = 0, output = 0;  ///< accessors
+  std::size_t input = 0, output = 0;  ///< indices of accessors
 };
 
 /// The channels of one animation that move nodes. They are read only in files that have skins.
