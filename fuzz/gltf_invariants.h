@@ -21,7 +21,7 @@ namespace chronormal::fuzz {
 class GltfReading {
  public:
   std::vector<Error> errors;    ///< in the order in which they occurred
-  std::size_t motions = 0;      ///< motions read: of the targets, of each animation
+  std::size_t motions = 0;      ///< number of motions that were read, of targets and animations
   bool has_mesh = false;        ///< true if read_gltf_mesh() had a result
   std::vector<Error> no_moves;  ///< errors of valid files without motion or faces
   std::string broken;           ///< the first invariant that does not hold; empty if all do

@@ -240,7 +240,7 @@ Motion moving_by_turns() {
 
 TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
   const Motion motion = moving_by_turns();
-  // An audit by nlerp measures blocks of faces, and an audit by slerp measures one vertex after the other.
+  // Tests both ways in which audits measure: by nlerp in blocks of faces, and by slerp one vertex after the other.
   for (const AuditRule rule : {AuditRule::kNlerp, AuditRule::kSlerp}) {
     AuditOptions options;
     options.rule = rule;

@@ -27,7 +27,7 @@ BUILD = ROOT / "build"
 SOURCES = BUILD / "wasm-sources"
 
 LIBRARIES = ["chronormal", "chronormal_io"]
-# The artefacts: the pattern of the file in dist/, the build, the targets, and the description.
+# For each artefact: the pattern of its file in dist/, its build, its targets, and its description.
 ARTEFACTS = {
     "arm64": ("chronormal-*-linux-arm64.tar.gz", "arm64", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "program": ("chronormal-*-linux-*.tar.gz", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),

@@ -28,8 +28,8 @@ bool read_all(int descriptor, bool waits, std::size_t expected, std::size_t most
   return true;
 }
 
-// Refuses a large sparse file, which has far fewer bytes on the disk than its size says. Its bytes in memory would take
-// as much as its size says.
+// Refuses a large sparse file. Such a file takes far less space on the disk than its size says, but in memory it would
+// take its whole size.
 Status check_holes(int descriptor, std::uint64_t size, const std::string& place) {
   constexpr std::uint64_t kLarge = std::uint64_t{1} << 30;
   if (size <= kLarge) return Success{};

@@ -14,7 +14,7 @@
 
 namespace chronormal::inline internal::maya {
 
-/// The place in a file at which it has the points of one channel at one time.
+/// The place of the points of one channel at one time in a file.
 struct Points {
   std::string_view channel;  ///< the name of the channel; it lies in the bytes of the file
   std::int32_t ticks = 0;

@@ -477,8 +477,8 @@ class AnimationReader {
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
-  // Returns a bound of the acceleration of any vertex without a skin between two neighbouring keys, in units of the file
-  // per second squared.
+  // Returns a bound of the acceleration of any vertex without a skin between two neighbouring keys, in units of the
+  // file per second squared.
   [[nodiscard]] double acceleration(double from, double to) const {
     double largest = 0;
     std::vector<double> bounds;
@@ -543,9 +543,9 @@ class AnimationReader {
     return {count, count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond};
   }
 
-  // Sets the number of pieces of each interval between two keys, so that normals behind skins stay within the tolerance.
-  // An interval gets at most as many pieces as --max-expansion names, or fewer if all keyframes would need more memory
-  // than is allowed. Counts the faces that stay beyond the tolerance.
+  // Sets the number of pieces into which each interval between two keys is cut, so that normals behind skins stay
+  // within the tolerance. An interval gets at most as many pieces as --max-expansion names, or fewer if all keyframes
+  // would need more memory than is allowed. Counts the faces that stay beyond the tolerance.
   void set_pieces_behind_skins(std::vector<std::size_t>& counts) {
     const std::vector<std::size_t> fewest = counts;
     std::vector<Pieces> pieces(counts.size());

@@ -18,8 +18,8 @@
 /// reversed, so that their normals still point outwards.
 ///
 /// On request, skins move vertices, always in the world, and an animation may move a mesh by its joints alone. Joints
-/// move vertices on curves, which are cut into straight pieces, so that normals are within kPathTolerance of the normals
-/// on the curves (gltf_skinned_part.h). Vertices behind a skin are rounded to float32.
+/// move vertices on curves, which are cut into straight pieces, so that normals are within kPathTolerance of the
+/// normals on the curves (gltf_skinned_part.h). Vertices behind a skin are rounded to float32.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 

@@ -56,7 +56,7 @@ void WeightCurve::curvature(double from_time, double to_time, std::span<double> 
   for (std::size_t i = 0; i < target_count_; ++i) {
     const double from = value(key, i), to = value(next, i);
     const double leaving = duration * tangent(key, true, i), arriving = duration * tangent(next, false, i);
-    // The second derivative of a weight is linear in time, so it is largest at an end of the interval.
+    // The second derivative of a weight is linear in time, so its absolute value is largest at an end of the interval.
     const double at_start = 6 * (to - from) - 4 * leaving - 2 * arriving;
     const double at_end = 6 * (from - to) + 2 * leaving + 4 * arriving;
     for (const double time : {from_time, to_time}) {

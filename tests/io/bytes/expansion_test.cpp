@@ -25,7 +25,7 @@ namespace {
 
 using test::GltfBuilder, test::npy, test::npy_header, test::raw;
 
-constexpr std::size_t kEnough = 1000000;  // a sufficient value of --max-expansion, as a factor
+constexpr std::size_t kEnough = 1000000;  // a value of --max-expansion that is large enough here
 
 std::string error_of(const Status& status) { return status ? "no error" : status.error().text(); }
 

@@ -61,7 +61,7 @@ TEST_F(RealCaches, maya_caches_of_every_kind_are_read) {
   expect_maya("sine_mxmd_oversample", 34, 10, 19.9);
 }
 
-// There are four caches of one animation. Samples of several caches at the same time must be equal.
+// Four caches store one animation in different ways. Their samples at frame 11 must be equal.
 TEST_F(RealCaches, maya_caches_of_one_animation_agree) {
   const auto at_frame_11 = [&](const std::string& folder) -> std::vector<float> {
     const auto cache = read_maya_cache((data_ / "caches" / folder / "cache.xml").string(), {1, 0, "pCubeShape1"});

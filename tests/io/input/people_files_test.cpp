@@ -42,7 +42,7 @@ std::string npz_of(const std::string& positions, const std::string& faces) {
   return write_npz(members);
 }
 
-// A curved sheet: a grid of side x side points, and its triangles.
+// A curved sheet: the points of a square grid, and its triangles.
 struct Sheet {
   std::vector<double> places;
   std::vector<std::uint32_t> corners;

@@ -677,7 +677,7 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   EXPECT_GT(result.error.worst, 1);
   // At weight 1, the rendered normal of vertex 3 is now parallel to (-1, 0, 1), and so wrong.
   mesh.targets[0].normals[11] = 0;
-  // This weighting is not the weighting of the author.
+  // The author has used another weighting, so the normals at the keys count as wrong by this one.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
@@ -715,7 +715,8 @@ TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
   EXPECT_EQ(result.findings[1].count, 3U);
   EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
   EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
-  // True tangents lie in the folded face. At the edge, they point up by half of the angle.
+  // True tangents lie in the folded face. At the edge, they point up by 45 degrees, half of the angle between both
+  // faces.
   mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
   EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
   // Tangents along the hinge do not change when it folds.

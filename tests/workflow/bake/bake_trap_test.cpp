@@ -317,7 +317,7 @@ TEST(BakeTraps, of_meshes_that_share_a_sampler_each_gets_its_own) {
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
   test::Hills other(9);
-  // This mesh only grows, so its normals need no correction target.
+  // The target of this mesh only scales it, so its normals keep their directions and need no correction target.
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.positions})));
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas()})));
   for (const int node : {1, 2})

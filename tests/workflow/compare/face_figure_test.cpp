@@ -36,7 +36,8 @@ reference::Triangle triangle_of(const FaceFigure& figure) {
   return triangle;
 }
 
-// Returns the length of the vector that a Lagrange scheme normalises. Computes the weights as products of differences.
+// Returns the length of the vector that a Lagrange scheme normalises. Computes the Lagrange weights of the nodes as
+// products of differences.
 std::optional<Real> lagrange_length(const reference::Triangle& triangle, std::size_t degree, Real t) {
   const auto nodes = reference::exact_nodes(triangle, degree + 1);
   if (!nodes) return std::nullopt;

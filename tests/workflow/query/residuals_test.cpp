@@ -272,8 +272,8 @@ TEST_F(Residuals, leave_audits_and_errors_at_keyframes_as_they_are_at_the_origin
     twins.far.topology = twins.near.topology;
     twins.near.connect_as_sequence();
     twins.far.connect_as_sequence();
-    // An audit with area weights measures blocks of faces, and an audit with angle weights measures one vertex after
-    // the other.
+    // Tests both ways in which audits measure: with area weights in blocks of faces, and with angle weights one vertex
+    // after the other.
     for (const Weighting weighting : {Weighting::kArea, Weighting::kAngle}) {
       AuditOptions options;
       options.weighting = weighting;
