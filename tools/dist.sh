@@ -65,8 +65,9 @@ dist_program() {
   pack "$folder" "$dist/$(basename "$folder").tar.gz"
 }
 
-# unpacked_program FOLDER STRIP PROGRAM ARTEFACT: sets `folder`, and fills it with the program and the files that belong
-# to it. The program of this machine writes the manual page and completions.
+# unpacked_program FOLDER STRIP PROGRAM ARTEFACT: makes the folder, sets `folder` to it, and copies PROGRAM to it
+# without symbols, by the command STRIP, together with the manual page, the completions and the licences. The program of
+# this machine writes the manual page and completions.
 unpacked_program() {
   local writer=$root/build/dist/chronormal
   folder=$1

@@ -36,7 +36,7 @@ std::string cpu_name() {
   return "unknown";
 }
 
-// Returns text such as "L1d 48K, L2 1024K, L3 32768K".
+// Returns the sizes of the caches as text, such as "L1d 48K, L2 1024K, L3 32768K".
 std::string caches() {
   std::string text;
   for (int index = 0; index < 8; ++index) {

@@ -33,7 +33,7 @@ struct Timed {
 void time_all(std::vector<Timed>& functions, const Effort& effort);
 
 [[nodiscard]] double median(std::vector<double> values);
-/// Returns the interquartile range divided by the median.
+/// Returns the interquartile range of the values, divided by their median.
 [[nodiscard]] double spread(std::vector<double> values);
 
 }  // namespace chronormal::bench

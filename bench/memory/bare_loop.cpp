@@ -83,7 +83,8 @@ HWY_EXPORT(Lines9);
 constexpr int kWays = 7;
 constexpr std::size_t kBlock = 16;   // number of elements in a block
 constexpr std::size_t kPiece = 512;  // number of blocks that a thread takes at a time
-// Prefetches beyond the end must stay inside this array.
+// The number of floats in an array behind its data, so that prefetches beyond the end of the data stay inside the
+// array.
 constexpr std::size_t kFloatsBeyond = 2 * 16384 / 4;
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace chronormal::bench {
 namespace {
 
-// limits in radians, as promised in normals/normal_curves.h
+// The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;
 // The largest number of bytes of results in a case that evaluates many t.
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;

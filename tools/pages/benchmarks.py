@@ -67,7 +67,7 @@ def machines(page):
 
 
 def frames(page, run):
-    """Writes a table of break-even points: the number of frames per segment from which on preparing curves takes less
+    """Writes a table of break-even points. For at least this number of frames per segment, preparing curves takes less
     time than computing the normals anew in each frame."""
     def cell(group, size, curves, anew):
         saved = run.ns(group, anew, size) - run.ns(group, f"{curves} to float3", size)

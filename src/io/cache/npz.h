@@ -120,7 +120,7 @@ class NpzOutput {
   /// Begins a .npz file in `file`, which must outlive this object.
   explicit NpzOutput(OutputFile& file) : file_(&file) {}
 
-  /// Adds an array that is whole.
+  /// Adds an array whose elements are all given.
   void add(const NpzMember& member);
   /// Adds an array in C order, of float32 or float64, whose elements are appended later. Returns its number for
   /// append().

@@ -150,7 +150,7 @@ class Assembly {
     take(keyframes, kBytesPerKeyframe);
     for (const GltfPart& part : parts()) {
       const GltfPrimitive& primitive = document_.meshes()[part.mesh].primitives[part.primitive];
-      // Each of the two factors is below 2^40.
+      // Neither factor overflows, because each is below 2^40. take() refuses products that are too large.
       take(primitive.targets.size() + 1, kBytesPerVertex * part.vertex_count);
       take(keyframes, (all_skinned ? kBytesPerVertex : kWithResiduals) * part.vertex_count);
       take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));

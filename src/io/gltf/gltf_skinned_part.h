@@ -77,7 +77,7 @@ class GltfSkinPieces {
   [[nodiscard]] std::vector<std::uint32_t> vertices_of(std::span<const std::uint32_t> faces) const;
   [[nodiscard]] double bend_of_edge(std::span<const BoneBounds> bones, std::span<const Vec3d> from,
                                     std::span<const Vec3d> to, std::uint32_t p, std::uint32_t q) const;
-  // Returns vertex c of a face, in the part.
+  // Returns the index within the part of the vertex at corner c of a face.
   [[nodiscard]] std::uint32_t vertex(std::uint32_t face, std::size_t c) const noexcept {
     return topology_.face(face)[c] - static_cast<std::uint32_t>(range_.first_vertex);
   }

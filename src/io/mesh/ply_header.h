@@ -23,7 +23,7 @@ enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, k
   return type != Scalar::kFloat32 && type != Scalar::kFloat64;
 }
 
-/// The part that a property plays for the reader.
+/// The meaning that a property has for the reader.
 enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOther };
 
 struct Property {

@@ -695,7 +695,7 @@ TEST(Audit, targets_that_are_right_alone_can_be_wrong_together) {
   // target 1 moves a vertex along x, so n(w) has a term with w0 w1.
   mesh.targets = {{{0, 0, 0, 0, 0, 1, 0, 0, 0}, {-1, 0, 0, -1, 0, 0, -1, 0, 0}, {}},
                   {{0, 0, 0, 0, 0, 0, 1, 0, 0}, {}, {}}};
-  // n(w) = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
+  // Both targets together give n(w) = (1, 0, w0) x (w1, 1, 0) = (-w0, w0 w1, 1).
   GltfBuilder builder = mesh.file();
   builder.add_track(builder.add_animation(""), 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 1, 1});
   const Audit result = audit_of(builder);

@@ -349,7 +349,7 @@ TEST(SkinnedQuery, normals_of_pieces_are_within_the_tolerance_of_the_curves) {
     const Opened found = opened(rig);
     ASSERT_TRUE(found.cut.skins);
     if (i % 2 == 0) {
-      EXPECT_EQ(found.cut.beyond, 0) << i;  // cubic rotations have looser bounds
+      EXPECT_EQ(found.cut.beyond, 0) << i;  // the bounds of cubic rotations are too loose for this
     }
     EXPECT_EQ(found.cut.pieces, found.motion.segments.size());
     const Real worst = worst_angle(rig, found.motion);

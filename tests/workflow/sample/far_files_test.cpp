@@ -1,4 +1,5 @@
-// Compares poses of files that are far from each other with rational numbers from the numbers in the files.
+// Tests poses of files whose positions are far from each other. Compares their normals with rational numbers that
+// follow from the numbers in the files.
 #include <gtest/gtest.h>
 
 #include <algorithm>

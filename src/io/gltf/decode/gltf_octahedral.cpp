@@ -27,7 +27,7 @@ void decode_element(char* element) noexcept {
 
   const float length = std::sqrt(x * x + (y * y + z * z));
   const float scale = length > 0 ? static_cast<float>(std::numeric_limits<T>::max()) / length : 0.0F;
-  // std::nearbyint() rounds halves to even.
+  // Like the decoder in browsers, std::nearbyint() rounds halves to even numbers.
   const auto store = [&](std::size_t i, float component) {
     binary::store(element + i * sizeof(T), static_cast<T>(std::nearbyint(component * scale)), kOrder);
   };

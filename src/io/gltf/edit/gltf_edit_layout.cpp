@@ -232,7 +232,7 @@ Status EditLayout::lay_out_glb() {
     if (Status status = set(pointer, of_image.text()); !status) return status;
   }
 
-  // Buffer 0 needs bytes, even if no buffer has any.
+  // Buffer 0 must have bytes, even if no buffer of the source has any.
   if (must_move && bin_size_ == 0) (void)add_to_bin(kZeros, 1);
   JsonObject buffer;
   buffer.add("byteLength", bin_size_);

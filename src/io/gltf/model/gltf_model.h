@@ -166,7 +166,7 @@ struct Model {
 
 /// Returns the transform of a node relative to its parent, as the file gives it, without animation. O(log nodes).
 [[nodiscard]] Placement placement_of(const Model& model, std::size_t node) noexcept;
-/// Returns a placement as a transform.
+/// Returns the affine transform that a placement describes.
 [[nodiscard]] AffineTransform transform_of(const Placement& placement) noexcept;
 
 /// Returns the JSON pointer of a primitive.
