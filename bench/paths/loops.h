@@ -10,8 +10,7 @@
 
 namespace chronormal::bench {
 
-/// The arrays of a mesh: positions at both ends (V, 3), corners unit normals, (F, 3), and scratch memory for positions
-/// (V, 3).
+/// The arrays of a mesh: positions at both ends (V, 3), corners (F, 3), and scratch memory for positions (V, 3).
 struct LoopMesh {
   std::span<const float> from, to;
   std::span<const std::uint32_t> corners;
@@ -21,7 +20,7 @@ struct LoopMesh {
 /// Sets positions = (1 - t) from + t to. Every baseline must do this first.
 void interpolate(const LoopMesh& mesh, float t);
 
-void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< (F, 3)
+void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< unit normals, (F, 3)
 void plain_vertices(const LoopMesh& mesh, float t, std::span<float> normals);  ///< (V, 3)
 
 #ifdef CHRONORMAL_HAVE_EIGEN

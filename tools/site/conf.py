@@ -36,7 +36,7 @@ pygments_style = "default"
 html_copy_source = html_show_sourcelink = False
 html_show_sphinx = False
 
-# The groups of the navigation. Pages of docs/ in no group are listed as results.
+# The groups of the navigation. The group Results also gets all pages of docs/ that are in no other group.
 GROUPS = {
     "Getting started": ["docs/artists", "docs/web", "docs/simulation", "docs/cpp", "docs/python"],
     "Reference": ["docs/cli", "docs/formats", "docs/stability", "The npm package <js/README>"],

@@ -72,7 +72,7 @@ NumberFault parse_float(std::string_view word, float& value) noexcept {
     return NumberFault::kNone;
   }
   if (std::isfinite(value)) return NumberFault::kNone;
-  // A word in letters (nan, inf or infinity) was not meant as a finite number. A word of digits is too large.
+  // A word with the letter n is nan, inf or infinity. Any other word here is a number in digits that is too large.
   const bool spelt = word.find_first_of("nN") != std::string_view::npos;
   return spelt ? NumberFault::kNotFinite : NumberFault::kTooLarge;
 }

@@ -6,7 +6,7 @@
 /// A file of points is a tree of chunks in big endian. After a group CACH with the times of start and end come groups
 /// MYCH, one for each time:
 ///
-///     TIME  int32 ticks (else the start of the file)
+///     TIME  int32 ticks; if it is missing, the start time of the file counts
 ///     CHNM  name of a channel, SIZE  int32 points, FVCA or DVCA  points x 3 of float32 or float64; any number of these
 ///     ...   other chunks, which are skipped
 ///

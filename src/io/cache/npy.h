@@ -42,8 +42,8 @@ struct Array {
   /// Returns the offset of the first byte after the last element.
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// Return the element at index `item`. The array must have the kind that is named behind each function.
-  [[nodiscard]] double real(std::size_t item) const noexcept;  ///< kFloat
-  /// kinds other than for kFloat; 2^64 - 1 if the element is negative
+  [[nodiscard]] double real(std::size_t item) const noexcept;  ///< for kFloat
+  /// for kinds other than kFloat; 2^64 - 1 if the element is negative
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< for kInteger
 

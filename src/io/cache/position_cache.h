@@ -6,7 +6,7 @@
 /// vertices when it exports a mesh breaks the match unnoticed. The positions of the mesh itself are not used.
 ///
 /// Shapes     V = vertices; positions are (V, 3).
-/// Units      times: in seconds.
+/// Units      times: seconds.
 /// Threads    pure.
 #ifndef CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
 #define CHRONORMAL_IO_CACHE_POSITION_CACHE_H_
@@ -28,7 +28,7 @@ namespace chronormal::inline internal {
 /// ascend.
 struct PositionCache {
   struct Sample {
-    double time = 0;               ///< seconds
+    double time = 0;               ///< in seconds
     std::vector<float> positions;  ///< (V, 3)
   };
 

@@ -30,7 +30,8 @@ struct GltfEdit::State {
 
   [[nodiscard]] Status apply(const Change& change, JsonText& json) const;
   [[nodiscard]] Result<gltf::EditLayout> lay_out(gltf::LayoutTarget target);
-  /// Returns the form and the name that the result has at `path`. An empty path means the file of the source itself.
+  /// Describes the file that is to be made at `path`, for the layout. An empty path means the file of the source
+  /// itself.
   [[nodiscard]] Result<gltf::LayoutTarget> target_of(const std::string& path) const;
 
   GltfDocument::State& document;

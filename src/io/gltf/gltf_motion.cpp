@@ -537,7 +537,8 @@ class AnimationReader {
       of_parts.parts.emplace_back(*skinned, assembly_.motion().topology, assembly_.parts()[p], std::move(before), sine);
     }
     const Pieces pieces = pieces_for(of_parts, std::max(most, fewest));
-    // If joints move so fast that most faces need more pieces than are allowed, they get as many as are allowed.
+    // If joints move so fast that most faces need more pieces than are allowed, the interval gets the largest allowed
+    // number.
     const bool is_fast = 2 * pieces.beyond > assembly_.motion().topology.face_count();
     const std::size_t count = std::max({pieces.count, fewest, is_fast ? most : 1});
     return {count, count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond};

@@ -36,7 +36,7 @@ struct JointShare {
 /// to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how the joint bends relative
 /// to it.
 struct BoneBounds {
-  double size = 1, speed = 0, bend = 0;  ///< of its value, first and second derivative (units: seconds)
+  double size = 1, speed = 0, bend = 0;  ///< of its value, and of its first and second derivative in time
   double path_bend = 0;
 };
 

@@ -201,7 +201,7 @@ TEST(FarOrigin, what_float32_keeps_stays_as_it_is_and_what_it_has_lost_is_said) 
         {folder.write("a.npz", npz_of(positions, npy_of("<u4", {1, 3}, std::vector<std::uint32_t>{0, 1, 2})))}));
   };
   for (const std::string type : {"<f8", "<f4"}) {
-    Result<Input> near = read(512, type);  // no more digits than float32 keeps
+    Result<Input> near = read(512, type);  // coordinates with no more digits than float32 holds
     ASSERT_TRUE(near.ok()) << error_of(near);
     EXPECT_TRUE(near.value().notes().empty());
     EXPECT_EQ(near.value().motion().value()->origin, (std::array<double, 3>{}));

@@ -200,7 +200,7 @@ TEST(InputStream, commands_give_the_bytes_that_they_give_of_a_motion_in_memory) 
   EXPECT_EQ(inspection.normal_bytes, of_whole.normal_bytes);
   EXPECT_EQ(inspection.turn.value, of_whole.turn.value);
 
-  most_held = 0;  // a comparison holds several segments at once, if they are small
+  most_held = 0;  // resets the count, as a comparison holds several small segments at once
   for (const char* const name : {"n.npy", "n.npz", "n_%02d.ply"}) {
     {
       const SampleOptions options;

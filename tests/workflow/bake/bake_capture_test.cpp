@@ -105,7 +105,8 @@ Errors errors_in(const Baked& baked, const std::vector<std::pair<std::vector<dou
   return errors;
 }
 
-// Returns the errors at random instants between two neighbouring keys.
+// Returns the errors at random instants in intervals between neighbouring keys. The test takes every interval whose
+// number is a multiple of gaps_apart.
 Errors errors_between_keys(const Baked& baked, std::size_t gaps_apart) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> part(0, 1);

@@ -131,7 +131,7 @@ TEST(FaceFigure, paths_lengths_arcs_and_frames_are_those_of_the_textbook) {
           const auto expected =
               reference::unit_normal(scheme.scheme, triangle, t, {face, 0}, real(scheme.normals[middle]));
           const auto name = reference::parse_scheme(scheme.scheme);
-          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // too few digits in float32
+          const bool is_tiny = !scheme.lengths.empty() && scheme.lengths[i] < 0.05;  // float32 has too few digits here
           if (!expected || is_tiny || name->kind == "quaternion:optimal") continue;
           const Vector normal = real(scheme.normals[i]);
           // Here, the scheme has chosen another branch than the oracle. oracle_test.cpp tests this choice.

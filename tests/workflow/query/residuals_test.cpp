@@ -34,7 +34,7 @@ using fixtures::Random;
 constexpr std::uint64_t kSeed = 4902;
 constexpr int kMeshes = 16;
 constexpr Vec3d kAway{1.25, -1.5, 1.75};
-// The unit and the size of the coordinates near the origin, which have 22 bits.
+// The coordinates near the origin are at most about kSize, and are multiples of kUnit, so 22 bits hold each of them.
 constexpr double kUnit = 0x1p-42, kSize = 0x1p-20;
 
 // A mesh near the origin and the same mesh far away, in one segment. The mesh is a closed surface, or separate
