@@ -21,7 +21,7 @@ struct LoopMesh {
 void interpolate(const LoopMesh& mesh, float t);
 
 void plain_faces(const LoopMesh& mesh, float t, std::span<float> normals);     ///< unit normals, (F, 3)
-void plain_vertices(const LoopMesh& mesh, float t, std::span<float> normals);  ///< (V, 3)
+void plain_vertices(const LoopMesh& mesh, float t, std::span<float> normals);  ///< unit normals, (V, 3)
 
 #ifdef CHRONORMAL_HAVE_EIGEN
 void eigen_faces(const LoopMesh& mesh, float t, std::span<float> normals);

@@ -170,12 +170,12 @@ TEST(AuditViewers, targets_beyond_the_limit_are_ignored_and_noted) {
   builder.add_track(builder.add_animation("moves"), 0, std::vector<float>{0, 1}, values);
   const Audit result = audit_of(builder, {.viewers = find_viewers("three,filament").value()});
   EXPECT_GT(result.viewers[0].error.worst, 1);
-  EXPECT_LT(result.viewers[1].error.worst, 0.01);  // rendered normals are true, because no vertex moves
+  EXPECT_LT(result.viewers[1].error.worst, 0.01);  // this viewer ignores the target that moves vertices
   EXPECT_GT(result.viewers[1].displaced, 0.05);
   EXPECT_EQ(result.viewers[0].displaced, 0);
   EXPECT_TRUE(result.viewers[0].is_within(180));
   EXPECT_EQ(result.viewers[1].beyond, 2U);
-  EXPECT_FALSE(result.viewers[1].is_within(180));  // the viewer renders normals of length zero
+  EXPECT_FALSE(result.viewers[1].is_within(180));  // the mesh has more targets than this viewer supports
   const auto note = std::find_if(result.findings.begin(), result.findings.end(),
                                  [](const AuditFinding& f) { return f.kind == AuditFinding::Kind::kBeyondViewer; });
   ASSERT_NE(note, result.findings.end());

@@ -180,7 +180,7 @@ TEST(QueryVertices, sides_are_those_of_whole_numbers_at_every_instant) {
             EXPECT_LE(high - low, kWidestBracket);
             if (low > 0) instants.push_back(std::nextafter(low, 0));
             if (high < 1) instants.push_back(std::nextafter(high, 1));
-            const bool is_inside = 0 < high && low < 1;  // the bracket is inside the segment
+            const bool is_inside = 0 < high && low < 1;  // the bracket overlaps the segment
             if (is_inside && low < high) {
               EXPECT_GE(f.count_roots(low, high), 1U);
             }

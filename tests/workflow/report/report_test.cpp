@@ -192,7 +192,7 @@ TEST(Report, numbers_of_a_file_with_an_author_follow_from_the_report_alone) {
     EXPECT_TRUE(part["faces"].is_null());
     ASSERT_TRUE(part.contains("truth"));
     const nlohmann::json &truth = part["truth"], &offsets = truth["offsets"];
-    std::map<std::size_t, std::size_t> polygons;  // the polygons, by the index of their first corner
+    std::map<std::size_t, std::size_t> polygons;  // number of polygons with each number of corners
     const std::vector<std::uint32_t> first = file.numbers<std::uint32_t>(truth["polygons"]["first"]);
     for (std::size_t p = 0; p + 1 < first.size(); ++p) ++polygons[first[p + 1] - first[p]];
     EXPECT_EQ(polygons.size(), 2U);

@@ -90,8 +90,8 @@ std::optional<std::uint32_t> declared_faces(draco::DecoderBuffer buffer) {
     return ok ? std::optional(number) : std::nullopt;
   };
   if (header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING) return count(version >= DRACO_BITSTREAM_VERSION(2, 2));
-  // The number of faces follows the method of traversal, the number of new vertices (in versions up to 2.1), and the
-  // number of vertices.
+  // The header has the method of traversal, the number of new vertices (in versions up to 2.1), the number of vertices,
+  // and then the number of faces.
   const bool is_varint = version >= DRACO_BITSTREAM_VERSION(2, 0);
   std::uint8_t traversal = 0;
   if (!buffer.Decode(&traversal)) return std::nullopt;
