@@ -273,7 +273,8 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard also reads the first keyframe. Otherwise, it reads only the keyframes of its own segments.
+      // The last shard reads the keyframes of its own segments, and the first keyframe. It therefore reads keyframe 2
+      // only if its own segments use it.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

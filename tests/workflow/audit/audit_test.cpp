@@ -457,7 +457,7 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
   // At vertices 1 and 2, the faces have an area although their normals add up to zero, and this counts as exceeding
-  // every tolerance. The only face of vertex 3 has no area, so it is not drawn.
+  // every tolerance. The only face of vertex 3 has no area at weight 1/2, so it is not drawn there.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -677,7 +677,7 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   EXPECT_GT(result.error.worst, 1);
   // At weight 1, the rendered normal of vertex 3 is now parallel to (-1, 0, 1), and so wrong.
   mesh.targets[0].normals[11] = 0;
-  // The author has used another weighting, so the normals at the keys count as wrong by this one.
+  // The weighting is requested here, so it is not found from the stored normals.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);

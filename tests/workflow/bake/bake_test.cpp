@@ -95,7 +95,7 @@ TEST(Bake, exact_is_exact_for_random_targets_and_tracks) {
 }
 
 TEST(Bake, what_is_not_baked_is_wrong) {
-  // Tests the measurement itself: if correction targets are ignored, the same file must have errors.
+  // Tests the measurement itself: the file must have errors before the bake.
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 1});
   Baked baked = test::bake_document(builder);

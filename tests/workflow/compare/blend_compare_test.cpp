@@ -119,7 +119,7 @@ Motion star_of(const BlendSet& set) {
 TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     ShadedMesh mesh = random_sheet(seed, 7, 3, 0.4);
-    // The target moves some vertices whose normals it does not change, and changes normals of vertices that it does not
+    // Target 1 moves some vertices whose normals it does not change, and changes normals of vertices that it does not
     // move.
     for (std::size_t i = 0; i < 90; ++i) mesh.targets[1].positions[i] = 0;
     for (std::size_t i = 0; i < 60; ++i) mesh.targets[1].normals[i] = 0;

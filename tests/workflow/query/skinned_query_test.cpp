@@ -313,7 +313,8 @@ Rig tube(fixtures::Random& random, std::size_t joints, bool is_cubic) {
 }
 
 TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
-  // 4.2 straight pieces in the middle, where the tip moves across its triangle, would just reach the tolerance.
+  // If the path of the tip were cut into 4.2 straight pieces, the normal would just reach the tolerance in the middle,
+  // where the tip moves across its triangle.
   const double wanted = 4.2, tolerance = static_cast<double>(kTolerance);
   Rig moved = lever(1, {0, 1, 0});
   const auto slope = static_cast<float>(4 * tolerance * wanted * wanted);
