@@ -11,8 +11,7 @@ namespace chronormal::bench::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Reads `kRead` lines of 64 bytes, adds them up into three lines, writes these three lines, and repeats this for all
-// blocks.
+// For each block, reads `kRead` lines of 64 bytes, adds them up into three lines, and writes these three lines.
 template <std::size_t kRead, bool kStream, std::size_t kAhead>
 void Lines(const float* from, float* to, std::size_t blocks) {
   constexpr std::size_t kLine = 16, kWritten = 3;  // floats in a line, and number of lines that are written

@@ -405,8 +405,8 @@ TEST(CompareCertified, no_sample_exceeds_the_bound_of_any_element) {
   }
 }
 
-// A vertex whose face normals cancel exactly has no normal, and is not judged there. The test finds such vertices with
-// integers.
+// A vertex whose face normals cancel exactly at a sample has no normal, and the sample is not judged. The test finds
+// such samples with integers.
 TEST(CompareCertified, vertices_whose_faces_cancel_are_seen) {
   fixtures::Random random(4917);
   constexpr std::size_t kSamples = 5;
