@@ -186,7 +186,7 @@ AgainstMotion against_motion(const SmoothMotion& smooth, const Motion& sampled) 
 }
 
 /// Returns the cubic of segment s on a curved path. Positions are in double, since rounding keyframes to float32 would
-/// hide the order 4.
+/// hide that the error has order 4.
 CubicSegment curve_of(const SmoothMotion& smooth, std::size_t segments, std::size_t s, PathKind path) {
   std::vector<double> times;
   for (std::size_t k = 0; k <= segments; ++k) times.push_back(static_cast<double>(k) / static_cast<double>(segments));

@@ -28,8 +28,8 @@ Vec3d corner_at(const Segment& segment, std::size_t face, double t) {
   return lerp(to_double(segment.from[v]), to_double(segment.to[v]), t);
 }
 
-/// Returns a time at which a face is seen that is hidden at both ends of the segment, in the middle between two
-/// changes. Returns -1 if there is no such time.
+/// Returns a time at which the front of a face shows although the face is hidden at both ends of the segment. It is the
+/// middle between two times at which the face turns. Returns -1 if there is no such time.
 double time_seen(const Facing& facing) {
   for (std::size_t i = 0; i + 1 < facing.count; ++i)
     if (facing.at[i].after == Side::kFront) return (facing.at[i].upper + facing.at[i + 1].lower) / 2;
@@ -50,8 +50,8 @@ struct Count {
   }
 };
 
-/// Returns the sine of the angle between a face and the line of sight, which is positive in front. This reference uses
-/// positions alone.
+/// Returns the sine of the angle between a face and the line of sight. It is positive if the front of the face is seen.
+/// This reference uses positions alone.
 double reference_facing(const Segment& segment, std::size_t face, double t) {
   Vec3d n;
   reference_normals(segment, {face, 1}, t, {&n, 1});
@@ -96,9 +96,9 @@ Count count(const Segment& segment) {
   return result;
 }
 
-/// Prints the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine
-/// between a face and the line of sight at these times. By the reference, this sine is zero up to rounding, since the
-/// face is seen edge on.
+/// Prints the first faces of a segment that turn towards a far-away eye and away again. Returns the largest sine of the
+/// angle between such a face and the line of sight at the times of the turns, as the reference computes it. At these
+/// times the face is seen edge on, so the sine is zero up to rounding.
 double print_turns(const Segment& segment, const Vec3d& direction, int wanted) {
   double largest = 0;
   for (std::size_t f = 0; f < segment.topology->face_count() && wanted > 0; ++f) {

@@ -15,8 +15,9 @@ export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
-// Returns the mark of a mesh, or else the mark of the nearest object above it. A mesh of several primitives becomes an
-// object with a child for each primitive, and gltfpack puts a mesh into a new node below the node with the extras.
+// Returns extras.chronormal of a mesh, or else that of the nearest object above it that has one. A mesh of several
+// primitives becomes an object with a child for each primitive, and gltfpack puts a mesh into a new node below the node
+// with the extras.
 function markAbove(mesh, extrasOf) {
   for (let object = mesh; object; object = object.parent) {
     const mark = extrasOf(object)?.chronormal;

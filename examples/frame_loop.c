@@ -1,4 +1,4 @@
-/* A frame loop in C: two captured frames of a mesh, and the normals of all that is shown between them. The ranges are
+/* A frame loop in C: two captured frames of a mesh, and the normals of the frames shown between them. The ranges are
  * what an engine would give to its jobs, which may run at the same time. */
 #include <chronormal_c.h>
 #include <stdio.h>

@@ -8,9 +8,9 @@
 
 #include "chronormal/chronormal.h"
 
-// Shows the frame loop of an engine: a flag of four keyframes at 24 a second, shown 60 times a second. Eight jobs write
-// the normals of a frame, each for a range of vertices, while another job prepares the next segment. Then a slider
-// changes the shape of the flag.
+// Shows the frame loop of an engine: a flag has 24 keyframes per second (four in all), and is shown 60 times per
+// second. Eight jobs write the normals of a frame, each for a range of vertices, while another job prepares the next
+// segment. Then a slider changes the shape of the flag.
 namespace {
 
 using namespace chronormal;

@@ -1,4 +1,4 @@
-"""A frame loop in Python: keyframes of a mesh, and the normals of all that is shown between them, in one array."""
+"""A frame loop in Python: keyframes of a mesh, and the normals of the frames shown between them, in one array."""
 import numpy as np
 
 import chronormal as cn

@@ -1,5 +1,5 @@
-// Tests the results if the caller has changed the mode of the floating-point unit (rounding, subnormal numbers).
-// control_normals.h states the guarantee for each mode.
+// Tests whether results keep their guarantees after the caller has changed the mode of the floating-point unit
+// (rounding, subnormal numbers). control_normals.h states the guarantee for each mode.
 
 #include <gtest/gtest.h>
 

@@ -61,7 +61,7 @@ struct Elements {
   double crease_angle;         // in degrees, for corners
 };
 
-// Ways that must give the same bytes as each other, and whose normals must have errors within a tolerance.
+// A group of ways that must all give the same bytes. Their normals must have errors within a tolerance.
 struct Kin {
   double tolerance;  // in radians; infinite if these normals are not compared with true normals
   std::vector<NamedWay> ways;
@@ -201,7 +201,7 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
 // ways of C++. Otherwise, adds them to `all` as a separate group.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
-  Kin own{std::numeric_limits<double>::infinity(), {}};  // in the C interface, each corner has a separate normal
+  Kin own{std::numeric_limits<double>::infinity(), {}};  // in C, each corner has its own normal
   Kin& kin = elements.kind == CHRONORMAL_CORNERS ? own : curves;
   for (const bool in_slices : {false, true})
     kin.ways.push_back({"the normals of a mesh", [=, &motion] {

@@ -15,9 +15,9 @@
 namespace chronormal::test {
 
 struct ArrayFile {
-  std::string type;                ///< "<f4"
-  std::vector<std::size_t> shape;  ///< C order
-  std::string elements;            ///< bytes
+  std::string type;                ///< such as "<f4"
+  std::vector<std::size_t> shape;  ///< the length of each dimension; the elements are in C order
+  std::string elements;            ///< the bytes of all elements
 
   template <class T>
   [[nodiscard]] std::vector<T> as() const {
@@ -54,7 +54,7 @@ struct ArrayFile {
   std::size_t size = static_cast<std::size_t>(file.type.back() - '0');
   std::istringstream lengths(shape);
   for (std::string length; std::getline(lengths, length, ',');) {
-    if (length.find_first_of("0123456789") == std::string::npos) continue;  // the end of "(5,)"
+    if (length.find_first_of("0123456789") == std::string::npos) continue;  // the end of "(5,)" has no length
     file.shape.push_back(std::stoul(length));
     size *= file.shape.back();
   }

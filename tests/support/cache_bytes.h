@@ -60,7 +60,7 @@ inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 
   return writer.bytes();
 }
 
-/// Writes chunks of a Maya cache. Their sizes have 32 bits (FOR4) or, if `wide`, 64 bits (FOR8).
+/// Writes chunks of a Maya cache. The size of a chunk has 32 bits (format FOR4) or, if `wide`, 64 bits (FOR8).
 class MayaWriter {
  public:
   explicit MayaWriter(bool wide) : wide_(wide) {}
@@ -163,7 +163,7 @@ struct ZipMember {
   std::string name;
   std::string bytes;
   bool is_deflated = false;
-  bool has_zip64_header = false;  ///< only in the member's own header, as np.savez does
+  bool has_zip64_header = false;  ///< in the header of the member, but not in the directory, as np.savez does
   std::uint32_t flags = 0;
 };
 

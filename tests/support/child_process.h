@@ -10,7 +10,7 @@
 namespace chronormal::test {
 
 struct ChildRun {
-  bool finished = false;        ///< false if it crashed, was killed, or threw
+  bool finished = false;        ///< false if the process crashed, was killed, or threw an exception
   std::string text;             ///< result of the work, or the reason why it did not finish
   double seconds = 0;           ///< processor time
   std::size_t peak_growth = 0;  ///< bytes of resident memory at the peak, minus those at the start

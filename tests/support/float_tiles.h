@@ -33,8 +33,8 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Changes the positions at the end of the motion, so that every coordinate moves by only a share of its original
-/// difference, plus a small random amount.
+/// Changes the positions at the end of the motion: every coordinate moves by only a share of its original displacement,
+/// plus a small random amount.
 [[nodiscard]] inline Motion of_small_steps(Motion motion, double share, fixtures::Random& random) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -43,14 +43,14 @@ namespace chronormal::test {
   return motion;
 }
 
-/// Counts of what the tests found in some elements. `fault` describes the last fault, or is "".
+/// The results of comparing some elements. `fault` describes the last fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;           ///< elements with a stated degree of 2
   std::size_t straight = 0;          ///< elements with a lower stated degree
   double largest_share = 0;          ///< largest error divided by its bound
   double largest_share_of_line = 0;  ///< likewise for curves that are stored as lines
-  double largest_bound = 0;          ///< relative to the absolute products
+  double largest_bound = 0;          ///< the largest error bound, relative to the sum of absolute products
   std::string fault;
 
   /// Checks one element of a tile. `right` is the true control normals. `products` must be at least the sum of the

@@ -1,4 +1,4 @@
-/// Splits GLB files that an edit wrote into header, JSON and binary data, without chronormal's reader.
+/// Splits GLB files that GltfEdit wrote into JSON and binary data, without chronormal's reader.
 #ifndef CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_GLB_PARTS_H_
 

@@ -26,7 +26,8 @@
 
 namespace chronormal::test {
 
-/// Returns the bytes of values as they are in memory. All machines that run the tests are little-endian, like glTF.
+/// Returns the bytes of some numbers as they are in memory. All machines that run the tests are little-endian, like
+/// glTF.
 template <class T>
 [[nodiscard]] std::string bytes_of(const std::vector<T>& values) {
   std::string bytes(values.size() * sizeof(T), '\0');
@@ -46,7 +47,8 @@ template <class T>
   return text;
 }
 
-/// Makes a GLB file of these two chunks, with the required padding. If `bin` is empty, the file has no second chunk.
+/// Makes a GLB file with two chunks, `json` and `bin`, and the required padding. If `bin` is empty, the file has no
+/// second chunk.
 [[nodiscard]] inline std::string glb_bytes(std::string json, std::optional<std::string> bin) {
   const auto word = [](std::size_t value) {
     return bytes_of(std::vector<std::uint32_t>{static_cast<std::uint32_t>(value)});
@@ -179,7 +181,8 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // A test may have put a placeholder for buffer 0, and other buffers after it. The other buffers are kept.
+  // If a test has added buffers to the JSON, the first of them stands for buffer 0 and is replaced. The others are
+  // kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;

@@ -38,7 +38,7 @@ enum class LargePolygons {
   add_face(rim.begin(), rim.end());
   std::uint32_t vertices = corners;
   if (kind == LargePolygons::kPillow) {
-    rim.push_back(vertices++);  // without this corner, the normals of the two polygons would cancel exactly
+    rim.push_back(vertices++);  // so that the normals of the two polygons do not cancel exactly
     add_face(rim.rbegin(), rim.rend());
   } else if (kind == LargePolygons::kPrism) {
     vertices = 2 * corners;

@@ -7,7 +7,7 @@
 namespace chronormal {
 
 struct ProcessResult {
-  int exit_code = -1;  ///< 128 + signal if a signal ended it
+  int exit_code = -1;  ///< 128 + signal if a signal ended the command
   std::string out;     ///< standard output
   std::string err;     ///< standard error
 };

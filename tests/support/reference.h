@@ -407,7 +407,7 @@ template <std::size_t N>
 
 /// The circle through three points, which runs from the first point through the second to the third.
 struct Circle {
-  Vector centre, x, y;  ///< unit vectors: x points to the first point, and the traversal starts along y
+  Vector centre, x, y;  ///< x and y are unit vectors: x points to the first point, and the circle starts along y
   Real radius = 0;
   Real middle = 0;  ///< angle of the second point
   Real end = 0;     ///< angle of the third point; 0 < middle < end < 2 pi

@@ -81,7 +81,7 @@ using Triple = std::array<double, 3>;
   Triple t = {-n[2] * n[0] * a, -n[2], 1 - n[2] * n[2] * a};
   if (n[1] < -0.9999999) t = {-1, 0, 0};
   const Triple b = {n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2], n[0] * t[1] - n[1] * t[0]};
-  double w = 0, x = 0, y = 0, z = 0;  // each component times four times the largest component
+  double w = 0, x = 0, y = 0, z = 0;  // each component of the quaternion, times four times the largest one
   if (t[0] + b[1] + n[2] > 0) {
     w = 1 + t[0] + b[1] + n[2], x = b[2] - n[1], y = n[0] - t[2], z = t[1] - b[0];
   } else if (t[0] >= b[1] && t[0] >= n[2]) {
@@ -105,11 +105,11 @@ using Triple = std::array<double, 3>;
   return value < 0 ? -best : best;
 }
 
-/// Rounds a component as gltfpack does, and as glTF Transform does with 8 bits.
+/// Rounds a component of a normal as gltfpack does, and as glTF Transform does with 8 bits.
 [[nodiscard]] inline double as_byte(double value) { return nearest_integer(value, 127) / 127.0; }
 
-/// Rounds a component as glTF Transform does with 10 bits: the file stores a sign and nine binary digits, and the
-/// leading digits are repeated to make fifteen digits.
+/// Rounds a component of a normal as glTF Transform does with 10 bits: the file stores a sign and nine binary digits,
+/// and the leading digits are repeated to make fifteen digits.
 [[nodiscard]] inline double as_ten_bits(double value) {
   std::string digits;
   const int kept = std::abs(nearest_integer(value, 511));
@@ -184,8 +184,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer computes from a track at a time between keys. `start` and `end` are the times at
-/// which the animation starts and ends.
+/// Returns the weights that a viewer computes from a track at a time between keys. `start` and `end` are the times of
+/// the first and the last key of the animation.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
                                                    std::size_t targets, double start, double end, double time) {

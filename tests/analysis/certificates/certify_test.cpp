@@ -1,6 +1,7 @@
-// Compares certificates of every scheme with integers of any size. At 64 exact times per element, no error may exceed
-// the upper bound; at the time that the certificate names, the error may not be below the lower bound. The test has 600
-// elements from fixed seeds, or as many as CHRONORMAL_FULL_CASES asks for, up to 200,000 (./test --full exact).
+// Compares the certified error bounds of every scheme with errors that are computed in integers of any size. Each
+// element is tested at 64 times. No error may exceed the upper bound of the element; at the time that the certificate
+// names, the error may not be below the lower bound. The test has 600 elements from fixed seeds, or as many as
+// CHRONORMAL_FULL_CASES asks for, up to 200,000 (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
 #include "chronormal/core/polynomial.h"
@@ -77,7 +78,7 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// The number of elements of a scheme with each result of the comparison, and the tightness of the bounds.
+// The number of elements of a scheme that violate their bounds or have none, and the tightness of the bounds.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
   double largest_share = 0;  // largest ratio of a measured error to the upper bound
@@ -162,8 +163,8 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
        {fixtures::moderate_soup(each), fixtures::large_soup(each), fixtures::needle_soup(each),
         fixtures::far_soup(each), fixtures::soup({.face_count = each, .seed = 9, .motion = 1e-6})}) {
     for (std::size_t first = 0; first < each; first += 400) {
-      // Certifies the motion in parts of at most 400 faces, since the time of the largest error differs from part to
-      // part.
+      // Certifies the motion in parts of at most 400 faces. The time of the largest error differs from part to part, so
+      // the test covers more times.
       Motion part = motion;
       part.topology = fixtures::make_soup(std::min<std::size_t>(400, each - first));
       for (Motion::Keyframe& keyframe : part.keyframes) {
@@ -227,7 +228,8 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // If the length of one end normal is optimal, only rounding errors remain.
+  // The scheme linear:scaled chooses the length of one end normal so that this curve is exact. Only rounding errors
+  // remain.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -245,7 +247,7 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // A normal that is recomputed from positions has a certain direction right up to the collapse.
+  // A normal that is recomputed from positions is accurate right up to the collapse.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
@@ -394,8 +396,7 @@ TEST(Certificates, are_never_violated_by_vertices_whose_faces_cancel) {
   EXPECT_GT(known, 500u) << "control normals that were made of integers have small bounds";
 }
 
-// ---- schemes that somebody may add
-// ------------------------------------------------------------------------------------
+// ---- schemes that somebody may add ----------------------------------------------------------------------------------
 
 // Eases t at both ends: returns 3 t^2 - 2 t^3.
 double eased(double t) { return t * t * (3 - 2 * t); }
@@ -419,7 +420,8 @@ class KnownEasedLine : public EasedLine {
   [[nodiscard]] WeightBasis basis() const { return {3, {{1, 1, 0, 0}, {0, 0, 1, 1}}}; }
 };
 
-// A sum of vectors with five weights of degree 9, which are powers of the eased time. No other scheme has such weights.
+// A sum of four vectors. Its weights are polynomials of degree 9 in t: the Bernstein polynomials of degree 3, taken at
+// the eased time. No other scheme has such weights.
 class LongSum {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 12; }
@@ -479,7 +481,7 @@ class Silent final : public Scheme {
 };
 
 // Measures the errors of a scheme at 400 samples and fails if an error exceeds its bound. Returns the largest error, in
-// radians, over all elements with a bound below half a turn, and adds their number to `known`.
+// radians, over all elements with a bound below half a turn, and adds the number of these elements to `known`.
 double held_against_samples(Scheme& scheme, std::size_t& known) {
   double largest = 0;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {

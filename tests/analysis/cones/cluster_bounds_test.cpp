@@ -1,7 +1,7 @@
-// Tests bounds of meshlets while the mesh deforms. If meshoptimizer's culling tests use these bounds, they must not
-// reject a meshlet with a face that is front-facing at some instant of the interval. Integers decide whether a face is
-// front-facing. Bounds from a single instant fail this test. The mesh is a sheet of 512 faces; ./test --full exact adds
-// the built-in morphs.
+// Tests bounds of meshlets (clusters of faces) while the mesh deforms. meshoptimizer's culling tests, given these
+// bounds, must not reject a meshlet with a face that is front-facing at some instant of the interval. Integers decide
+// whether a face is front-facing. Bounds from the positions at a single instant fail this test. The mesh is a sheet of
+// 512 faces; ./test --full exact adds the built-in morphs.
 
 #include "chronormal/analysis/cones.h"
 
@@ -218,7 +218,8 @@ TEST(ExactClusterBounds, never_reject_a_meshlet_that_is_seen_at_any_instant) {
         const fixtures::Point p = random.in_cube(i % 3 == 0 ? 1 : 4);
         cameras.push_back(to_float({p[0], p[1], p[2]}));
       }
-      // Puts some cameras just behind the apexes, where a small error of the bounds changes the result of the test.
+      // Puts some cameras just behind the apexes of the cones, where a small error of the bounds changes the result of
+      // the test.
       for (std::size_t m = 0; m < bounds.size(); m += 5)
         cameras.push_back(vector_of(bounds[m].cone_apex) - 0.01F * vector_of(bounds[m].cone_axis));
       const auto add = [&](Count& to, const Rejects& rejects, bool is_view, const std::vector<meshopt_Bounds>& of) {
@@ -375,8 +376,8 @@ std::array<Powers, 3> constant(const float (&v)[3]) {
   return result;
 }
 
-// The library moves the apex back from the center only as far as some Bernstein coefficient of some face requires. The
-// test makes sure that each of the four coefficients decides in some cases.
+// The library moves the apex of a cone back from the center of the meshlet only as far as the Bernstein coefficients of
+// all its faces require. The test makes sure that each of the four coefficients decides in some cases.
 TEST(ClusterBounds, have_the_nearest_apex_that_bernstein_coefficients_put_behind_all_faces) {
   constexpr std::uint64_t kSeed = 914;
   fixtures::Random random(kSeed);

@@ -1,5 +1,5 @@
-// Compares normal cones with integers of any size: no exact normal of the interval may lie outside its cone. An element
-// has 64 instants. The test has one element for every 50 cases: 2,000 elements, or 200,000 under ./test --full exact.
+// Compares normal cones with integers of any size: no exact normal of the interval may lie outside its cone. Each
+// element is tested at 64 instants. The test has 2,000 elements, or 200,000 under ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -198,8 +198,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // In the second element, the control normals over the first half are {zero, zero, x}, which begin with zeros. Over
-  // the second half, none of its control normals is zero.
+  // In the second element, the control normals of the first half of the interval are {zero, zero, x}, so they begin
+  // with zeros. None of the control normals of the second half is zero.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);
@@ -223,8 +223,8 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2, these control normals nearly cancel. An error of 2^-26 in one control normal therefore changes the
-// direction of n(t) by much more than 2^-26.
+// At t = 1/2, these control normals nearly cancel. Errors of 2^-26 in the control normals therefore change the
+// direction of n(t) by much more than 2^-26 radians.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
     const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
@@ -268,8 +268,8 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// Compares the half-angle of each cone with half of the largest angle between any two of 21 normals, which is a lower
-// bound.
+// A cone cannot have a half-angle below half of the largest angle between two of its normals. Compares the half-angle
+// of each cone with this lower bound, from 21 normals.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();

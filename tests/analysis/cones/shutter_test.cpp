@@ -1,6 +1,6 @@
-// Compares the means of normals over an open shutter with oracles that share no code with the library. If n(t) is a
-// straight line, the oracle is a closed form, also for lines that pass close to zero. Otherwise the oracle integrates
-// normals, which it computes from positions, by dense Gaussian quadrature in long double.
+// Compares the mean normals over the time for which a shutter is open with oracles that share no code with the library.
+// If n(t) is a straight line, the oracle is a formula, also for lines that pass close to zero. Otherwise the oracle
+// computes normals from positions and integrates them by dense Gaussian quadrature in long double.
 
 #include "chronormal/analysis/cones.h"
 
@@ -45,7 +45,8 @@ struct Means {
   Vector mean{}, unit{};
 };
 
-// Integrates from t0 to t1 by Gauss's rule with three nodes in each of `pieces` equal parts.
+// Integrates the normal and the unit normal of a face from t0 to t1 by Gauss's rule with three nodes in each of
+// `pieces` equal parts.
 Means dense_means(const Segment& segment, std::size_t f, double t0, double t1, int pieces) {
   const Real node = std::sqrt(Real{0.6});
   Means means;
@@ -63,8 +64,8 @@ Means dense_means(const Segment& segment, std::size_t f, double t0, double t1, i
   return means;
 }
 
-// Returns the mean of (a + t b) / |a + t b| over [0, 1], where a + t b = h + (s0 + t |b|) b / |b| and h is
-// perpendicular to b.
+// Returns the mean of (a + t b) / |a + t b| over [0, 1], where a is `from` and b is `to` - `from`. Writes a + t b as h
+// + (s0 + t |b|) b / |b|, where h is perpendicular to b.
 Vector mean_of_line(const Vec3d& from, const Vec3d& to) {
   const Vector a{from.x, from.y, from.z}, b{Real{to.x} - from.x, Real{to.y} - from.y, Real{to.z} - from.z};
   const Real size = length_of(b);
@@ -102,7 +103,8 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   EXPECT_LT(largest_bound, 2e-6);
 }
 
-// Each control normal has an error of almost 2^-26 of its length, all in the same direction.
+// Gives each control normal an error of almost 2^-26 of its length, all in the same direction. The bound must cover
+// these errors.
 TEST(Shutter, has_a_bound_that_covers_the_rounding_of_control_normals) {
   fixtures::Random random(503);
   double smallest_bound = 1;

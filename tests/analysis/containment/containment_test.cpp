@@ -1,4 +1,4 @@
-// Compares containment and crossings with winding numbers in integers and roots in rational numbers. A case is one
+// Compares winding numbers with an oracle in integers, and crossings with roots in rational numbers. A case is one
 // point that moves through one mesh. The test has 100,000 cases from a fixed seed, or as many as the variable
 // CHRONORMAL_FULL_CASES asks for.
 
@@ -92,8 +92,8 @@ struct Scene {
   }
 };
 
-// Returns the winding number at time t of a point that has the winding number `start` at first, by counting its
-// crossings before t.
+// Returns the winding number of a point at time t: counts the crossings before t, from the winding number `start` at t
+// = 0 on.
 int winding_before(int start, std::span<const Crossing> crossings, double t) {
   for (const Crossing& crossing : crossings) start += crossing.t < t ? (crossing.inward ? 1 : -1) : 0;
   return start;
@@ -126,8 +126,8 @@ std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& ra
   return result;
 }
 
-// Returns twice a position that is often on a vertex, an edge or a face at t = 1/2. The position is doubled so that its
-// coordinates are integers.
+// Draws a position at t = 1/2, which is often on a vertex, an edge or a face of the mesh, and returns it doubled. The
+// position is doubled so that its coordinates are integers.
 Vec3f twice_a_place(const Scene& scene, Random& random) {
   const auto twice = [&](std::uint32_t v) { return scene.segment().from[v] + scene.segment().to[v]; };
   const Corners& face = scene.faces[random.below(scene.faces.size())];
@@ -173,8 +173,8 @@ bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares the winding numbers at both ends, and at a time in between, with the oracle and with the sums of the earlier
-// crossings.
+// Compares the winding numbers at both ends, and at a time in between, with the oracle and with the count of the
+// crossings before.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -296,7 +296,7 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
   scene.from = {{-16, 0, 0}, {-8, -8, 0}, {8, -8, -8}, {-16, 0, 8}, {-16, 8, 0}};
   scene.to = {{16, 0, 0}, {8, 8, 0}, {-8, 8, 8}, {16, 0, 8}, {16, 8, 0}};
   const std::vector<Crossing> all = scene.crossings();
-  // The five points pass through vertices, edges and the middles of faces.
+  // The five points pass through a vertex, an edge or the middle of a face, or touch a vertex.
   const std::vector<double> times = {0.25, 0.25, 1.0 / 3};
   for (std::size_t p = 0; p < 5; ++p) {
     const std::span<const Crossing> crossings = of_point(all, p);

@@ -27,7 +27,8 @@ DeltaNormals some_deltas(std::mt19937& random) {
   return result;
 }
 
-// Adds a row to the fit, with the normals that `wanted` gives at these weights as the goal.
+// Adds a pose with these weights to the fit. The fit must come close to the normals that the deltas `wanted` give in
+// this pose.
 void ask_for(const DeltaNormals& wanted, const std::vector<double>& weights, DeltaFit& fit) {
   std::vector<Vec3d> shown(3), missing(3);
   shown_normals(fit.deltas(), weights, shown);

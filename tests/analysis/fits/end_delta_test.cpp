@@ -1,5 +1,5 @@
-// Compares the scale that best_end_delta() finds for one end normal with a brute force search in long double, over a
-// fine grid of scales and times.
+// best_end_delta() chooses the scale of one end normal. Compares this scale with the best one that a search in long
+// double finds, over a fine grid of scales and times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -33,7 +33,7 @@ Vec3d vector(Random& random, double size = 1) {
   return {p[0], p[1], p[2]};
 }
 
-// Returns the control normals of a triangle whose corners move by about `motion`.
+// Returns the control normals of a triangle whose edges change by about `motion`.
 ControlNormals triangle(Random& random, double motion) {
   const Vec3d e0 = vector(random), f0 = vector(random);
   const Vec3d e1 = e0 + vector(random, motion), f1 = f0 + vector(random, motion);
@@ -46,8 +46,8 @@ Vector exact(const ControlNormals& n, Real w) {
   return add(add(scaled(v * v, real(n.n0)), scaled(2 * v * w, real(n.m))), scaled(w * w, real(n.n1)));
 }
 
-// Returns the largest angle over a grid of times w, which is also dense near both ends. The result may be too small by
-// a relative error of about 1e-3.
+// Returns the largest angle, in radians, between the exact normals n(w) and the straight line `from` to `to`. The times
+// w are a grid that is also dense near both ends. The result may be too small by a relative error of about 1e-3.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;
@@ -89,9 +89,9 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
       brute.best = std::min(brute.best, brute_error(normals, u0, reference::scaled(s, u1), 100));
     }
-    const bool collapses = found.error > 90 * kDegree;  // then, the largest angle depends on the grid
+    const bool collapses = found.error > 90 * kDegree;  // near a collapse, the largest angle depends on the grid
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // The function also states the error of its result, which must be the true error.
+    // best_end_delta() also states the largest error of its line. This must be the true error.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -132,8 +132,8 @@ TEST(EndDelta, does_not_depend_on_rotation_or_size) {
   for (int round = 0; round < 500; ++round) {
     const ControlNormals n = triangle(random, 1);
     const EndDelta found = best_end_delta(n);
-    // A permutation of the axes is a rotation without rounding, and a power of two is a scale without rounding, so
-    // results must be equal bit by bit.
+    // A permutation of the axes is a rotation without rounding, and a power of two is a scale without rounding. But
+    // sums are added in another order, so the search may end at a slightly different scale.
     const auto turned = [](const Vec3d& v) { return Vec3d{0x1p-40 * v.y, 0x1p-40 * v.z, 0x1p-40 * v.x}; };
     const EndDelta other = best_end_delta({turned(n.n0), turned(n.m), turned(n.n1)});
     EXPECT_NEAR(other.error, found.error, 2e-3 * found.error + 1e-12) << round;
@@ -223,7 +223,7 @@ TEST(EndDelta, a_line_that_turns_fast_near_an_end_is_seen_there) {
 TEST(EndDelta, it_helps_where_areas_change) {
   struct Row {
     const char* morph;
-    double unit_ends, best;  // errors in degrees, with unit normals at the ends and with the best scale
+    double unit_ends, best;  // mean errors in degrees: with unit normals at both ends, and with the best scale of one
   };
   for (const Row& row :
        {Row{"cloth", 2.34, 0.36}, {"bend", 4.41, 4.01}, {"twist", 9.58, 8.76}, {"eversion", 69.1, 68.3}}) {

@@ -87,8 +87,8 @@ TEST(BlendQuality, errors_are_the_angles_to_blended_positions_over_what_turns) {
   EXPECT_NEAR(quality.max, largest, 1e-6);
 }
 
-// Returns the sum of squares that best_deltas() minimises. Adds the squares of all elements, in poses with these rows
-// of weights.
+// Returns the sum that best_deltas() minimises: the squared distances between the exact and the blended normals of all
+// elements, in all poses. Each row of `weights` is a pose.
 double squares(const DeltaNormals& deltas, BlendNormals& normals, const std::vector<double>& weights) {
   const std::size_t targets = deltas.deltas.size();
   double sum = 0;
@@ -136,7 +136,7 @@ TEST(BlendQuality, rows_that_tell_nothing_leave_the_endpoint_deltas) {
     const DeltaNormals best = best_deltas(normals, weights);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(best.deltas[k].deltas, ends.deltas[k].deltas);
   }
-  // If there is only one row of weights, its normals can be met exactly. Every delta must be finite.
+  // The normals of a single pose can be met exactly. Every delta must be finite.
   const std::vector<double> one = {0.5, 1, 0};
   const DeltaNormals best = best_deltas(normals, one);
   EXPECT_LT(delta_quality(best, normals, one).max, 1e-4);

@@ -87,7 +87,7 @@ TEST(Quality, parts_add_up) {
   first.add(second);
   EXPECT_NEAR(first.sum, whole.sum, 1e-15);
   EXPECT_EQ(first.max, whole.max);
-  EXPECT_EQ(first.max_at.element, 2u);  // the first of several equal errors
+  EXPECT_EQ(first.max_at.element, 2u);  // the first of several elements with the same error
   EXPECT_EQ(whole.max_at.element, 2u);
   EXPECT_EQ(first.count, 4u);
 }
@@ -146,7 +146,7 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
   EXPECT_LT(length(near - far), 1e-12);
 }
 
-// Compares normals of faces, and sums of the normals of several faces, with integers of any size.
+// Compares the normals of faces, and sums of normals of several faces, with integers of any size.
 TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
   constexpr std::uint64_t kSeed = 4950;
   fixtures::Random random(kSeed);

@@ -114,7 +114,7 @@ TEST(Surface, edge_that_one_face_has_twice_is_open) {
   EXPECT_EQ(alone.open_edges, (Found{2, 0}));
   EXPECT_EQ(alone.turned_edges, Found{});
   EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
-  // A second face on one side of the edge closes the edge on that side. The edge does not count as non-manifold.
+  // A second face with this edge closes the open side of the edge. The edge does not count as non-manifold.
   const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
   EXPECT_EQ(both.edges, 4U);
   EXPECT_EQ(both.open_edges.count, 3U);
@@ -167,7 +167,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// Counts the same things independently, with maps and sets of edges and faces.
+// Counts all that survey() counts independently, with maps and sets of edges and faces.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();
@@ -181,7 +181,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
       points.count += is_new ? 1U : 0U;
     }
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::set<std::size_t>> edges;
-    std::map<Corners, std::vector<std::size_t>> faces;  // the key is the smallest of all rotated and reversed outlines
+    std::map<Corners, std::vector<std::size_t>> faces;  // by the smallest of all rotated and reversed outlines
     std::set<std::uint32_t> used;
     std::size_t repeating = 0, pairs = 0;
     std::vector<std::set<std::uint32_t>> pieces;

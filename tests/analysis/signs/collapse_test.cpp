@@ -75,8 +75,8 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
       if (length(one.turns_over ? one.before + one.after : one.before - one.after) > 1e-13) return "no opposites";
     }
     if ((starts || ends) && one.turns_over) return "turns over at an end";
-    // If all components are multiples of one linear polynomial, n(t) has opposite directions on both sides of its zero.
-    // Otherwise, the limit of the direction at the zero is the derivative.
+    // If all components are multiples of one linear polynomial, n(t) has opposite directions on both sides of the root.
+    // The direction of the derivative at the root is then the direction after it.
     const std::array<int, 3> slopes =
         common.is_linear()
             ? std::array<int, 3>{common.slope_at_root(n[0]), common.slope_at_root(n[1]), common.slope_at_root(n[2])}
@@ -89,7 +89,7 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  // Two zeros count as one if no double is between them.
+  // Two roots count as one if no double is between them.
   return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 

@@ -39,8 +39,8 @@ test::WholeVector whole(const Vec3d& v) {
 }
 test::WholeVector whole(const Vec3f& v) { return whole(to_double(v)); }
 
-// Returns the polynomial n(t) . w(t), computed from positions alone: its values at t = -1, 0, 1 and 2, where the
-// corners are integers, determine it.
+// Returns the polynomial n(t) . w(t), where w(t) points from the first corner of the face to the viewer. Computes it
+// from positions alone: its values at t = -1, 0, 1 and 2, where the corners are integers, determine it.
 WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, const View& view) {
   const auto vertices = segment.topology->face(face);
   std::array<test::Whole, 4> values;
@@ -72,7 +72,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
   std::size_t inside = 0;
   double last = -1;
   int side = facing.count == 0 ? sign_of(facing.side) : 0;
-  std::vector<std::pair<double, int>> parts = {{0, side}};  // times from which on the sign is known, with this sign
+  std::vector<std::pair<double, int>> parts = {{0, side}};  // each with a time and the sign of f from this time on
   for (const FacingChange& change : facing.changes()) {
     if (last > change.lower || change.lower > change.upper) return "not ascending";
     if (change.upper - change.lower > kWidestBracket) return "a wide bracket";
@@ -197,7 +197,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // Only if there is a root may the function return kBoth, which also means "undecided".
+        // The function returns kBoth also if it cannot decide. It may do this only if there is a root.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -256,7 +256,8 @@ exact::Rational exact_value(const std::vector<double>& p, double at) {
 }
 
 TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
-  // The coefficients have no errors here, so only rounding in the search itself could make a bracket wrong.
+  // The coefficients have no errors here, so only rounding errors of the search itself could make a bracket (the
+  // interval around a root) wrong.
   constexpr std::size_t kBlocks = 200;
   fixtures::Random random(4711);
   std::size_t found = 0;

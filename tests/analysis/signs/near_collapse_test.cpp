@@ -118,7 +118,8 @@ TEST(NearCollapse, two_zeros_are_two_and_very_near_ones_are_one_that_comes_back)
 }
 
 TEST(NearCollapse, a_miss_counts_below_the_share_only) {
-  // n(t) = (d, 0, 2 t - 1). The length of its largest control normal is about 1.
+  // n(t) = (d, 0, 2 t - 1), where d is the distance by which n(t) misses zero. The length of the largest control normal
+  // is about 1.
   EXPECT_EQ(find_near_collapses(along_z(-1, 2, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
   EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {2 * kCollapseShare, 0, 0})).count, 0U);
   EXPECT_EQ(find_near_collapses(along_z(-1, 1.5, 0, {kCollapseShare / 2, 0, 0})).count, 1U);
@@ -134,7 +135,7 @@ TEST(NearCollapse, faces_without_area_at_the_ends_alone_do_not_collapse_inside) 
        {std::pair{Shape::kLine, Shape::kTriangle}, {Shape::kTriangle, Shape::kLine}, {Shape::kLine, Shape::kLine}}) {
     for (const ControlNormals& normals : normals_of(fixtures::degenerate_soup(start, end))) {
       const NearCollapses found = find_near_collapses(normals);
-      // The search finds at most one collapse, and at its time the normal must be nearly zero.
+      // The search may find one collapse. At the time of this collapse, the normal must be nearly zero.
       for (std::size_t i = 0; i < found.count; ++i)
         EXPECT_LT(length(normal_at(normals, found.at[i].t)), 1e-5 * (length(normals.m) + length(normals.n1)));
       EXPECT_LE(found.count, 1U);

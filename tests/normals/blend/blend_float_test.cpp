@@ -116,7 +116,7 @@ TEST(BlendFloat, is_chosen_where_it_is_cheaper_than_terms) {
 }
 
 TEST(BlendFloat, has_no_effect_where_a_ring_is_too_long_for_lanes) {
-  // A fan of 80 triangles around vertex 0, more than the float32 code accepts.
+  // Makes a fan of 80 triangles around vertex 0. The float32 code does not accept so many faces around one vertex.
   constexpr std::uint32_t kTriangles = 80;
   BlendSet set;
   set.base = {0, 0, 1};

@@ -167,7 +167,8 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// The weights move a vertex exactly onto the line through the other two vertices, or very close to this line.
+// The weights move a vertex exactly onto the line through the other two vertices, or very close to this line. The
+// library must then recompute the face in double.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -192,7 +193,7 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
   }
 }
 
-// Far from the origin, rounding errors of the blended positions change the normals.
+// Far from the origin, the rounding errors of blended positions are large against the edges, and change the normals.
 TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -241,7 +242,7 @@ TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_
   EXPECT_GT(sure, 3U);
 }
 
-// This normal is so short that in double its square is subnormal or zero.
+// This normal is so short that the square of its length is subnormal or zero in double.
 TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -277,10 +278,10 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
   }
 }
 
-// A polygon winds around a triangle. When it moves far away, the triangle is smaller than one ulp, so after moving back
-// the polygon is a point. Its area is then only rounding error, and its edges are zero, so only the square of the
-// rounding error of positions bounds the error of the area. If the polygon has many corners, its error exceeds the area
-// of the adjacent triangle, the only face with a direction.
+// The polygon winds around a small triangle many times. When it moves far away, the triangle is smaller than one ulp,
+// so after moving back all corners of the polygon coincide. Its area is then only rounding error. Its edges are zero,
+// so only the square of the rounding error of positions bounds the error of the area. If the polygon has many turns,
+// this bound exceeds the area of the adjacent triangle, the only face with a direction.
 TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
   constexpr float kFar = 1.5F * 0x1p52F;  // an ulp of double is 1 at this distance
   for (const int turns : {0, 10}) {

@@ -159,8 +159,9 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// Returns the share of the guaranteed error that the search must reach; otherwise it is too weak. Terms are stored in
-// float32, so the share is larger. On the path by positions, only the result is rounded to float32, by half an ulp.
+// Returns the share of the guaranteed error that the search must reach; otherwise it is too weak. On the path by terms,
+// errors are larger, because terms are stored in float32. On the path by positions, only the result is rounded to
+// float32.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

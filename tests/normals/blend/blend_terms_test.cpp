@@ -1,5 +1,5 @@
-// Compares the terms of blend shapes with exact arithmetic. The difference must not exceed the noise that BlendTerms
-// states. Tests terms in stored lists and terms that are requested one by one.
+// Compares the terms of blend shapes with exact arithmetic. The difference must not exceed the noise (the bound of the
+// error) that BlendTerms states. Tests terms in stored lists and terms that are requested one by one.
 #include "normals/blend/blend_terms.h"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* g
   return result;
 }
 
-// Checks a term. Elements without an entry in the term must be zero, within twice the noise of the entries. Returns the
-// number of correct elements.
+// Checks each element of a term: its value must be within its noise of the exact value. Elements that the term does not
+// list must be zero, up to 1e-14. Returns the number of listed elements.
 std::size_t expect_term(const BlendTerm& term, const std::vector<exact::Vector>& expected, const char* name) {
   EXPECT_TRUE(std::is_sorted(term.elements.begin(), term.elements.end())) << name;
   EXPECT_EQ(term.values.size(), term.noise.size()) << name;
@@ -108,7 +108,7 @@ RC_GTEST_PROP(BlendTerms, counts_say_beforehand_where_terms_are_not_zero, ()) {
       for (std::uint32_t e = 0; e < touched.size(); ++e)
         if (touched[e]) listed.push_back(e);
       RC_ASSERT(terms.elements(i) == listed);
-      // Computes the expected counts from all faces of all elements.
+      // Counts, from all faces, the elements around which both targets move a face.
       std::vector<BlendTerms::PairCount> expected;
       for (std::size_t j = 0; j < set.targets.size(); ++j) {
         std::uint32_t count = 0;

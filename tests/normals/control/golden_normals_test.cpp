@@ -116,8 +116,9 @@ NormalGroups split_normals_of(const Golden& golden) {
   return NormalGroups::by_split_normals(golden.motion.topology, no_welding(golden), stored(golden)).value();
 }
 
-// Checks that the normals of a file follow the weighting of the tool that wrote it, within 0.01 degrees, for both ways
-// of finding hard edges. All other weightings must have larger errors; otherwise the file could not distinguish them.
+// Checks that the normals of a file follow the weighting of the tool that wrote it, within 0.01 degrees, whether hard
+// edges are found from smoothing groups or from the stored normals. All other weightings must have larger errors;
+// otherwise the file could not distinguish them.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

@@ -94,7 +94,7 @@ Motion edge_on_at(const Times& times, fixtures::Random& random) {
   return motion;
 }
 
-// Returns the sum of the normals of some faces at a time, in rational numbers. If the sum is zero at this time, returns
+// Returns the exact sum of the normals of some faces at times.time, in rational numbers. If this sum is zero, returns
 // the sum shortly before.
 exact::Vector exact_direction(const Segment& segment, std::span<const std::uint32_t> faces, const Times& times) {
   const exact::Rational start(times.start), time(times.time), end(times.end);

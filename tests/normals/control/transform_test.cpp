@@ -68,7 +68,7 @@ TEST(Transform, is_the_inverse_transpose_but_for_its_length) {
   Random random(2);
   for (int round = 0; round < 100; ++round) {
     const AffineTransform transform = any_transform(random);
-    reference::Matrix<3> rows{};  // the transpose of the matrix, so its rows are the columns
+    reference::Matrix<3> rows{};  // the transposed matrix: its rows are the columns of the transform
     for (std::size_t i = 0; i < 3; ++i)
       rows[i] = {transform.columns[i].x, transform.columns[i].y, transform.columns[i].z};
     const auto inverse = reference::inverse(rows);

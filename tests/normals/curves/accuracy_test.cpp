@@ -108,8 +108,8 @@ double hardest_time(const ControlNormals& normals) {
   return (low + high) / 2;
 }
 
-// Returns times to test a face at: both ends, the time with the smallest |n(t)| and times near it, and random times as
-// float32 and double.
+// Returns the times at which a face is tested: both ends, the time with the smallest |n(t)| and times near it, and
+// random times as float32 and double.
 std::vector<double> times(const ControlNormals& normals, fixtures::Random& random) {
   const double hard = hardest_time(normals);
   std::vector<double> result{0, 1, 0.5, 1.0 / 3, 0x1p-30, 1 - 0x1p-30, hard};

@@ -1,4 +1,5 @@
-// Tests compact curves: every element must keep CurveOptions::tolerance, and the curves must use formats as documented.
+// Tests compact curves: every element must keep CurveOptions::tolerance, and curves must be stored in the formats that
+// are documented for this tolerance.
 
 #include <gtest/gtest.h>
 
@@ -33,8 +34,8 @@ using test::largest_of;
 constexpr std::array<double, 13> kTolerances{1e-6, 2e-6, 1e-5, 6e-5, 1e-4, 1.7e-4, 2e-4,
                                              5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1};
 
-// If |n(t)| is below this share of its terms, n(t) computed in double is not accurate enough for the tolerances of this
-// file.
+// The smallest |n(t)| that the tests judge, as a share of the sum of the lengths of its terms. Below it, n(t) in double
+// is not accurate enough for the tolerances of this file.
 constexpr double kBelowDouble = 1e-9;
 
 std::vector<Vec3f> unit_normals(const NormalCurves& curves, double t) {
@@ -292,8 +293,8 @@ TEST(CompactCurves, no_tolerance_at_all_is_the_exact_one) {
 
 // ---- the worst elements that a search finds ------------------------------------------------------------------------
 
-// Evaluates one element in the given kind of block, by calling the kernels directly. The components of the control
-// normals must be floats of moderate size.
+// Evaluates one element in the given kind of block, by calling the kernels directly. Returns its unit normal at t. The
+// components of the control normals must be floats of moderate size.
 Vec3f kept_as(BlockKind kind, const ControlNormals& c, double t) {
   ControlTile tile{};
   std::size_t plane = 0;
@@ -452,7 +453,8 @@ TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
 }
 
 TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
-  // Two blocks that need fewer bytes are not worth a separate run between blocks of 20 bytes, but eight blocks are.
+  // Two blocks that could be stored in fewer bytes do not become a separate run between blocks of 20 bytes, but eight
+  // blocks do.
   const auto among = [](const ControlNormals& other, std::size_t blocks) {
     auto normals = repeated(kQuadratic, 16 * 10);
     const auto middle = repeated(other, 16 * blocks), rest = repeated(kQuadratic, 16 * 10);

@@ -1,4 +1,4 @@
-// Compares the sizes of curves that are computed in advance with the sizes of curves that are actually made.
+// Compares the predicted sizes of curves with the sizes of curves that are made.
 
 #include "normals/curves/curve_count.h"
 
@@ -17,8 +17,8 @@
 namespace chronormal::curve_count_test {
 namespace {
 
-// Counts the faces of a segment in ranges of `together` faces. Compares the counts with those of NormalCurves and
-// face_control_normals().
+// Counts the faces of a segment in ranges of `together` faces, by the bytes and the degrees of their curves. Compares
+// the counts with those of NormalCurves and face_control_normals().
 void expect_same(const Segment& segment, std::size_t together, const char* name) {
   const std::size_t faces = segment.topology->face_count();
   const NormalCurves curves = NormalCurves::of_faces(segment);

@@ -1,5 +1,5 @@
-// Tests unit normals that are encoded in four bytes: the meaning of the bits, the errors, and that the kernels agree
-// with the functions for single normals.
+// Tests unit normals that are encoded in four bytes: the meaning of the bits, the errors in radians, and whether the
+// kernels agree with the functions for single normals.
 
 #include "chronormal/normals/normal_curves.h"
 

@@ -47,7 +47,7 @@ Motion patterned(std::size_t faces, const Pattern& kind_of) {
 
 struct Elements {
   std::size_t count = 0;
-  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // computes element i alone, or as a part of a tile
+  std::function<BoundedNormals(std::size_t)> alone, of_tile;  // return element i, computed alone or as a part of a tile
 };
 
 // Returns control normals that were computed in double, or the exact ones if the former are hardly more than rounding

@@ -1,4 +1,4 @@
-// Tests what accuracy_test.cpp and theorems_test.cpp do not: runs of elements of equal degree, layouts of memory,
+// Tests all that accuracy_test.cpp and theorems_test.cpp do not: runs of elements of equal degree, layouts of memory,
 // degenerate elements, and extreme values.
 
 #include "chronormal/normals/normal_curves.h"

@@ -264,8 +264,8 @@ TEST(ThreadsOfCurves, give_the_bits_of_one) {
   }
 }
 
-// Selects the results that a test compares. The lengths of normals of collapsing elements are more precise in curves
-// from positions than in curves from control normals, so these lengths may differ in the last bit.
+// Selects whether a test compares the lengths of normals, too. The lengths of normals of collapsing elements are more
+// precise in curves from positions than in curves from control normals, so these lengths may differ in the last bit.
 enum class Say { kEverything, kNoLengths };
 
 std::vector<std::uint32_t> everything(const NormalCurves& curves, Say say = Say::kEverything) {
@@ -424,7 +424,7 @@ TEST(StreamedResults, at_one_t_have_the_bits_of_stored_ones) {
       for (std::size_t k = 0; k < 3; ++k) std::fill(x + k * plane + faces, x + (k + 1) * plane, 0.0F);
       return curves.unit_normals(0.3, VectorView<float>::planes(x, x + plane, x + 2 * plane, faces), threads);
     });
-    // The third plane, z, begins one word early, so it is not aligned.
+    // The third plane, z, begins one word early, so it is not aligned to 64 bytes.
     expect_streamed_as_stored<float>(3 * plane, [&](float* x, Threads threads) {
       std::fill(x + faces, x + plane, 0.0F);
       std::fill(x + plane + faces, x + 2 * plane - 1, 0.0F);

@@ -87,7 +87,7 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // A square far away makes this a mesh of polygons, which otherwise has the same faces.
+  // A square far away turns the triangle mesh into a mesh of polygons. The other faces are the same.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;

@@ -1,4 +1,4 @@
-// Checks that the library recognises two sheets back to back as two sides, each with its own normals.
+// Checks that the library separates two sheets back to back into two sides, each with its own normals.
 #include "normals/groups/sides.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Compares FloatRecompute with arithmetic in double, and with each other all calls that must give the same result.
+// Compares FloatRecompute with arithmetic in double. If several calls must give the same result, also compares their
+// results with each other.
 
 #include "chronormal/normals/recompute.h"
 

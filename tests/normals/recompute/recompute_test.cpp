@@ -403,7 +403,7 @@ std::vector<std::size_t> as_it_is(std::size_t count) {
 }
 
 TEST(Recompute, faces_in_any_order_give_vertices_the_same_bits) {
-  const Motion motion = fixtures::smooth_morph(120);  // larger than the window of 1,024 faces whose normals are kept
+  const Motion motion = fixtures::smooth_morph(120);  // more faces than the window, which keeps 1,024 normals
   const std::size_t count = motion.topology.face_count();
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);
   const auto expect_same = [&](const std::vector<std::size_t>& order) {

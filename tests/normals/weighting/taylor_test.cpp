@@ -87,8 +87,8 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
       value = value + at_centre[0];
       const Real truth = std::pow(p(Real(centre) + Real(s)), Real(exponent));
       RC_ASSERT(Real(value.low) <= truth + 1e-18L && truth <= Real(value.high) + 1e-18L);
-      // The coefficients about any other point of the piece must overlap with the coefficients `around`, which hold
-      // about all of its points.
+      // The coefficients about any other point of the piece must overlap with those in `everywhere`, which hold about
+      // all points of the piece.
       const Series<3> there = p.about(centre + s);
       const Interval root = exponent == -1 ? there[0] : square_root(there[0]);
       const Series<6> other = power<6>(there, exponent, exponent == 0.5 ? root : reciprocal(root));
@@ -100,7 +100,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // In this case the enclosure must be narrow, since the test could not notice a missing remainder in a wide one.
+  // The enclosure here is so narrow that the test would notice a missing remainder.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));

@@ -1,5 +1,5 @@
-// Tests the quadratic curves that approximate weighted normals. The bound of the error must never be below the error,
-// and must not be far above it.
+// Tests the quadratic curves that approximate weighted normals. The stated bound must never be below the error of the
+// curve, and must not be far above it.
 
 #include "chronormal/normals/weighting.h"
 
@@ -50,7 +50,8 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// Returns the largest angle, in radians, between the fit and the definition of the weighting, at equidistant times.
+// Returns the largest angle, in radians, between the fitted curve and the weighted normal by its definition, at
+// equidistant times.
 double sampled_error(const reference::Mesh& mesh, const std::vector<reference::Corner>& corners,
                      const std::string& weighting, const ControlNormals& fit, std::size_t samples) {
   double worst = 0;

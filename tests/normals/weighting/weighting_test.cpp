@@ -296,7 +296,8 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   }
 }
 
-// Eq. 19 of docs/theory.md is about two triangles that share an edge, one of which rests.
+// Compares weighted normals with eq. 19 of docs/theory.md. The equation is about two triangles that share an edge; one
+// of them rests.
 TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
   Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};

@@ -1,5 +1,5 @@
-// Tests the kernel that computes cones, on vectors that are known exactly. A cone may exceed the smallest cone only by
-// the rounding errors of the computation. The test checks this in integers.
+// Tests the kernel that computes the cone around three control normals. The components are floats, so integers can
+// decide exactly whether a vector lies in its cone.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +61,8 @@ TEST(ConesOfThree, flags_what_has_no_direction) {
   std::array<std::uint16_t, 1> flags{};
   cones_of_three(normals.data(), normals.size(), kNormalShare, cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b110011110);
-  // The control normals of a part are zero only where n(t) is zero: {x, -x, x} has a zero at t = 1/2. Lengths far below
-  // 2^-1000 never count as certain.
+  // The bits mark elements whose cone the kernel cannot make. A control normal of a part is zero only where n(t) is
+  // zero: {x, -x, x} has a zero at t = 1/2. Lengths far below 2^-1000 always count as uncertain.
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0, 0.25), cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b10011100);
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0.25, 0.5), cones.data(), flags.data());

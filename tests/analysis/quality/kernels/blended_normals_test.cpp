@@ -1,5 +1,5 @@
-// Checks sums of normals in many poses, and the errors of these normals. On every instruction set, they must have the
-// same bits as plain loops.
+// Checks the kernels that add up blended normals in many poses, and that measure the errors of these normals. On every
+// instruction set, they must give the same bits as plain loops.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #include <gtest/gtest.h>

@@ -27,7 +27,7 @@ TEST(TrianglesInMotion, have_the_bits_of_vector_areas_of_interpolated_positions_
     const Segment segment = motion.segment(0);
     const auto corners = motion.topology.corners();
     TrianglesInMotion triangles;
-    triangles.gather(segment.to, segment.from, corners.first(3));  // the tiles then hold data of another segment
+    triangles.gather(segment.to, segment.from, corners.first(3));  // fills the tiles with data of another segment
     triangles.gather(segment.from, segment.to, corners);
     std::vector<TrianglesInMotion::Normal> normals;
     for (const double t : {0.0, 0.35, 1.0}) {

@@ -20,7 +20,7 @@
 namespace chronormal::face_glance_test {
 namespace {
 
-constexpr double kAngle = 0.4;  // in radians
+constexpr double kAngle = 0.4;  // the largest angle between the end normals of a usual face, in radians
 
 std::vector<EdgedTile> tiles_of(const Segment& segment) {
   const std::size_t faces = segment.topology->face_count();
@@ -52,7 +52,7 @@ long double angle_of(const Vec3d& a, const Vec3d& b) {
   return std::atan2(std::sqrt(x * x + y * y + z * z), along);
 }
 
-// Checks every claim of the glance about faces that it calls usual. Returns the number of these faces.
+// Checks all that the glance claims of faces that it does not call unusual. Returns the number of these faces.
 std::size_t check_usual(const Segment& segment, const GlanceLimits& limits, const char* name) {
   std::size_t usual = 0;
   const std::vector<EdgedTile> tiles = tiles_of(segment);

@@ -137,7 +137,7 @@ class Laid {
 constexpr Laid::Layout kLayouts[] = {Laid::Layout::kPacked, Laid::Layout::kPlanes, Laid::Layout::kStrideFour,
                                      Laid::Layout::kStrideSeven};
 
-// Makes motions of the same faces, such that n(t) has every degree.
+// Makes motions of the same faces in which n(t) has the degree 2, 0 or 1.
 std::vector<Motion> motions_of_every_degree() {
   const Motion start = fixtures::smooth_morph(5);
   const auto moved = [&start](auto change) {
@@ -149,11 +149,11 @@ std::vector<Motion> motions_of_every_degree() {
   };
   std::vector<Motion> motions = {start};
   motions.push_back(moved([](float v, std::size_t) { return v; }));
-  // Because of rounding, the degree of these motions is not exact.
+  // Positions are rounded to float32, so n(t) of the next three motions has the degree 0 or 1 only nearly.
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // stretches x
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // moves one vertex
-  // In the last motion, positions change by about the tolerance within which a degree counts as equal.
+  // In the last motion, positions change by about the tolerance within which n(t) counts as constant.
   motions.push_back(moved([](float v, std::size_t i) { return v + (i % 5 == 0 ? 1e-6F : 0); }));
   return motions;
 }
@@ -201,7 +201,8 @@ TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
     for (const auto end : kShapes)
       ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
   }
-  // The faces are in planes along axes and diagonals, where products are zero or cancel. All orientations occur.
+  // The faces lie in planes that are parallel to axes or diagonals, where products are zero or cancel. All orientations
+  // occur.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
       const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {

@@ -39,8 +39,8 @@ BoundedNormals element(fixtures::Random& random) {
   ControlNormals& c = result.normals;
   c = {n0, vector(random), vector(random)};
   if (random.below(4) != 0) {
-    // The curve is (s - k t)^2 n0 plus a small curve, which is in a plane in half of the cases. If k + 1 is a power of
-    // two, bisection hits the zero exactly, so the proof must continue down to the smallest interval.
+    // The curve is (s - k t)^2 n0, where s = 1 - t, plus a small curve, which is in a plane in half of the cases. If k
+    // + 1 is a power of two, bisection hits the zero exactly, so the proof must continue down to the smallest interval.
     const double halves[] = {1, 3, 7, 1.0 / 3};
     const double k = random.below(2) == 0 ? halves[random.below(4)] : decade(random, -3, 3);
     const double little = decade(random, -17, 0);

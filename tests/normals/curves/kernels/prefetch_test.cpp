@@ -1,5 +1,5 @@
-// Checks that evaluations prefetch curves at the distance whose trials had the shortest median time, and that the
-// number of trials is limited.
+// Checks that evaluations prefetch curves at the best distance, and that the number of trials is limited. The best
+// distance is the one whose trials took the shortest time, in the median.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -50,7 +50,7 @@ TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   EXPECT_EQ(try_all(3), kAll);
   for (const std::size_t fastest : {1U, 4U}) {
-    // The call that ended the trials does not count as one of the calls between.
+    // The call that ended the trials does not count as one of the calls between two rounds of trials.
     for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
     EXPECT_EQ(try_all(fastest), kAll);
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);

@@ -35,9 +35,9 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// The expected control normals: sums of faces that the public function computes one by one, and therefore without
-// lanes. `magnitudes` measures rounding errors: for each element, the largest component of the sums of absolute
-// products along the path around the element.
+// The expected control normals: sums over faces. The public function computes the faces one by one, and therefore
+// without SIMD lanes. `magnitudes` measures rounding errors: for each element, the largest component of the sums of
+// absolute products along the path around the element.
 struct Expected {
   std::vector<ControlNormals> normals;
   std::vector<double> magnitudes;
@@ -106,8 +106,8 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// Compares all elements on all instruction sets, with one object for all ranges of `step` elements from element `first`
-// on. `first` and `step` are multiples of 16.
+// Compares all elements from element `first` on, on all instruction sets. One object computes them in ranges of `step`
+// elements. `first` and `step` are multiples of 16.
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -426,7 +426,7 @@ std::string fault_of_bounds(const Segment& segment, const NormalGroups& groups, 
     std::vector<BoundedTile> tiles((groups.size() + kTile - 1) / kTile);
     for (std::size_t e = 0; e < groups.size(); e += kTile) {
       BoundedTile& tile = tiles[e / kTile];
-      tile.left_out = 0xFFFF;  // a value from an earlier tile, which must be overwritten
+      tile.left_out = 0xFFFF;  // stands for the value of an earlier tile, which must be overwritten
       ControlTile rounded;
       writer.write({e, std::min(kTile, groups.size() - e)}, std::span(&rounded, 1), std::span(&tile, 1));
       const std::uint32_t unknown = tile.left_out;
