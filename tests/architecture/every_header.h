@@ -1,4 +1,4 @@
-/// Declares what every_header.cpp.in defines, for the test of this file.
+/// Declares what every_header.cpp.in defines, for every_header_test.cpp.
 #ifndef CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 #define CHRONORMAL_TESTS_ARCHITECTURE_EVERY_HEADER_H_
 

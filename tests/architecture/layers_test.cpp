@@ -1,6 +1,6 @@
 // Tests which files include which others. Each floor is a folder, a room is a folder in it, and a room may have rooms
 // inside. A file may include only its own room, the rooms before its own on its floor or in its room, and the floors
-// before its own. Paths alone decide, so this test needs no list of files. docs/architecture.md describes the same order.
+// before its own. Paths alone decide, so this test needs no list of files. docs/architecture.md describes the order.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct Room {
   Room(const char* of_room, std::vector<std::string> inside = {}) : name(of_room), rooms(std::move(inside)) {}
 
   std::string name;
-  std::vector<std::string> rooms;  // the rooms inside; files of the room itself come after them
+  std::vector<std::string> rooms;  // the rooms inside this room, in order; direct files come after them
 };
 struct Floor {
   std::string name;
@@ -80,9 +80,10 @@ std::vector<std::string> parts_of(const std::string& path) {
   return parts;
 }
 
-// The place of a file: its floor, the room there, and the room inside. Room 0 is the floor itself, above all of its
-// rooms. The program begins in main.cpp, which therefore comes after the rooms of its floor. A public header comes
-// before the rooms inside its room, and a private file of the room itself after them.
+// The place of a file in the order: the numbers of its floor, of its room on this floor, and of the room inside this
+// room. Room 0 is the floor itself, which comes before its rooms. The program begins in main.cpp, which therefore comes
+// after the rooms of its floor. A public header comes before the rooms inside its room, and a private file of the room
+// itself after them.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;

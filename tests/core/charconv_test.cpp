@@ -1,5 +1,5 @@
-// Tests conversions between numbers and text: <charconv>, or the replacement of it, must write the same text as the C
-// library, and must read the same number back. The test also runs under Node.js (cmake/bits.cmake), where the
+// Tests conversions between numbers and text: <charconv>, or the function that replaces it, must write the same text as
+// the C library, and must read the same number back. The test also runs under Node.js (cmake/bits.cmake), where the
 // replacement is used.
 #include "core/charconv.h"
 

@@ -31,7 +31,7 @@ TEST(Nearest, one_edit_is_a_distance_of_one) {
       EXPECT_EQ(edit_distance(word, other), word == other ? 0U : 1U) << other;
   }
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
-  EXPECT_EQ(edit_distance("ca", "abc"), 3U);  // swapped letters are not edited again
+  EXPECT_EQ(edit_distance("ca", "abc"), 3U);  // the two letters that were swapped cannot be edited again
 }
 
 TEST(Nearest, only_what_is_near_is_suggested) {

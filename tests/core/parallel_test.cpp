@@ -94,8 +94,8 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The other thread cannot finish its piece before this thread waits. While this thread waits, two threads have work
-  // to do.
+  // The calling thread has nothing to do after its own piece, and waits. The other thread then runs a loop inside its
+  // piece, with which the calling thread must help.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;

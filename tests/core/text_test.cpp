@@ -1,4 +1,4 @@
-// Tests the phrases with numbers that reports and JSON share.
+// Tests the functions that write numbers as text, for reports and for JSON.
 
 #include "core/text.h"
 

@@ -1,4 +1,4 @@
-"""Tests the results of ./run dist: they run on a bare system, and match the lists beside them.
+"""Tests the files that ./run dist makes: programs run on a bare system, and all files match the lists beside them.
 
 The variable CHRONORMAL_DIST names the folder of the results. Each skipped test prints its reason. A missing file is an
 error.
@@ -230,7 +230,7 @@ class Others(Unpacked):
         self.check_inside(unpacked / "chronormal.exe", "mingw-w64")
 
     def check_inside(self, program, library):
-        """Checks that the program has the page of reports inside, since the archive has no file of it. `library` is the
+        """Checks that the page of reports is in the program, since the archive has no file for it. `library` is the
         library for C."""
         page = (ROOT / "build/share/chronormal/report.html").read_bytes()
         self.assertTrue(page in program.read_bytes(), f"{program.name} has no page for reports")
@@ -476,7 +476,7 @@ class Packaging(Unpacked):
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # io is on for users by default. Here it is off by default, since compiling it takes minutes longer.
+        # Users get the feature io by default. Here it is off by default, since compiling it takes minutes.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

@@ -72,7 +72,8 @@ function(vcpkg_cmake_configure)
   endif()
   run(${CMAKE_COMMAND} -G Ninja -S ${arg_SOURCE_PATH} -B ${FOLDER}/build -DCMAKE_BUILD_TYPE=Release
       -DBUILD_SHARED_LIBS=OFF -DCMAKE_INSTALL_LIBDIR=lib ${arg_OPTIONS})
-  # Fails if the project does not define one of the options that the port passes.
+  # The cache has an option as UNINITIALIZED if the project does not define it. Fails if the port passes such an
+  # option.
   file(STRINGS ${FOLDER}/build/CMakeCache.txt cache)
   foreach(option ${arg_OPTIONS})
     string(REGEX REPLACE "^-D([^=]*)=.*" "\\1" variable ${option})
@@ -116,7 +117,7 @@ endfunction()
 
 include(${PORT_FOLDER}/portfile.cmake)
 
-# Fails if a file is missing for which vcpkg itself looks at the end of a port.
+# Fails if a file is missing that vcpkg requires at the end of a port.
 foreach(file share/${PORT}/copyright share/${PORT}/usage share/${PORT}/chronormalConfig.cmake
              include/chronormal/chronormal.h)
   if(NOT EXISTS ${CURRENT_PACKAGES_DIR}/${file})

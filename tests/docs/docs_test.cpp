@@ -158,8 +158,8 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-// Makes one test for each document, which is named by its path in the repository. Documents can therefore be tested in
-// parallel.
+// Makes one test for each document, so that documents can be tested in parallel. The test has the path of its document
+// in the repository as its name.
 class Commands : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> documents_with_commands() {
@@ -233,7 +233,7 @@ TEST(Documents, every_indented_command_for_artists_runs) { run_indented_commands
 
 TEST(Documents, every_indented_command_for_simulation_runs) { run_indented_commands("docs/simulation.md", 5); }
 
-// Compares rows of docs/cpp.md, about faces of people, with the output of `compare --blend`.
+// Compares the rows about human faces in docs/cpp.md with the output of `compare --blend`.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
 
 TEST_P(RealFaces, have_the_rows_that_the_page_shows) {

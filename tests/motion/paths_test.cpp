@@ -289,8 +289,7 @@ TEST(Pieces, that_leave_float32_are_an_error) {
   EXPECT_EQ(cut_into_segments(motion, {PathKind::kHermite, 1}).error().code, ErrorCode::kUsage);
 }
 
-// ---- the bend of paths
-// ------------------------------------------------------------------------------------------------
+// ---- the bend of paths ---------------------------------------------------------------------------------------------
 
 TEST(Bend, of_a_rigid_turn_is_the_sine_of_half_its_angle) {
   Motion motion;

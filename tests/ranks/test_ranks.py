@@ -14,7 +14,7 @@ import unittest
 
 PROGRAM = os.environ["CHRONORMAL_PROGRAM"]
 MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n"]
-COUNTS = (1, 2, 3, 4, 9)  # the motion has six segments
+COUNTS = (1, 2, 3, 4, 9)  # numbers of ranks; the motion has six segments
 
 
 def write_mesh(path, side):

@@ -221,7 +221,7 @@ TEST_P(SchemeOracle, agrees_that_ends_without_a_normal_have_their_limits) {
     for (std::size_t f = 0; f < subject.faces().count; ++f) {
       const reference::Triangle triangle = subject.triangle(f);
       for (const auto& [sample, inside] : {std::pair{0U, 0x1p-24L}, std::pair{1U, 1 - 0x1p-24L}}) {
-        const auto expected = reference::exact_unit_normal(triangle, inside);  // coordinates are integers below 1000
+        const auto expected = reference::exact_unit_normal(triangle, inside);  // the limit, up to 1e-5 radians
         ASSERT_TRUE(expected);
         ASSERT_LT(reference::angle(output.at(f, sample), reference::to_double(*expected)), 1e-5) << "face " << f;
       }

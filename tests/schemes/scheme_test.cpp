@@ -1,4 +1,4 @@
-// Tests the names and the costs of schemes, and every degenerate case by name. oracle_test.cpp compares the accuracy
+// Tests the names and the costs of schemes, and all kinds of degenerate faces. oracle_test.cpp compares the accuracy
 // with an independent oracle.
 
 #include "chronormal/schemes/scheme.h"
@@ -284,8 +284,8 @@ TEST(Schemes, planes_and_packed_results_are_the_same_bits) {
 }
 
 TEST(Schemes, operations_are_those_of_the_formulas) {
-  // Each row counts a weighted sum of K + 1 vectors and the normalisation, which takes 2 additions, 6 products, a root
-  // and a quotient.
+  // Each row has the numbers of additions, products, quotients, roots and trigonometric functions. Of these, the
+  // normalisation takes 2 additions, 6 products, a quotient and a root.
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 12, 1, 1, 0}},
       {"quadratic", {8, 15, 1, 1, 0}},

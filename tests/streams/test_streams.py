@@ -31,7 +31,7 @@ print(usage.ru_maxrss)
 
 
 def write_sheet(folder, frames):
-    """A sheet over which waves run: an OBJ file, and PC2 with a keyframe a second."""
+    """Writes a sheet over which waves run: an OBJ file, and a PC2 file with one keyframe per second."""
     x, y = np.meshgrid(np.linspace(0, 10, SIDE), np.linspace(0, 10, SIDE), indexing="ij")
     corner = (np.arange(SIDE - 1)[:, None] * SIDE + np.arange(SIDE - 1)).ravel() + 1
     faces = np.concatenate([np.stack([corner, corner + SIDE, corner + 1], 1), np.stack([corner + 1, corner + SIDE, corner + SIDE + 1], 1)])
@@ -47,7 +47,7 @@ def write_sheet(folder, frames):
 
 class Streams(unittest.TestCase):
     def test_memory_does_not_grow_with_the_number_of_keyframes(self):
-        few, many = 80, 320  # 98 and 393 MB, since up to 64 MiB would stay in memory
+        few, many = 80, 320  # numbers of keyframes: 98 MB and 393 MB, since 64 MiB may stay in memory
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             for frames in (few, many):

@@ -25,7 +25,7 @@ struct BlendShapeOptions {
   std::size_t cells = 6;  ///< a bumpy sheet of cells x cells quads, some of which are cut into triangles
   std::size_t targets = 5;
   double reach = 0.35;  ///< each target moves the vertices within this distance of a random point; the sheet is 2 wide
-  double size = 0.3;    ///< largest size of a delta
+  double size = 0.3;    ///< largest absolute value of a component of a delta
   double scale = 1;     ///< factor of all coordinates and deltas
   double offset = 0;    ///< added to the coordinates of the base, before they are scaled
 };

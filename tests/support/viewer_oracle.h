@@ -184,8 +184,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer computes from a track at a time between keys. `start` and `end` are the times of
-/// the first and the last key of the animation.
+/// Returns the weights that a viewer computes from a track at a time between keys. All times are in seconds. The
+/// animation starts at `start` and ends at `end`.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
                                                    std::size_t targets, double start, double end, double time) {

@@ -1,5 +1,5 @@
-// Makes Babylon.js a viewer in the test page: its loader, its animation groups, and its glTF material, which can show
-// normals as colours.
+// Makes Babylon.js a viewer in the test page. Uses its loader, its animation groups, and its glTF material, which can
+// show normals as colours.
 import { Animation } from '@babylonjs/core/Animations/animation.js';
 import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';

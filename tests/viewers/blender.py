@@ -15,7 +15,7 @@ import numpy
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 
-import bpy  # noqa: E402 (only after what it needs)
+import bpy  # noqa: E402 (its add-on needs the lines above)
 
 INSTANTS = 10
 

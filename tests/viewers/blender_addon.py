@@ -118,7 +118,7 @@ def jumps(o):
 
 
 def failures(folder, program):
-    """Exports under conditions in which a bake fails. The folder has programs that fail."""
+    """Exports once as usual, then where a bake may fail. `folder` contains programs that fail."""
     truth, how = blender_truth.make(1, "triangles")
     path = lambda name: os.path.join(folder, name)  # noqa: E731
     blender_truth.export(path("plain.glb"), how)

@@ -29,8 +29,8 @@ const near = (a, b) => a.every((x, c) => Math.abs(x - b[c]) < ROUNDING);
 const plus = (array, delta, v) => vector(array, v).map((x, c) => x + (delta?.[3 * v + c] ?? 0));
 
 // Returns, for each vertex of an exported primitive, the loop (corner of a polygon) of Blender's mesh from which the
-// vertex was made. This loop has the same position in the base and at each key. If several loops have, the loop with
-// the nearest normals is taken.
+// vertex was made. This loop has the position of the vertex, in the base and at each key. If several loops have this
+// position, takes the one with the nearest normals.
 function loopsOf(primitive, truth) {
   const stills = truth.instants.flatMap(({ time }, i) => (time === undefined ? [i] : []));
   const deltas = [null, ...primitive.targets];

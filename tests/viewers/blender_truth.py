@@ -20,7 +20,7 @@ import numpy
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 
-import bmesh  # noqa: E402 (only after what the add-on needs)
+import bmesh  # noqa: E402 (its add-on needs the lines above)
 import bpy  # noqa: E402
 from mathutils import Matrix, Vector  # noqa: E402
 
@@ -85,7 +85,7 @@ def apply(o, kind, **settings):
 
 
 def split_at_sharp_edges(o, is_sharp):
-    """Marks the edges as sharp for which is_sharp, given a BMesh edge, returns true. Normals are then split at exactly
+    """Marks every BMesh edge as sharp for which is_sharp(edge) is true. Normals are then split at exactly
     these edges, in every pose."""
     def mark(editable):
         for edge in editable.edges:

@@ -27,9 +27,9 @@ const TORN = 10;         // an edge counts as torn if the error jumps by this ma
 // in a neighbourhood of a vertex of the same size.
 const NEAR = 0.35;
 
-// The share of the error that may remain in the pixels of each viewer. The share is larger for Filament, which does not
-// add up deltas but keeps unit normals. `facets` is skipped, since some of its edges become hard in a pose because of
-// their angle, which no file can represent.
+// The share of the error that may remain after the bake, in the pixels of each viewer. The share is larger for
+// Filament, because it does not add up the deltas in the file but stores a unit normal for each target. `facets` is
+// skipped, since some of its edges become hard in a pose because of their angle, which no file can represent.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
 const ROUNDING = 0.1;    // in degrees, because of eight bits per colour and the interpolation of the viewer
 const VIEWERS = Object.keys(KEPT);

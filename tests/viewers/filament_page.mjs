@@ -1,5 +1,5 @@
-// Makes Filament a viewer in the test page: its loader, its animator, and a light under which its glTF material shows
-// normals as colours. browser.mjs loads `Filament` itself into the page.
+// Makes Filament a viewer in the test page. Uses its loader, its animator, and a light under which its glTF material
+// shows normals as colours. browser.mjs loads `Filament` itself into the page.
 //
 // Under a light from all sides with the irradiance (n + 1) / 2 in three colours, a white and rough surface shows k (n +
 // 1) / 2, where k depends on the material and the view. Under a light of 1 from all sides, the same surface shows k, so
@@ -10,7 +10,7 @@ const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];
 const EXPOSURE = [16, 1 / 125, 100];  // aperture, shutter and sensitivity
-const INTENSITY = 38_400;  // the intensity of the light at which, with this exposure, white is 1
+const INTENSITY = 38_400;  // at this intensity and exposure, a white light makes a white surface white (1)
 const JSON_AT = 20;
 
 let viewer;

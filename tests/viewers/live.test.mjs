@@ -19,8 +19,8 @@ import * as babylon from '../../js/src/babylon.js';
 import { drive, formulasOf } from '../../js/src/drive.js';
 import * as three from '../../js/src/three.js';
 
-// Targets 0 and 1 are the author's. Targets 2 and 3 have the weights w0 w1 and w0 (1 - w0). Only animations drive
-// target 4.
+// Returns what a bake writes into the extras of a mesh. Targets 0 and 1 are the author's. Targets 2 and 3 have the
+// weights w0 w1 and w0 (1 - w0). Only animations drive target 4.
 const mark = () => ({
   chronormal: {
     version: 2,
@@ -45,7 +45,7 @@ test('extra weights are the sums of their terms, and other versions are left alo
 });
 
 describe('three.js', () => {
-  // Makes a mesh as the loader of three.js does. The mark of a bake may be in the parent object.
+  // Makes a mesh as the loader of three.js does. The extras may instead be those of the parent object.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;

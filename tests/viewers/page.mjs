@@ -12,8 +12,9 @@ const viewers = { three, babylon, playcanvas, filament };
 const bytesOf = (base64) => Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
 const loaded = (viewer, base64) => viewers[viewer].load(bytesOf(base64));
 
-// Compares drawings of a viewer at several moments {time, truth, view}: each file at that time of an animation, and the
-// still file `truth`. Files are GLB in base64. Returns the result of compareNormals() for each file at each moment.
+// Compares, in a viewer, the picture of each file with the picture of a still file, at several moments {time, truth,
+// view}. `time` is a time of the animation, `truth` is the still file, and `view` is the camera. Files are GLB in
+// base64. Returns the result of compareNormals() for each file at each moment.
 window.compareInViewer = async (viewer, files, animation, moments, size) => {
   const { play, drawNormals, dispose } = viewers[viewer];
   const models = [];
@@ -35,9 +36,9 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
   return results;
 };
 
-// Compares drawings of a viewer: each file at a time of an animation, and the still file `truth`. Returns {compared,
-// picture}. `compared` has the results of compareNormals(). `picture` shows all drawings beside the true one, lit in
-// the same way, as a PNG in a data URL.
+// Compares, in a viewer, the picture of each file at a time of an animation with the picture of the still file `truth`.
+// Returns {compared, picture}. `compared` has the results of compareNormals(). `picture` shows all drawings beside the
+// true one, lit in the same way, as a PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
   const draw = async (file, animated) => {

@@ -24,8 +24,8 @@ const DATA = process.env.CHRONORMAL_DATA;
 const NO_DATA = !FULL || !DATA ? 'set CHRONORMAL_FULL=1, and CHRONORMAL_DATA to the folder of the real data' : false;
 const PAGE = fileURLToPath(new URL('../../docs/web.md', import.meta.url));
 
-// The commands of the tools, each with a number of degrees. By this much, a baked file may have larger errors after the
-// command than a file with plain deltas at weight 1.
+// The commands of the tools, each with a number of degrees. After the command, the errors of a baked file may exceed
+// the errors of a file with plain end-point deltas by this number.
 const PACK_12 = '-vn 12 -vtf -af 0';
 const LINES = [
   ['gltf-transform quantize head.glb web.glb', 1],

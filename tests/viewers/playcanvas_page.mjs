@@ -1,5 +1,5 @@
-// Makes PlayCanvas a viewer in the test page: its loader, its animation component, and its glTF material, which can
-// show normals as colours.
+// Makes PlayCanvas a viewer in the test page. Uses its loader, its animation component, and its glTF material, which
+// can show normals as colours.
 import {
   ADDRESS_CLAMP_TO_EDGE, AnimClipHandler, AnimComponentSystem, AppBase, AppOptions, Asset, CameraComponentSystem, Color,
   ContainerHandler, Entity, FILTER_NEAREST, MaterialHandler, PIXELFORMAT_RGBA32F, RenderComponentSystem, RenderHandler,

@@ -49,7 +49,7 @@ const targetsOfLength = (lengthOf) => (normal, random) =>
 
 // The boards. For each board, `deltas` computes the deltas of a square from its normal, and `weights` gives the weights
 // at a key of the track. If `free` is given, N + D_k does not have length 1, so Filament treats a frame as orthonormal
-// that is not. Its error is then at least `free` degrees.
+// although it is not. Its error is then at least `free` degrees.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -161,7 +161,8 @@ describe('a real viewer', () => {
     });
   }
 
-  // Returns how far a target has moved a square at some times, as weights. A pixel is a weight of 0.02.
+  // Returns the weights that a viewer shows at some times, measured by how far a target has moved a square. One pixel
+  // stands for a weight of 0.02.
   async function weightsInViewer(viewer, track, times, page) {
     const path = join(folder, 'mover.glb');
     await writeMover(path, track);

@@ -1,5 +1,5 @@
-// Tests tangents, which normal maps need, in Babylon.js, which adds up the tangents of targets. `chronormal bake`
-// computes the tangents of a morph anew. The picture of the result is compared with that of a still mesh, whose
+// Tests the tangents that `chronormal bake` computes anew for a morph. Normal maps need tangents, and Babylon.js adds
+// up the tangents of targets. Its picture of the baked morph is compared with the picture of a still mesh, whose
 // tangents follow from the formula of its surface. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program

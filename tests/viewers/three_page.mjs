@@ -1,5 +1,5 @@
-// Makes three.js a viewer in the test page: its loader, its animation mixer, and its material that shows normals as
-// colours.
+// Makes three.js a viewer in the test page. Uses its loader, its animation mixer, and its material that shows normals
+// as colours.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';
@@ -38,7 +38,7 @@ export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
 
-// Replaces the model by a clone. The mixer of the clone blends one clip for each weight.
+// Replaces the model by a clone. An animation mixer plays one clip for each weight on the clone, and blends them.
 export function blend({ scene }, weights) {
   const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
   scene.remove(original);
