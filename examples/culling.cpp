@@ -19,8 +19,8 @@ using namespace chronormal;
 
 constexpr Vec3d kEye{4, -5, 2};
 constexpr int kSamples = 21;
-// The smallest angle in radians between a face and the line of sight for which float32 must decide correctly. Float32
-// has an error of 1e-6 radians.
+// If the angle between a face and the line of sight is smaller than this, in radians, float32 may decide wrongly: its
+// normals have errors of up to 1e-6 radians.
 constexpr double kGrazing = 2e-6;
 
 Vec3d corner_at(const Segment& segment, std::size_t face, double t) {
@@ -67,7 +67,8 @@ Count count(const Segment& segment) {
   std::vector<float> packed(3 * faces);
   const auto normals = VectorView<float>::packed(packed.data(), faces);
 
-  // Decide in three ways if each face is seen at each sample.
+  // Decide in three ways whether each face is seen at each sample: by the reference, by interpolated end normals, and
+  // by exact normals.
   std::vector<bool> ever_seen(faces, false);
   for (int i = 0; i < kSamples; ++i) {
     const double t = i / (kSamples - 1.0);

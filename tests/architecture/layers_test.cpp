@@ -25,7 +25,7 @@ struct Room {
   Room(const char* of_room, std::vector<std::string> inside = {}) : name(of_room), rooms(std::move(inside)) {}
 
   std::string name;
-  std::vector<std::string> rooms;  // the rooms inside this room, in order; direct files come after them
+  std::vector<std::string> rooms;  // the rooms inside this room, in order; files directly in this room come after them
 };
 struct Floor {
   std::string name;

@@ -39,7 +39,7 @@ static void add_face(int face, double t, double n[3]) {
   for (int c = 0; c < 3; ++c) n[c] += e[(c + 1) % 3] * f[(c + 2) % 3] - e[(c + 2) % 3] * f[(c + 1) % 3];
 }
 
-/* Computes the expected normal of element i of a kind. */
+/* Computes the expected normal of element i, which is a face, a vertex or a corner. */
 static void truth(int elements, int i, double t, double n[3]) {
   n[0] = n[1] = n[2] = 0;
   for (int face = 0; face < 4; ++face) {
@@ -103,7 +103,7 @@ static void decode(const int16_t word[2], double n[3]) {
   for (int c = 0; c < 3; ++c) n[c] /= length;
 }
 
-/* Checks that ranges and many t give the same bits as one call, and that packed normals are close. */
+/* Checks that ranges and many t give the same bits as one call, and that packed normals are close to these. */
 static int check_outputs(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};

@@ -29,7 +29,7 @@ TEST(AlignedBytes, are_aligned_to_cache_lines_and_from_4_MiB_on_to_huge_pages) {
     EXPECT_EQ(bytes.capacity(), size);
     const std::size_t alignment = size >= 8 * kMebibyte ? 2 * kMebibyte : 64;
     EXPECT_EQ(address(bytes.data()) % alignment, 0u) << size;
-    std::memset(bytes.data(), 0x5A, size);  // the whole block is writable
+    std::memset(bytes.data(), 0x5A, size);  // checks that the whole block is writable
     EXPECT_EQ(bytes.data()[size - 1], std::byte{0x5A});
   }
 }

@@ -94,14 +94,14 @@ RC_GTEST_PROP(Polynomial, roots_are_found_where_they_were_put, ()) {
 }
 
 TEST(Polynomial, roots_at_the_ends_are_roots) {
-  const auto roots = roots_in_unit_interval(Bernstein<double, 2>{0, -1, 0});  // -2 t (1 - t)
+  const auto roots = roots_in_unit_interval(Bernstein<double, 2>{0, -1, 0});  // the polynomial -2 t (1 - t)
   ASSERT_EQ(roots.count, 2u);
   EXPECT_EQ(roots.t[0], 0);
   EXPECT_EQ(roots.t[1], 1);
 }
 
 TEST(Polynomial, a_root_on_a_subdivision_point_is_found_once) {
-  const auto roots = roots_in_unit_interval(Bernstein<double, 1>{-1, 1});  // 2 t - 1
+  const auto roots = roots_in_unit_interval(Bernstein<double, 1>{-1, 1});  // the polynomial 2 t - 1
   ASSERT_EQ(roots.count, 1u);
   EXPECT_NEAR(roots.t[0], 0.5, 1e-15);
 }
@@ -113,7 +113,7 @@ TEST(Polynomial, zero_everywhere_has_no_single_root) {
 }
 
 TEST(Polynomial, no_sign_change_means_no_root) {
-  const auto roots = roots_in_unit_interval(Bernstein<double, 2>{1, -0.9, 1});  // minimum 0.05
+  const auto roots = roots_in_unit_interval(Bernstein<double, 2>{1, -0.9, 1});  // its minimum is 0.05
   EXPECT_EQ(roots.count, 0u);
   EXPECT_FALSE(roots.everywhere);
 }

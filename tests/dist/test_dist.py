@@ -476,7 +476,7 @@ class Packaging(Unpacked):
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # Users get the feature io by default. Here it is off by default, since compiling it takes minutes.
+        # Users get the feature io by default. In these tests it is off by default, since compiling it takes minutes.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

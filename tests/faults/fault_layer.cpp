@@ -140,7 +140,7 @@ __attribute__((destructor)) void write_counts() {
   (void)::syscall(SYS_close, file);
 }
 
-// Counts a call, and returns the fault that it must have, or nullptr.
+// Counts a call. Returns the fault that this call must have, or nullptr if it has none.
 const Fault* fault_at(int kind) {
   if (!is_armed) return nullptr;
   const long number = ++counts[kind], any = kind == kMalloc ? 0 : ++counts[kAny];

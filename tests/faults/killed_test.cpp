@@ -82,7 +82,7 @@ class Killed : public testing::TestWithParam<Command> {
 
 TEST_P(Killed, runs_that_are_killed_twice_give_the_bytes_of_an_undisturbed_run) {
   constexpr unsigned kSeed = 26;
-  constexpr std::size_t kMoments = 17;  // number of moments for each of the three commands
+  constexpr std::size_t kMoments = 17;  // at how many calls each command is killed
   std::mt19937 random(kSeed);
   const bool is_full = std::getenv("CHRONORMAL_FULL") != nullptr;
   for (std::size_t i = 0; i < (is_full ? calls_ : kMoments) && !HasFailure(); ++i) {

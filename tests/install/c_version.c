@@ -1,4 +1,4 @@
-/* Asks the shared library for its version, which is the smallest possible program in C. */
+/* The smallest possible program in C: asks the shared library for its version. */
 #include <chronormal_c.h>
 #include <stdio.h>
 

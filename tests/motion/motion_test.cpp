@@ -177,7 +177,7 @@ TEST(Motion, kinds_make_segments_of_keyframes) {
   ASSERT_EQ(motion.segments.size(), 2U);
   EXPECT_EQ(motion.segments[1].from, 0U);
   EXPECT_EQ(motion.segments[1].to, 2U);
-  // Two keyframes at the same time make a jump.
+  // Between two keyframes at the same time, the animation jumps.
   motion.keyframes.push_back(motion.keyframes.back());
   motion.keyframes[1].time = motion.keyframes[2].time = 3;
   motion.connect(MotionKind::kAnimation);

@@ -194,7 +194,7 @@ TEST(Playback, schemes_without_an_incremental_form_say_so) {
 }
 
 TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
-  // To normalise takes 2 of the additions, 6 products, a quotient and a root.
+  // Normalising takes 2 of the additions, 6 products, a quotient and a root.
   EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));

@@ -308,8 +308,8 @@ TEST(Schemes, operations_are_those_of_the_formulas) {
 }
 
 TEST(Schemes, operations_of_a_step_are_those_of_differences_and_rotations) {
-  // Each row counts either K additions of vectors and the normalisation, or a rotation in a plane and the point on the
-  // arc.
+  // Each row has the numbers of additions, products, quotients, roots and trigonometric functions. A step adds vectors
+  // and normalises the sum, or rotates a vector in a plane and computes the point on the arc.
   const std::map<std::string, OperationCounts> expected = {
       {"linear", {5, 6, 1, 1, 0}}, {"quadratic", {8, 6, 1, 1, 0}}, {"cubic", {11, 6, 1, 1, 0}},
       {"slerp", {5, 10, 0, 0, 0}}, {"circle", {8, 10, 0, 0, 0}},

@@ -34,7 +34,7 @@ class AuthoredMesh {
  private:
   struct Polygon {
     std::vector<std::size_t> corners;  // in counterclockwise order
-    std::vector<std::size_t> cut;      // the triangles into which an exporter cuts the polygon, as corners
+    std::vector<std::size_t> cut;      // triangles into which an exporter cuts the polygon
     bool is_flat = false;
   };
 

@@ -1,4 +1,5 @@
-/// Makes a process unable to open files, to cause errors of the operating system that no file can cause.
+/// Makes a process unable to open files. Tests thus cause errors of the operating system that no damaged file can
+/// cause.
 #ifndef CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
 #define CHRONORMAL_TESTS_SUPPORT_NO_DESCRIPTORS_H_
 

@@ -203,9 +203,9 @@ template <class Moving>
 // ---- matrices and quaternions --------------------------------------------------------------------------------------
 
 template <std::size_t N>
-using Matrix = std::array<std::array<Real, N>, N>;  ///< rows
+using Matrix = std::array<std::array<Real, N>, N>;  ///< an array of rows
 
-using Quaternion = std::array<Real, 4>;  ///< w, x, y, z
+using Quaternion = std::array<Real, 4>;  ///< in the order w, x, y, z
 
 /// A frame: the columns tangent, binormal and normal of a rotation matrix.
 struct Frame {

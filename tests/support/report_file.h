@@ -1,5 +1,6 @@
-/// Reads a report as a page does. Splits the container into its parts, and computes the error that a page shows for a
-/// vertex at a sample, in double and from the container alone. This file includes no code of src/.
+/// Reads the data of a report (the container of docs/formats.md) as the page of a report does. Splits the container
+/// into JSON and arrays, and computes the error that the page shows for a vertex at a sample, in double and from the
+/// container alone. This file includes no code of src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REPORT_FILE_H_
 

@@ -154,8 +154,8 @@ enum class Carry { kBlended, kInverseTranspose, kByJoint };
   return sum;
 }
 
-/// The errors on the screen, as angles. `shown` is the angle between the rendered and the true normal of a vertex after
-/// both were transformed in the same way. `skinning` is the angle between two normals: that of the surface before
+/// The errors on the screen, in degrees. `shown` is the angle between the rendered and the true normal of a vertex
+/// after both were transformed in the same way. `skinning` is the angle between two normals: that of the surface before
 /// skinning, transformed by the blended matrix, and that of the skinned surface.
 struct SeenErrors {
   double shown = 0, skinning = 0;

@@ -1,5 +1,4 @@
-/// A stream that keeps in memory only the keyframes in use. Tests measure with it how many keyframes the user of the
-/// stream needs.
+/// A stream that keeps in memory only the keyframes in use. It measures how many keyframes its user needs at once.
 #ifndef CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 #define CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 

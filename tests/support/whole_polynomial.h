@@ -78,11 +78,11 @@ class WholePolynomial {
 
   [[nodiscard]] static WholePolynomial greatest_common_divisor(WholePolynomial p, WholePolynomial q);
 
-  /// Returns the sign of the polynomial at any finite double.
+  /// Returns the sign of the polynomial at a double t from 0 to 1.
   [[nodiscard]] int sign_at(double t) const {
     int exponent = 0;
     const Whole mantissa(std::ldexp(std::frexp(t, &exponent), 53));
-    const auto shift = static_cast<mp_bitcnt_t>(exponent < 53 ? 53 - exponent : 0);  // t = mantissa 2^-shift, below 1
+    const auto shift = static_cast<mp_bitcnt_t>(exponent < 53 ? 53 - exponent : 0);  // t = mantissa 2^-shift
     Whole value = 0, power = 1;
     for (std::size_t k = a_.size(); k-- > 0;) {
       value = value * mantissa + a_[k] * power;

@@ -1,5 +1,5 @@
-// Runs headless Chromium with the page of page.mjs. The page can load only the files below; requests for other files
-// are refused.
+// Runs headless Chromium with the page of page.mjs. The page can load only the files that serve() gets; requests for
+// other files are refused.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';

@@ -31,7 +31,7 @@ const NEAR = 0.35;
 // Filament, because it does not add up the deltas in the file but stores a unit normal for each target. `facets` is
 // skipped, since some of its edges become hard in a pose because of their angle, which no file can represent.
 const KEPT = { three: 1 / 8, babylon: 1 / 8, filament: 4 / 5 };
-const ROUNDING = 0.1;    // in degrees, because of eight bits per colour and the interpolation of the viewer
+const ROUNDING = 0.1;    // rounding error in degrees: colours have eight bits, and viewers interpolate
 const VIEWERS = Object.keys(KEPT);
 
 const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);

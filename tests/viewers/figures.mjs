@@ -7,7 +7,7 @@ import { join } from 'node:path';
 import { angle } from './exact.mjs';
 import { chronormal } from './program.mjs';
 
-/** Returns the figure that `chronormal compare --face` computes for a face that moves from one position to another. */
+/** Returns the figure by `chronormal compare --face` of a face whose corners move from `from` to `to`. */
 export function figureByProgram({ from, to }, schemes, samples) {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-figure-')), names = ['from.obj', 'to.obj'].map((name) => join(folder, name));
   [from, to].forEach((corners, end) => writeFileSync(names[end], `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf ${corners.map((_, i) => i + 1).join(' ')}\n`));

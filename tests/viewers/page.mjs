@@ -118,8 +118,8 @@ window.compareDriven = async (viewer, file, weights, { truth, view }, size) => {
   return results;
 };
 
-// Makes the comparisons of compareDriven() while several clips are blended. The weights are the sum of the clips. In
-// three.js, the mixer of a clone plays the clips.
+// Makes the comparisons of compareDriven() while several clips are blended. The weights are the sums over the clips. In
+// three.js, the mixer of a clone of the model plays the clips.
 window.compareBlended = async (viewer, file, weights, { truth, view }, size) => {
   const { play, drawNormals, blend, attach, dispose } = viewers[viewer];
   const [still, model] = [await loaded(viewer, truth), await loaded(viewer, file)];

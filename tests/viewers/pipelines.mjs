@@ -26,8 +26,8 @@ export function runLine(line, folder) {
   if (status !== 0) throw new Error(`${line}: exit code ${status}\n${stderr}${stdout}`);
 }
 
-// Runs a line of shell commands that makes web.glb from head.glb. Copies web.glb to the path `result`, which is
-// returned.
+// Runs a line of shell commands that makes web.glb from head.glb. Copies web.glb to the path `result`, and returns this
+// path.
 export function webOf(line, head, result, folder) {
   copyFileSync(head, join(folder, 'head.glb'));
   runLine(line, folder);

@@ -23,8 +23,8 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const unit = (a) => a.map((c) => c / Math.hypot(...a));
 
-// A square sheet that bends around an axis and shears. The functions return the position at (x, y), and the directions
-// of x and y there.
+// A square sheet that bends around an axis and shears. The next three functions return the position at (x, y), the
+// direction in which x grows there, and the direction in which y grows.
 const bent = (x, y) => [Math.sin(BEND * x) / BEND + SHEAR * y, y, (1 - Math.cos(BEND * x)) / BEND];
 const alongX = (x) => [Math.cos(BEND * x), 0, Math.sin(BEND * x)];
 const alongY = () => [SHEAR, 1, 0];

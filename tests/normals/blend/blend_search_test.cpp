@@ -1,5 +1,5 @@
 // Searches for the worst cases of BlendNormals: sets and weights whose errors come as close as possible to the
-// guaranteed 1e-6 radians, on every path. Errors are computed in rational numbers.
+// guaranteed 1e-6 radians, on every path of the computation (BlendPath). Errors are computed in rational numbers.
 
 #include <gtest/gtest.h>
 

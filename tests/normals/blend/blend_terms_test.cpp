@@ -26,8 +26,8 @@ BlendTerms terms_of(const BlendSet& set, const NormalGroups* groups) {
   return groups ? BlendTerms(set, *groups) : BlendTerms(set);
 }
 
-// Returns B(p, q) + B(q, p), or only B(p, q) unless `both`, for each element, without rounding. B is the bilinear form
-// of the normal in the positions, summed over the faces of the element.
+// Returns B(p, q) + B(q, p), or only B(p, q) unless `both`, for each element, without rounding. B is a bilinear form,
+// summed over the faces of the element: at positions p, the normal is B(p, p).
 std::vector<exact::Vector> exact_term(const BlendSet& set, const NormalGroups* groups, const test::ExactPositions& p,
                                       const test::ExactPositions& q, bool both) {
   std::vector<exact::Vector> result;

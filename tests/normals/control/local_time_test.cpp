@@ -40,7 +40,7 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys. All three times are doubles. The differences `before` and `after` are small integers, as
+// A time between two keys. All three times are doubles. The differences between the time and the keys are small
 // multiples of one unit.
 struct Times {
   double start, time, end;

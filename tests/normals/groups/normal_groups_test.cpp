@@ -228,7 +228,7 @@ TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
   for (const bool tear : {false, true}) EXPECT_TRUE(equals_a_flood(154186546385, false, tear, 65.3217));
   // In a mesh made by hand, an angle may exceed the limit by 1e-7 radians, but not by 1e-5 radians.
   constexpr double kDegreesPerRadian = 57.29577951308232;
-  const Motion motion = pages({0, 150});  // its faces are at 30 degrees
+  const Motion motion = pages({0, 150});  // the normals of its faces are 30 degrees apart
   EXPECT_EQ(creased(motion, 30 - 1e-7 * kDegreesPerRadian).size(), creased(motion, 31).size());
   EXPECT_EQ(creased(motion, 30 - 1e-5 * kDegreesPerRadian).size(), creased(motion, 29).size());
   EXPECT_NE(creased(motion, 29).size(), creased(motion, 31).size());

@@ -192,8 +192,8 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
 TEST(FloatRecompute, a_closed_ring_of_six_has_seven_points_and_a_centre) {
   const Motion motion = fan(6, false);
   const FloatRecompute recompute(motion.topology, vertices_of(motion));
-  // One slice holds 7 elements with 7 positions. If the paths of neighbours were not joined, the slice would hold 12
-  // positions.
+  // One slice (the paths of up to 16 elements) holds 7 elements with 7 positions. If the paths of neighbours were not
+  // joined, the slice would hold 12 positions.
   EXPECT_EQ(recompute.bytes(), 16 * (1 + 7) * sizeof(std::uint32_t) + 2 * sizeof(std::size_t) + 7 * 16);
 }
 

@@ -182,7 +182,7 @@ TEST(GroupTiles, have_the_public_sums_for_every_count_and_offset) {
   for (std::size_t step = kTile; step <= 10 * kTile; step += kTile)
     ASSERT_EQ(difference_on_all_targets(motion.segment(0), groups, 3 * kTile, step), "");
   // The paths around the vertices are open or closed, and of even or odd length. The paths are at every position in a
-  // slice and at the end of a slice.
+  // slice (the paths of 16 elements) and at its end.
   for (std::size_t columns = 1; columns < 12; ++columns)
     ASSERT_EQ(difference_on_all_targets(grid(columns, 7)), "") << columns;
 }
