@@ -27,7 +27,7 @@ BlendSet sheet() {
   return set;
 }
 
-// Returns a target that smoothly lifts the part of the sheet around (x, y).
+// Returns a target that smoothly moves the part of the sheet around (x, y), by up to `push`.
 BlendTarget bump(const BlendSet& set, const char* name, float x, float y, const Vec3f& push) {
   std::vector<float> deltas;
   for (std::size_t v = 0; v < set.base.size(); v += 3) {

@@ -108,7 +108,8 @@ struct Tally {
   }
 };
 
-// Compares all elements of curves and of recomputed normals with exact directions, at several times t.
+// Compares the normals of all elements, from curves and recomputed from positions, with exact directions, at several
+// times t.
 template <class ElementOf>
 void judge(const NormalCurves& curves, NormalRecompute& recompute, const IntegerNormals& oracle,
            const std::vector<double>& times, const char* what, Tally& tally, const ElementOf& element_of) {
@@ -170,7 +171,7 @@ TEST(ExactDirections, are_within_a_millionth_of_a_radian_in_every_family) {
   EXPECT_GE(all, wanted);
 }
 
-// Compares the faces and the vertices of a mesh with exact directions.
+// Compares the normals of all faces and vertices of a mesh with exact directions.
 Tally judged(const Motion& motion, const std::vector<double>& times) {
   const Segment segment = motion.segment(0);
   const IntegerNormals oracle(segment);

@@ -1,7 +1,7 @@
-// Tests theorems about control normals. Each theorem is tested on random meshes of a family.
+// Tests theorems about control normals. Each theorem is tested on random meshes.
 //
 // Most coordinates are multiples of 2^-8 between -128 and 128. Edges, their products, and sums of a few products are
-// then exact in double, so theorems hold to the last bit. Other tests state a tolerance.
+// then exact in double, so theorems hold to the last bit. Tests with other coordinates state a tolerance.
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -100,7 +100,7 @@ struct Corner {
   return sum;
 }
 
-/// The corners of an element, as a type for the schemes of reference.h.
+/// The corners of an element, in a type that the schemes of reference.h accept in place of a triangle.
 struct MovingElement {
   const Mesh& mesh;
   const std::vector<Corner>& corners;

@@ -36,7 +36,7 @@ function toBase64(bytes) {
   return btoa(text);
 }
 
-// Moves all objects to where they are at a time, by an animation group.
+// Moves all objects to their places at a time of an animation, by its animation group.
 export function play(model, animation, time) {
   model.scene.animationGroups.forEach((group) => group.stop());
   if (animation === null) return;

@@ -24,17 +24,16 @@ export function moves(mesh) {
   return mesh.primitives.some((primitive) => primitive.targets.some((target) => somewhere(target.positions)));
 }
 
-// Returns an empty result about samples, each of which is a vertex in a state of a mesh: {mean, max, where, pairs,
-// excluded, flat, drift}. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded`
-// counts samples without a direction or a triangle. `flat` counts primitives without normals, which viewers shade by
-// themselves. `drift` is the largest distance between a vertex in `shown` and in `source`, as a share of the size of
-// its mesh.
+// Returns an empty result: {mean, max, where, pairs, excluded, flat, drift}. A sample is a vertex in one state of a
+// mesh. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded` counts samples without
+// a direction or a triangle. `flat` counts primitives without normals, which viewers shade by themselves. `drift` is
+// the largest distance between a vertex in `shown` and in `source`, as a share of the size of its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
 
 // Adds the errors of a mesh to a result. Until all meshes are added, `mean` is a sum. A state is {name, weights,
-// shownWeights}.
+// shownWeights}, with the weights of the targets in both files.
 function addMesh(result, source, shown, states) {
   const exact = new ExactNormals(source);
   const shownPrimitives = shown.primitives.filter((primitive) => primitive.triangles);
@@ -76,7 +75,8 @@ function averaged(result) {
   return { ...result, mean: result.mean / Math.max(result.pairs, 1) };
 }
 
-// Compares all nodes at some times of an animation. Skips meshes that never move.
+// Compares the rendered normals of all nodes with the exact ones, at some times of an animation. Skips meshes that
+// never move.
 export function compareAnimation(source, shown, animation, times) {
   const result = nothing();
   source.nodes.forEach((node, n) => {
@@ -97,8 +97,8 @@ function stands({ times, values, interpolation }) {
   return interpolation !== 'CUBICSPLINE' && values.every((value, i) => value === values[i % width]);
 }
 
-// Compares the meshes that no animation moves, in a viewer that sets each target alone, and then all targets together.
-// The extras of a mesh tell how its correction targets are driven.
+// Compares the normals of the meshes that no animation moves, in a viewer that sets each target alone, and then all
+// targets together. The extras of a mesh tell how its correction targets are driven.
 function compareUndriven(source, shown) {
   const moving = source.animations.flatMap(({ tracks }) => tracks.filter((track) => !stands(track)));
   const driven = new Set(moving.map(({ node }) => source.nodes[node].mesh));

@@ -144,8 +144,8 @@ test('weights that are set by hand drive the extra targets of a baked file', () 
 
 const DAMAGED = /^The data of this page (are damaged|are cut off|are not a report|have version)/;
 
-// Returns {begin, size, count} for each array of floating-point numbers in a container. `begin` and `size` are in
-// bytes.
+// Returns {begin, size, count} for each array of floating-point numbers in the data of a report (the container).
+// `begin` and `size` are in bytes.
 function arraysOf(bytes) {
   const size = bytes.readUInt32LE(12), first = Math.ceil((16 + size) / 8) * 8, found = [];
   const look = (value) => {

@@ -128,7 +128,7 @@ async function assertSequence(paths, output) {
 }
 
 describe('a fault is found where', () => {
-  // The functions that make one fault each in the description of twist.baked.
+  // Each function makes one fault in the description of the file twist.baked.
   const faults = {
     'the extra target has no weight': ({ track: { values } }) => values.forEach((_, i) => i % 2 && (values[i] = 0)),
     'the tangents of a key are swapped': ({ track }) => {

@@ -182,8 +182,8 @@ TEST(ExactCertificates, are_never_violated_by_soups) {
               << tallies[s].gap / static_cast<double>(tallies[s].elements - tallies[s].unknown) << " rad\n";
 }
 
-// If almost nothing moves, the exact error is nearly zero, and the error bound must contain the rounding errors of all
-// slerps.
+// If almost nothing moves, the exact error is nearly zero. The scheme of this test uses many slerps, and the error
+// bound must contain the rounding errors of all of them.
 TEST(ExactCertificates, include_the_rounding_of_many_slerps) {
   const Motion motion = fixtures::soup({.face_count = 150, .seed = 9, .motion = 1e-6});
   const Segment segment = motion.segment(0);

@@ -167,7 +167,7 @@ TEST(Surface, copies_are_the_vertices_that_welding_removes) {
   EXPECT_EQ(find_copies(separate_points(5)), Found{});
 }
 
-// Counts all that survey() counts independently, with maps and sets of edges and faces.
+// Counts independently what survey() counts, with maps and sets of edges and faces.
 TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
   const bool holds = rc::check("any mesh", [] {
     const MeshFrame mesh = test::random_mesh();

@@ -47,8 +47,8 @@ ControlNormals difference(const ControlNormals& a, const ControlNormals& b) {
   return {a.n0 - b.n0, a.m - b.m, a.n1 - b.n1};
 }
 
-// Compares every element with the oracle at several times. Returns the largest angle in radians. Skips elements whose
-// terms cancel by a factor of more than 1e6.
+// Compares the normal of every element with that of the oracle, at several times. Returns the largest angle between the
+// two, in radians. Skips elements whose terms cancel by a factor of more than 1e6.
 double largest_error(const Motion& motion, const NormalGroups& groups, const std::string& weighting = "area") {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const auto corners = test::reference_corners(mesh, groups);
