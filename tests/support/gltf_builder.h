@@ -47,7 +47,7 @@ template <class T>
   return text;
 }
 
-/// Makes a GLB file with two chunks, `json` and `bin`, and the required padding. If `bin` is empty, the file has no
+/// Makes a GLB file with two chunks, `json` and `bin`, and the required padding. If `bin` has no value, the file has no
 /// second chunk.
 [[nodiscard]] inline std::string glb_bytes(std::string json, std::optional<std::string> bin) {
   const auto word = [](std::size_t value) {
@@ -181,8 +181,8 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // If a test has added buffers to the JSON, the first of them stands for buffer 0 and is replaced. The others are
-  // kept.
+  // If a test has added buffers to the JSON, the first of them stands for buffer 0 and gets its length and URI here.
+  // The others are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;

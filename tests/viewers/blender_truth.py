@@ -49,7 +49,7 @@ def wave(draw, _):
 
 
 def dent(draw, places):
-    """Moves only some of the vertices."""
+    """Returns a function that moves only some of the vertices."""
     center, radius, size = draw.choice(places), draw.uniform(0.5, 0.8), draw.choice((-1, 1)) * draw.uniform(0.15, 0.3)
     way = center.normalized() if center.length > 0.1 else Vector((0, 0, 1))
     return lambda co: co + way * (size * max(0, 1 - (co - center).length_squared / radius**2) ** 2)

@@ -108,7 +108,7 @@ RC_GTEST_PROP(BlendTerms, counts_say_beforehand_where_terms_are_not_zero, ()) {
       for (std::uint32_t e = 0; e < touched.size(); ++e)
         if (touched[e]) listed.push_back(e);
       RC_ASSERT(terms.elements(i) == listed);
-      // Counts, from all faces, the elements around which both targets move a face.
+      // Counts, from all faces, the elements with a face that both targets move.
       std::vector<BlendTerms::PairCount> expected;
       for (std::size_t j = 0; j < set.targets.size(); ++j) {
         std::uint32_t count = 0;

@@ -41,7 +41,7 @@ TEST(LocalTime, is_moved_into_the_segment) {
 }
 
 // A time between two keys. All three times are doubles. The differences between the time and the keys are small
-// multiples of one unit.
+// integers times powers of two.
 struct Times {
   double start, time, end;
   double before, after;  // time - start and end - time, as multiples of the same unit

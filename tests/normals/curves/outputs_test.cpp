@@ -157,7 +157,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
       for (const double tolerance : kTolerances)
         expect_all_forms_agree(NormalCurves(some, {tolerance}), size % 3 == 0 ? 0 : 0.37);
     }
-    // Tests more elements than the stack holds at a time.
+    // Tests more elements than the library keeps on the stack at a time.
     for (const double tolerance : kTolerances) expect_all_forms_agree(NormalCurves(elements, {tolerance}), 0.71);
   }
 }
