@@ -15,7 +15,7 @@ export function drive(chronormal, w) {
   for (const extra of chronormal.extras) w[extra.target] = weightOf(extra, w);
 }
 
-// Returns extras.chronormal of a mesh, or else that of the nearest object above it that has one. A mesh of several
+// Returns extras.chronormal of a mesh, or else of the nearest object above it that has one. A mesh of several
 // primitives becomes an object with a child for each primitive, and gltfpack puts a mesh into a new node below the node
 // with the extras.
 function markAbove(mesh, extrasOf) {
