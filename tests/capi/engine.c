@@ -29,7 +29,7 @@ static const vertex kTo[5] = {
 
 static double at(int v, int c, double t) { return (1 - t) * kFrom[v].position[c] + t * kTo[v].position[c]; }
 
-/* Adds twice the vector area of a face at t. */
+/* Adds twice the vector area of a face at t to n. */
 static void add_face(int face, double t, double n[3]) {
   double e[3], f[3];
   for (int c = 0; c < 3; ++c) {

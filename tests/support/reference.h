@@ -40,7 +40,7 @@ using Real = long double;
 template <class S>
 using Vec = std::array<S, 3>;
 using Vector = Vec<Real>;
-using VectorD = Vec<double>;  ///< for the dense searches, which compute millions of angles
+using VectorD = Vec<double>;  ///< in double, for the dense searches, which compute millions of angles
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 

@@ -38,7 +38,7 @@ export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }
 
-// Replaces the model by a clone. An animation mixer plays one clip for each weight on the clone, and blends them.
+// Replaces the model by a clone. On the clone, an animation mixer plays one clip for each weight, and blends the clips.
 export function blend({ scene }, weights) {
   const [original] = scene.children, copy = original.clone(), mixer = new THREE.AnimationMixer(copy);
   scene.remove(original);

@@ -113,7 +113,8 @@ Vec3f lattice_point(Random& random, std::size_t half) {
   return {x, y, coordinate()};
 }
 
-// Moves vertices from and to points of a lattice. Many vertices stay in place, or many move by the same vector.
+// Returns the points to which vertices move from `points`; all of these are points of a lattice. Many vertices stay in
+// place, or many move by the same vector.
 std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& random) {
   const std::size_t kind = random.below(4);
   const Vec3f shift = lattice_point(random, 4);

@@ -162,7 +162,7 @@ TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
     const float x = 0.1f * static_cast<float>(i), y = 1e-7f * static_cast<float>(i * i),
                 z = 3e5f / static_cast<float>(i);
     p = {0, 1e10f, 0, x, 1e10f + y, z, 2 * x, 1e10f + 2 * y, 2 * z};
-    // Skips points that are not collinear after rounding to float32. The differences here are computed exactly.
+    // Skips points that are not collinear after rounding to float32. The differences in this condition are exact.
     if (p[3] - p[0] != p[6] - p[3] || p[4] - p[1] != p[7] - p[4] || p[5] - p[2] != p[8] - p[5]) continue;
     ++tested;
     const auto view = VectorView<const float>::packed(p.data(), 3);
