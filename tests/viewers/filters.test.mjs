@@ -16,7 +16,7 @@ const BYTE = 5120;
 const SHORT = 5122;
 const FLOAT = 5126;
 
-// Returns encoded vectors (x, y) for each number of bits from leastBits to mostBits: all (x, y) on a grid with at most
+// Returns encoded vectors for each number of bits from leastBits to mostBits: all (x, y) on a grid with at most
 // mostSteps steps along each side of the square. If there are few bits, these are all possible values.
 // tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {

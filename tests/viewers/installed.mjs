@@ -10,8 +10,8 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 
 export const program = resolve(process.env.CHRONORMAL_PROGRAM);
 
-/** Installs the package and returns these functions: native() runs the native program, wasm() the program in the package, and
- * node() runs Node.js. load() imports a part of the package. */
+/** Installs the package and returns these functions: native() runs the native program, wasm() the program in the
+ * package, and node() Node.js; load() imports a part of the package. */
 export function install() {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-npm-'));
   const installed = join(folder, 'node_modules/chronormal');
