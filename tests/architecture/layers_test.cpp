@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -347,6 +348,20 @@ TEST(Layers, private_headers_declare_internal_names) {
   for (const fs::path& file : product_files()) {
     if (!file.string().starts_with("src/") || file.extension() != ".h" || file == state_of_public_class) continue;
     for (const std::string& line : public_names(file.string(), read(kRoot / file))) ADD_FAILURE() << line;
+  }
+}
+
+// A guard that has the name of another file hides one of the two headers where both are included.
+TEST(Layers, guards_of_headers_have_the_names_of_their_files) {
+  for (const fs::path& file : product_files()) {
+    if (file.extension() != ".h" || file.string().ends_with("-inl.h")) continue;
+    const fs::path inside = file.lexically_relative(file.string().starts_with("include/") ? "include" : ".");
+    std::string guard =
+        inside.string().starts_with("src/") ? "chronormal/" + inside.string().substr(4) : inside.string();
+    if (guard.starts_with("cli/")) guard = "chronormal/" + guard;
+    for (char& letter : guard)
+      letter = letter == '/' || letter == '.' || letter == '-' ? '_' : static_cast<char>(std::toupper(letter));
+    EXPECT_NE(read(kRoot / file).find("#ifndef " + guard + "_\n"), std::string::npos) << file << ": " << guard << '_';
   }
 }
 

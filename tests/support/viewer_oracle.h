@@ -1,7 +1,7 @@
 /// Computes the normals that viewers render, in double and in integers, without the library. Plain loops evaluate the
 /// formulas in the sources of the viewers. Each viewer has its own code, under its name.
-#ifndef CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
-#define CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
+#ifndef CHRONORMAL_TESTS_SUPPORT_VIEWER_ORACLE_H_
+#define CHRONORMAL_TESTS_SUPPORT_VIEWER_ORACLE_H_
 
 #include <algorithm>
 #include <array>
@@ -268,4 +268,4 @@ using Triple = std::array<double, 3>;
 
 }  // namespace chronormal::test
 
-#endif  // CHRONORMAL_TESTS_SUPPORT_HOST_ORACLE_H_
+#endif  // CHRONORMAL_TESTS_SUPPORT_VIEWER_ORACLE_H_

@@ -2,8 +2,8 @@
 ///
 /// Viewers that play the same weights have the same positions and true normals, which are computed once. If they also
 /// store normals and deltas in the same way, they render the same normals.
-#ifndef CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
-#define CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
+#ifndef CHRONORMAL_WORKFLOW_AUDIT_VIEWER_ERRORS_H_
+#define CHRONORMAL_WORKFLOW_AUDIT_VIEWER_ERRORS_H_
 
 #include <cstddef>
 #include <optional>
@@ -63,4 +63,4 @@ class ViewerErrors {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_AUDIT_HOST_ERRORS_H_
+#endif  // CHRONORMAL_WORKFLOW_AUDIT_VIEWER_ERRORS_H_

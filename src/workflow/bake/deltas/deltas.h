@@ -4,8 +4,8 @@
 /// Shapes     V is the number of vertices in all parts of the shading. An array has the vertices of the first part,
 ///            then those of the second part, and so on.
 /// Threads    Uses all cores. The results have the same bits on any number of cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_DELTAS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_DELTAS_H_
 
 #include <cstddef>
 #include <span>
@@ -65,4 +65,4 @@ struct TargetDeltas {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_DELTAS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_DELTAS_H_

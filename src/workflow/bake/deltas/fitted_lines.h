@@ -1,6 +1,6 @@
 /// Fits the best single deltas of several targets that move the same normal. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_FITTED_LINES_H_
-#define CHRONORMAL_WORKFLOW_BAKE_EXACT_FITTED_LINES_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_FITTED_LINES_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_FITTED_LINES_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -49,4 +49,4 @@ class FittedLines {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_FITTED_LINES_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_FITTED_LINES_H_

@@ -6,8 +6,8 @@
 /// examined from the largest such bound down, so that most elements need not be examined.
 ///
 /// Threads    Uses all cores. The results have the same bits on any number of cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_PAIR_TURNS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_PAIR_TURNS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -91,4 +91,4 @@ class PairMeter {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_PAIR_TURNS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_PAIR_TURNS_H_

@@ -1,6 +1,6 @@
 /// Plans the bake of one mesh. The plan tells which pairs of targets get a correction target. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
-#define CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_PLAN_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_PLAN_H_
 
 #include <cstddef>
 #include <vector>
@@ -49,4 +49,4 @@ struct MeshPlan {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_PLAN_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_PLAN_H_

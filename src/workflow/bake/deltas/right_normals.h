@@ -5,8 +5,8 @@
 ///            direction means nothing.
 /// Poses      A pose has the weights of the mesh's own targets. Further weights may follow, and are ignored.
 /// Threads    const functions may run at the same time. Each function uses all cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_RIGHT_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_RIGHT_NORMALS_H_
 
 #include <algorithm>
 #include <cstddef>
@@ -103,4 +103,4 @@ class RightNormals {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_RIGHT_NORMALS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_RIGHT_NORMALS_H_

@@ -6,8 +6,8 @@
 /// arrays. Both parts then get one array of deltas, for the vertices 0 to 4.
 ///
 /// Threads    All functions are pure.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_SHARED_PARTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_SHARED_PARTS_H_
 
 #include <cstddef>
 #include <vector>
@@ -41,4 +41,4 @@ class SharedParts {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_EXACT_SHARED_PARTS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_SHARED_PARTS_H_

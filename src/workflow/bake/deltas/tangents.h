@@ -12,8 +12,8 @@
 ///
 /// If several targets are active, their changes of a tangent add up. Tangents are then as accurate as normals with one
 /// delta for each target.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_TANGENTS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_TANGENTS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_TANGENTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_TANGENTS_H_
 
 #include <cstddef>
 #include <span>
@@ -34,4 +34,4 @@ namespace chronormal::inline internal {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_TANGENTS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_TANGENTS_H_

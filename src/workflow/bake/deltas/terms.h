@@ -1,7 +1,7 @@
 /// Computes the terms of the normals of one mesh, for any weighting, and converts them to deltas of vertices. Private
 /// to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_TERMS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_TERMS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -145,4 +145,4 @@ class VertexTerms {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_TERMS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_TERMS_H_

@@ -8,8 +8,8 @@
 ///
 /// Vectors    base and u have length 1. base may also be (0, 0, 0), and then every u fits.
 /// Threads    All functions are pure.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_FORMS_UNIT_TARGETS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_FORMS_UNIT_TARGETS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_
 
 #include <array>
 #include <optional>
@@ -56,4 +56,4 @@ struct BaseNormal {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_FORMS_UNIT_TARGETS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_UNIT_TARGETS_H_

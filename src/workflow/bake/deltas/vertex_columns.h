@@ -1,7 +1,7 @@
 /// Stores vectors of vertices in columns. Each column belongs to a target, and has one weight in a pose. Files store
 /// vectors column by column, but the sum of a vertex needs them vertex by vertex. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -43,4 +43,4 @@ struct VertexColumns {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_VERTEX_COLUMNS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_

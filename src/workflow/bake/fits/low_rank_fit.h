@@ -4,8 +4,8 @@
 /// Shapes     Points, rows and stride are as in MissingNormals. Weights are stored in rows of `padded()` floats. The
 ///            first extras() floats of a row are weights, and the others are zero.
 /// Threads    Uses all cores. The result has the same bits on any number of cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
-#define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_FITS_LOW_RANK_FIT_H_
+#define CHRONORMAL_WORKFLOW_BAKE_FITS_LOW_RANK_FIT_H_
 
 #include <array>
 #include <cstddef>
@@ -84,4 +84,4 @@ class LowRankFit {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_LOW_RANK_FIT_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_FITS_LOW_RANK_FIT_H_

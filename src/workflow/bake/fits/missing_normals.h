@@ -8,8 +8,8 @@
 ///            rest is 0.
 /// Units      The length of the stored base normal is 1.
 /// Threads    Uses all cores. The result has the same bits on any number of cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_FITS_MISSING_NORMALS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_FITS_MISSING_NORMALS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -101,4 +101,4 @@ class MissingNormals {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_MISSING_NORMALS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_FITS_MISSING_NORMALS_H_

@@ -11,8 +11,8 @@
 /// error.
 ///
 /// Threads    Uses all cores. The result has the same bits on any number of cores.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
-#define CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_FITS_QUADRATIC_FIT_H_
+#define CHRONORMAL_WORKFLOW_BAKE_FITS_QUADRATIC_FIT_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -81,4 +81,4 @@ class QuadraticFit {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_UNDRIVEN_QUADRATIC_FIT_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_FITS_QUADRATIC_FIT_H_

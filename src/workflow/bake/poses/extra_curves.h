@@ -11,8 +11,8 @@
 ///     CUBICSPLINE              two, four or eight pieces per gap, so that parabolas are near squares of weights
 ///
 /// Threads    All functions are pure.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
-#define CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_EXTRA_CURVES_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_EXTRA_CURVES_H_
 
 #include <array>
 #include <cstddef>
@@ -115,4 +115,4 @@ struct ExtraDrivers {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_LOW_RANK_EXTRA_CURVES_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_EXTRA_CURVES_H_

@@ -3,8 +3,8 @@
 ///
 /// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. If a skin
 /// does only this to all vertices, it is left out.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_SKINS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_SKINS_H_
 
 #include <cstdint>
 #include <optional>
@@ -29,4 +29,4 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_MESH_SKINS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_SKINS_H_

@@ -1,6 +1,6 @@
 /// The weights that a file gives to one mesh. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_WEIGHTS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_WEIGHTS_H_
 
 #include <cstddef>
 #include <optional>
@@ -54,4 +54,4 @@ struct MeshWeights {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_MESH_WEIGHTS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_MESH_WEIGHTS_H_

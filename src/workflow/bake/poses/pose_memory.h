@@ -1,7 +1,7 @@
 /// Stores vectors that were computed for poses of a mesh. Such vectors are needed many times, because each viewer and
 /// each candidate is judged in the same poses. Private to workflow.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
-#define CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_POSE_MEMORY_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_POSE_MEMORY_H_
 
 #include <cstddef>
 #include <map>
@@ -47,4 +47,4 @@ class PoseMemory {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_POSE_MEMORY_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_POSE_MEMORY_H_

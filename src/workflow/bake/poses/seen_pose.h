@@ -1,8 +1,8 @@
 /// A pose as a viewer renders it: weights, and the skin that transforms the blended normals. Private to workflow.
 ///
 /// Threads    const functions may run at once.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_JUDGE_SEEN_POSE_H_
-#define CHRONORMAL_WORKFLOW_BAKE_JUDGE_SEEN_POSE_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_SEEN_POSE_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_SEEN_POSE_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -65,4 +65,4 @@ class SkinsInPoses {
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_JUDGE_SEEN_POSE_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_SEEN_POSE_H_

@@ -6,8 +6,8 @@
 /// the product of two of its weights has degree 6. Keys are then inserted until cubics between the keys are close
 /// enough to the product. New keys do not change the other weights, because a cubic can be split exactly, by its value
 /// and slope at the new key.
-#ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
-#define CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
+#ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_TRACKS_H_
+#define CHRONORMAL_WORKFLOW_BAKE_POSES_TRACKS_H_
 
 #include <cstddef>
 #include <cstdint>
@@ -79,4 +79,4 @@ using ExtrasAt =
 
 }  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_WORKFLOW_BAKE_WRITE_TRACKS_H_
+#endif  // CHRONORMAL_WORKFLOW_BAKE_POSES_TRACKS_H_
