@@ -3,8 +3,10 @@
 CHRONORMAL_PROGRAM names the program; without it, tests that need it are skipped.
 """
 
+import itertools
 import json
 import os
+import struct
 import subprocess
 import tempfile
 import unittest
@@ -13,13 +15,36 @@ from pathlib import Path
 import numpy as np
 
 import chronormal as cn
-from meshes import angle, vertex_normals
+from meshes import angle, sheet, vertex_normals
 
 PROGRAM = os.environ.get("CHRONORMAL_PROGRAM")
 
 
 def run(*arguments):
     return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, check=True).stdout
+
+
+def write_walk(folder, random):
+    """Write three keyframes of a sheet whose triangles have corners of their own, at common points."""
+    folder.mkdir()
+    p0, _, faces = sheet(int(random.integers(1000)))
+    for k in range(3):
+        points = (p0 + 0.2 * random.standard_normal(p0.shape))[faces].reshape(-1, 3).tolist()
+        lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in points]
+        lines += [f"f {f + 1} {f + 2} {f + 3}" for f in range(0, len(points), 3)]
+        Path(folder, f"walk_{k}.obj").write_text("\n".join(lines) + "\n", encoding="ascii")
+
+
+def scaled(glb, scale):
+    """Return a GLB whose node 0 has a scale."""
+    size = struct.unpack_from("<I", glb, 12)[0]
+    document = json.loads(glb[20:20 + size])
+    document["nodes"][0]["scale"] = scale
+    document["animations"][0]["name"] = "walk"
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = glb[20 + size:]
+    return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A) + text + rest
 
 
 class ReadTest(unittest.TestCase):
@@ -145,6 +170,56 @@ class ProgramTest(unittest.TestCase):
             weights = np.linspace(-0.5, 1, 12)
             run("sample", "--sample", "bumps", "--weights=" + ",".join(map(repr, weights.tolist())), "-o", file)
             np.testing.assert_array_equal(cn.read(sample="bumps").unit_normals(weights=[weights]), np.load(file))
+
+    def assert_errors(self, table, file):
+        with np.load(file) as written:
+            np.testing.assert_array_equal(table.errors, written[f"{table.name}_errors" if table.name else "errors"])
+
+    def test_options_of_a_sequence_reach_every_function(self):
+        seed = 20261130
+        print("  from seed", seed)
+        random = np.random.default_rng(seed)
+        for loop, weld in itertools.product((False, True), repeat=2):
+            with self.subTest(loop=loop, weld=weld), tempfile.TemporaryDirectory() as folder:
+                walk, errors, glb = Path(folder, "walk"), Path(folder, "e.npz"), Path(folder, "w.glb")
+                write_walk(walk, random)
+                reading = {"fps": int(random.integers(2, 31)), "loop": loop}
+                motion = dict(reading, path=str(random.choice(["linear", "catmull-rom"])))
+                given = [walk, "--fps", reading["fps"], *["--loop"] * loop]
+                moving = [*given, "--path", motion["path"]]
+                welding = ["--no-weld"] * (not weld)
+                self.assertEqual(cn.inspect(walk, **reading), json.loads(run("inspect", *given, "--json")))
+                self.assertEqual(cn.audit(walk, weld=weld, **motion), json.loads(run("audit", *moving, *welding, "--json")))
+                schemes = ["--schemes", "linear", "--elements", "vertices", *welding]
+                self.assertEqual(cn.compare(walk, schemes=["linear"], elements="vertices", weld=weld, **motion),
+                                 json.loads(run("compare", *moving, *schemes, "--no-times", "--json")))
+                run("bake", *moving, "-o", glb)
+                self.assertEqual(cn.bake(walk, **motion)[0], glb.read_bytes())
+                run("audit", *moving, *welding, "--errors", errors)
+                self.assert_errors(cn.errors(walk, weld=weld, **motion)[0], errors)
+                run("compare", *moving, *schemes, "--errors", errors, "--force")
+                self.assert_errors(cn.errors(walk, scheme="linear", weld=weld, **motion)[0], errors)
+
+    def test_options_of_a_gltf_file_reach_every_function(self):
+        seed = 20261131
+        print("  from seed", seed)
+        random = np.random.default_rng(seed)
+        with tempfile.TemporaryDirectory() as folder:
+            write_walk(Path(folder, "walk"), random)
+            file, errors = Path(folder, "walk.glb"), Path(folder, "e.npz")
+            file.write_bytes(scaled(cn.bake(Path(folder, "walk"))[0], random.uniform(0.5, 3, 3).tolist()))
+            for animation, world in itertools.product((None, "walk"), (False, True)):
+                with self.subTest(animation=animation, world=world):
+                    named = [] if animation is None else ["--animation", animation]
+                    placed = ["--world"] * world
+                    self.assertEqual(cn.inspect(file, animation=animation, world=world),
+                                     json.loads(run("inspect", file, *named, *placed, "--json")))
+                    self.assertEqual(cn.compare(file, schemes=["linear"], animation=animation, world=world),
+                                     json.loads(run("compare", file, *named, *placed, "--schemes", "linear", "--no-times",
+                                                    "--json")))
+                    self.assertEqual(cn.audit(file, animation=animation), json.loads(run("audit", file, *named, "--json")))
+                    run("audit", file, *named, "--errors", errors, "--force")
+                    self.assert_errors(cn.errors(file, animation=animation)[0], errors)
 
     def test_errors_are_those_that_the_program_writes(self):
         with tempfile.TemporaryDirectory() as folder:
