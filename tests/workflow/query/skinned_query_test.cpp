@@ -341,6 +341,42 @@ TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
   }
 }
 
+// The keys are equal, so a joint swings out and back between them. Where its path bends most, the edge to the tip bends
+// nearly as much as the bound of the rotation says. A bound that is four times too small would give half of the pieces,
+// and four times the error.
+TEST(SkinnedQuery, a_cubic_rotation_that_swings_between_equal_keys_gets_the_pieces_that_it_needs) {
+  constexpr std::uint64_t kSeed = 20261128;
+  std::cout << "  from seed " << kSeed << '\n';
+  fixtures::Random random(kSeed);
+  for (int i = 0; i < 16; ++i) {
+    Rig rig = lever(1, {0, 1, 0});
+    // The key is a rotation about x, and need not be a unit quaternion. The joint swings about an axis near x.
+    const double size = random.uniform(0.5, 2), half = random.uniform(-0.5, 0.5);
+    const double start = random.uniform(0, 2), duration = random.uniform(0.2, 3);
+    const double sine = size * std::sin(half), cosine = size * std::cos(half);
+    const double x = random.uniform(0.02, 0.1) / duration;
+    const double y = random.uniform(-0.2, 0.2) * x, z = random.uniform(-0.2, 0.2) * x;
+    const std::array<double, 4> key = {sine, 0, 0, cosine};
+    const std::array<double, 4> tangent = {cosine * x, cosine * y - sine * z, cosine * z + sine * y, -sine * x};
+    // The path bends most at its start, at its end, or evenly.
+    const double leaving = i % 3 == 1 ? random.uniform(0, 0.5) : 1, arriving = i % 3 == 0 ? random.uniform(0, 0.5) : 1;
+    Channel swing{2, "rotation", "CUBICSPLINE", {}, {}};
+    for (const double time : {start, start + duration}) swing.times.push_back(static_cast<float>(time));
+    for (int k = 0; k < 2; ++k) {
+      for (const double c : tangent) swing.values.push_back(static_cast<float>(-arriving * c));
+      for (const double c : key) swing.values.push_back(static_cast<float>(c));
+      for (const double c : tangent) swing.values.push_back(static_cast<float>(leaving * c));
+    }
+    rig.channels = {swing};
+    const Opened found = opened(rig);
+    EXPECT_EQ(found.cut.segments, 1) << i;
+    EXPECT_EQ(found.cut.beyond, 0) << i;
+    const Real worst = worst_angle(rig, found.motion);
+    EXPECT_LE(worst, kTolerance) << i << ", with " << found.cut.pieces << " pieces";
+    EXPECT_GE(worst, 0.3L * kTolerance) << i << ", with " << found.cut.pieces << " pieces";
+  }
+}
+
 TEST(SkinnedQuery, normals_of_pieces_are_within_the_tolerance_of_the_curves) {
   constexpr std::uint64_t kSeed = 20261127;
   std::cout << "  from seed " << kSeed << '\n';
