@@ -1,6 +1,7 @@
 // Compares queries about the normals of vertices and corners with integers of any size, and with sums over many times.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -79,7 +80,7 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
   return {};
 }
 
-// A vertex or a corner, together with the faces whose normals add up to its normal. The faces are found from
+// A vertex, a corner or a face, together with the faces whose normals add up to its normal. The faces are found from
 // coordinates alone. For a vertex, they are all faces with a vertex at the same point in all keyframes. For a corner,
 // they are only faces at the same vertex, since fans of corners that touch in a point are separate.
 struct Output {
@@ -101,7 +102,9 @@ std::vector<Output> outputs_of(const Motion& motion, ElementKind kind) {
         if (kind == ElementKind::kVertices ? is_one_point(corner, vertex) : corner == vertex) output.faces.push_back(f);
     outputs.push_back(output);
   };
-  if (kind == ElementKind::kVertices)
+  if (kind == ElementKind::kFaces)
+    for (std::uint32_t f = 0; f < motion.topology.face_count(); ++f) outputs.push_back({0, {f}});
+  else if (kind == ElementKind::kVertices)
     for (std::uint32_t v = 0; v < motion.topology.vertex_count(); ++v) add(v);
   else
     for (const std::uint32_t v : motion.topology.corners()) add(v);
@@ -281,6 +284,93 @@ TEST(QueryVertices, means_over_a_shutter_are_those_of_dense_sums) {
   }
   std::cout << "  " << held << " means of unit normals\n";
   EXPECT_GT(held, 60U);
+}
+
+using Direction = std::array<long double, 3>;
+
+Direction unit_of(const Direction& n) {
+  const long double length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+  return {n[0] / length, n[1] / length, n[2] / length};
+}
+long double degrees_between(const Direction& a, const Direction& b) {
+  const Direction u = unit_of(a), v = unit_of(b);
+  long double sum = 0, difference = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum += (u[c] + v[c]) * (u[c] + v[c]);
+    difference += (u[c] - v[c]) * (u[c] - v[c]);
+  }
+  return 2 * std::atan2(std::sqrt(difference), std::sqrt(sum)) * 57.295779513082320877L;
+}
+
+// A shutter that is open from a time in the first segment to a time in the second. Tests the bisector of the normals at
+// the ends, and the cones, for each part and for the whole time.
+TEST(QueryVertices, ends_and_cones_of_a_shutter_are_those_of_the_normals_that_it_sees) {
+  std::cout << "  from seed " << kSeed + 3 << '\n';
+  fixtures::Random random(kSeed + 3);
+  std::size_t judged = 0;
+  for (int i = 0; i < 18; ++i) {
+    const ElementKind kind = i % 3 == 0   ? ElementKind::kFaces
+                             : i % 3 == 1 ? ElementKind::kVertices
+                                          : ElementKind::kCorners;
+    const Motion motion = small_sheet(random, i % 2 == 0 ? 3 : 1000);
+    const double first = static_cast<double>(random.below(4)) / 4,
+                 last = 1.25 + static_cast<double>(random.below(4)) / 4;
+    QuerySpan span;
+    span.from = first;
+    span.to = last;
+    const QueryAnswer answer = query_shutter(motion, span, {}, options_of(kind)).value();
+    const std::vector<Output> outputs = outputs_of(motion, kind);
+    ASSERT_EQ(answer.tables.size(), 2U);
+    // Tests the rows after the first `skipped` ones, which are the outputs in their order.
+    const auto test_rows = [&](const QueryTable& table, std::size_t skipped, double from, double to) {
+      const auto mean = numbers(table, "mean"), mean_unit = numbers(table, "mean_unit"), ends = numbers(table, "ends"),
+                 off = numbers(table, "ends_off"), half_angle = numbers(table, "half_angle");
+      ASSERT_GE(off.size(), skipped + outputs.size());
+      for (std::size_t o = 0; o < outputs.size(); ++o) {
+        if (outputs[o].faces.empty()) continue;
+        const std::size_t row = skipped + o;
+        const auto at = [&](std::size_t k, long double time) {
+          return normal_at(motion.segment(k), outputs[o], time - static_cast<long double>(k));
+        };
+        // Simpson's rule is exact in each segment.
+        Direction sum{};
+        long double longest = 0;
+        std::vector<Direction> seen;
+        for (const std::size_t k : {0U, 1U}) {
+          const long double start = std::max<long double>(from, k), end = std::min<long double>(to, k + 1.0L);
+          if (start >= end) continue;
+          for (const long double share : {0.0L, 0.25L, 0.5L, 0.75L, 1.0L}) {
+            seen.push_back(at(k, start + share * (end - start)));
+            const long double weight = share == 0.5L ? 4 : share == 0 || share == 1 ? 1 : 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+              sum[c] += weight / 6 * (end - start) / (to - from) * seen.back()[c];
+              longest = std::max(longest, std::fabs(seen.back()[c]));
+            }
+          }
+        }
+        for (std::size_t c = 0; c < 3; ++c)
+          EXPECT_NEAR(mean[3 * row + c], double(sum[c]), 1e-12 * double(longest)) << "motion " << i << ", row " << row;
+        const auto is_zero = [](const Direction& n) { return n == Direction{}; };
+        if (std::any_of(seen.begin(), seen.end(), is_zero)) continue;
+        for (const Direction& n : seen)
+          EXPECT_LE(double(degrees_between(n, seen[0])), 2 * half_angle[row] + 1e-9)
+              << "motion " << i << ", row " << row;
+        if (degrees_between(seen.front(), seen.back()) > 175) continue;  // the bisector is not certain
+        ++judged;
+        const Direction a = unit_of(seen.front()), b = unit_of(seen.back());
+        const Direction between = unit_of({a[0] + b[0], a[1] + b[1], a[2] + b[2]});
+        for (std::size_t c = 0; c < 3; ++c)
+          EXPECT_NEAR(ends[3 * row + c], double(between[c]), 1e-9) << "motion " << i << ", row " << row;
+        const Direction average = {mean_unit[3 * row], mean_unit[3 * row + 1], mean_unit[3 * row + 2]};
+        EXPECT_NEAR(off[row], double(degrees_between(average, between)), 1e-6) << "motion " << i << ", row " << row;
+      }
+    };
+    test_rows(answer.tables[0], 0, first, 1);
+    test_rows(answer.tables[0], outputs.size(), 1, last);
+    test_rows(answer.tables[1], 0, first, last);
+  }
+  std::cout << "  " << judged << " bisectors\n";
+  EXPECT_GT(judged, 500U);
 }
 
 TEST(QueryVertices, silhouettes_are_of_faces_and_a_vertex_without_a_face_has_no_row) {
