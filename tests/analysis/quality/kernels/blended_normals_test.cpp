@@ -1,11 +1,14 @@
 // Checks the kernels that add up blended normals in many poses, and that measure the errors of these normals. On every
-// instruction set, they must give the same bits as plain loops.
+// instruction set, they must give the same bits as plain loops. The largest openness must be that of angles in long
+// double.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <iostream>
 #include <limits>
 #include <vector>
 
@@ -89,6 +92,51 @@ TEST(CompareNormals, has_the_bits_of_one_comparison_after_the_other_on_every_ins
         most = std::fmax(most, dot(expected, expected));
       }
       EXPECT_EQ(largest, std::sqrt(most)) << target_name(target) << ", " << count;
+    }
+  }
+}
+
+// Returns the openness of the angle between two vectors, from the lengths of the sum and the difference of their
+// directions.
+double openness_of(const Vec3f& a, const Vec3f& b) {
+  using Real = long double;
+  const std::array<Real, 3> u = {a.x, a.y, a.z}, v = {b.x, b.y, b.z};
+  const Real of_u = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]),
+             of_v = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  if (of_u == 0 || of_v == 0) return 0;
+  Real sum = 0, difference = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    sum += std::pow(u[c] / of_u + v[c] / of_v, Real(2));
+    difference += std::pow(u[c] / of_u - v[c] / of_v, Real(2));
+  }
+  const Real sine = std::sin(2 * std::atan2(std::sqrt(difference), std::sqrt(sum)));
+  return static_cast<double>(difference <= sum ? sine * sine : 2 - sine * sine);
+}
+
+TEST(LargestOpenness, is_that_of_the_widest_angle_on_every_instruction_set) {
+  constexpr std::uint64_t kSeed = 13;
+  std::cout << "  from seed " << kSeed << '\n';
+  fixtures::Random random(kSeed);
+  for (int i = 0; i < 120; ++i) {
+    const std::size_t count = kPosePadding * (1 + random.below(4));
+    const double widest = random.uniform(0, 180);
+    std::vector<float> a(3 * count), b(3 * count);
+    double expected = 0;
+    for (std::size_t p = 0; p < count; ++p) {
+      const Vec3d u = unit(to_double(any_vector(random))), across = unit(cross(u, to_double(any_vector(random))));
+      const double angle = random.uniform(0, widest) / kDegreesPerRadian;
+      const double of_u = random.below(20) == 0 ? 0 : std::pow(10.0, random.uniform(-3, 3));
+      const Vec3f from = to_float(of_u * u),
+                  to = to_float(random.uniform(0.1, 10) * (std::cos(angle) * u + std::sin(angle) * across));
+      a[p] = from.x, a[count + p] = from.y, a[2 * count + p] = from.z;
+      b[p] = to.x, b[count + p] = to.y, b[2 * count + p] = to.z;
+      expected = std::fmax(expected, openness_of(from, to));
+    }
+    for (const std::int64_t target : supported_targets()) {
+      const ScopedTarget scoped(target);
+      const float largest =
+          largest_openness({a.data(), &a[count], &a[2 * count]}, {b.data(), &b[count], &b[2 * count]}, count);
+      EXPECT_NEAR(largest, expected, 2e-6) << target_name(target) << ", " << i;
     }
   }
 }
