@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <optional>
 #include <random>
 #include <string>
@@ -439,6 +440,92 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
       if (truth.shading.element_of_vertex[v] == AuthorTruth::kNone) continue;
       EXPECT_LT(degrees_between(truth.at(v, mesh, weights), right[v]), 0.02) << draw << ", " << v;
     }
+  }
+}
+
+// At corners of rectangles, weighting by angle is uniform, so a strip of rectangles follows both. On the hills beside
+// it, normals follow the author's weighting less exactly than on the strip, and the others are within a degree.
+TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_near_on_a_part) {
+  std::cout << "  from seed " << kSeed + 30 << '\n';
+  std::mt19937 random(kSeed + 30);
+  std::uniform_real_distribution<double> width(0.3, 1.5), slope(-0.6, 0.6);
+  for (int draw = 0; draw < 12; ++draw) {
+    const std::string name = draw % 2 == 0 ? "uniform" : "angle";
+    Authored mesh = quads(random);
+    for (std::size_t i = 2; i < mesh.file.positions.size(); i += 3) mesh.file.positions[i] *= 0.1F;
+    for (auto& target : mesh.file.targets)
+      for (float& delta : target.positions) delta *= 0.1F;
+    // The strip is bent across its length, in another way at each key.
+    constexpr std::size_t kColumns = 9, kRows = 9;
+    std::array<std::vector<std::array<double, 2>>, 3> outlines;
+    for (auto& outline : outlines) {
+      outline = {{0, 50}};
+      while (outline.size() < kColumns) {
+        const double length = width(random), angle = slope(random);
+        outline.push_back({outline.back()[0] + length * std::cos(angle), outline.back()[1] + length * std::sin(angle)});
+      }
+    }
+    const std::size_t first = mesh.file.vertices();
+    for (std::size_t row = 0; row < kRows; ++row) {
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        const auto point = [&](std::size_t k) {
+          return std::array<double, 3>{outlines[k][column][0], static_cast<double>(row), outlines[k][column][1]};
+        };
+        for (std::size_t c = 0; c < 3; ++c) {
+          mesh.file.positions.push_back(static_cast<float>(point(0)[c]));
+          for (std::size_t k = 0; k < 2; ++k)
+            mesh.file.targets[k].positions.push_back(static_cast<float>(point(k + 1)[c] - point(0)[c]));
+        }
+        if (row + 1 == kRows || column + 1 == kColumns) continue;
+        const std::size_t v = first + row * kColumns + column;
+        add_fan(mesh, {v, v + 1, v + kColumns + 1, v + kColumns});
+      }
+    }
+    std::array<std::vector<Vector>, 3> stored = {mesh.sums(name, {0, 0}), mesh.sums(name, {1, 0}),
+                                                 mesh.sums(name, {0, 1})};
+    for (std::vector<Vector>& normals : stored)
+      for (std::size_t v = 0; v < first; ++v) normals[v] = bent(normals[v], random, 1.5e-5);
+    mesh.store(stored[0], {stored[1], stored[2]});
+    const Truth truth(mesh.file);
+    EXPECT_TRUE(truth.truth->rule().is_followed) << draw;
+    EXPECT_EQ(truth.truth->rule().weighting, name == "angle" ? Weighting::kAngle : Weighting::kUniform) << draw;
+  }
+}
+
+// A face of the front has vertices of its own, so normals may be sums over whole points. The front and the back add up
+// to nothing.
+TEST(AuthorTruth, the_rule_of_a_sheet_with_two_sides_is_found_on_each_side) {
+  std::cout << "  from seed " << kSeed + 31 << '\n';
+  std::mt19937 random(kSeed + 31);
+  for (int draw = 0; draw < 6; ++draw) {
+    const std::string name = draw % 2 == 0 ? "uniform" : "angle";
+    Authored mesh = quads(random);
+    const std::size_t points = mesh.file.vertices(), triangles = mesh.file.corners.size() / 3;
+    std::array<std::vector<Vector>, 3> stored = {mesh.sums(name, {0, 0}), mesh.sums(name, {1, 0}),
+                                                 mesh.sums(name, {0, 1})};
+    const auto copy = [&](std::size_t v, Real side) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        mesh.file.positions.push_back(mesh.file.positions[3 * v + c]);
+        for (auto& target : mesh.file.targets) target.positions.push_back(target.positions[3 * v + c]);
+      }
+      for (std::vector<Vector>& normals : stored) normals.push_back(reference::scaled(side, normals[v]));
+    };
+    for (std::size_t v = 0; v < points; ++v) copy(v, -1);
+    for (std::size_t t = 0; t < triangles; ++t)
+      for (const std::size_t c : {0U, 2U, 1U})
+        mesh.file.corners.push_back(mesh.file.corners[3 * t + c] + static_cast<std::uint32_t>(points));
+    const std::size_t own = random() % mesh.polygons.size();
+    for (const std::size_t corner : mesh.polygons[own]) {
+      const auto last = static_cast<std::uint32_t>(mesh.file.vertices());
+      copy(corner, 1);
+      for (std::vector<Vector>& normals : stored) normals.back() = bent(normals.back(), random, 0.5);
+      for (std::size_t c = 0; c < 6; ++c)
+        if (mesh.file.corners[6 * own + c] == corner) mesh.file.corners[6 * own + c] = last;
+    }
+    mesh.store(stored[0], {stored[1], stored[2]});
+    const Truth truth(mesh.file);
+    EXPECT_TRUE(truth.truth->rule().is_followed) << draw;
+    EXPECT_EQ(truth.truth->rule().weighting, name == "angle" ? Weighting::kAngle : Weighting::kUniform) << draw;
   }
 }
 
