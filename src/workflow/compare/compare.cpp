@@ -335,6 +335,62 @@ std::vector<Tally> compare_block(const Segment& segment, const Elements& all, In
   return tallies;
 }
 
+// Checks that the options can be used together.
+Status check(const CompareOptions& options) {
+  const auto misuse = [](const char* why) { return Status(Error{ErrorCode::kUsage, "", why}); };
+  const bool certified = options.certify || options.tolerance, by_area = options.weighting == Weighting::kArea;
+  if (options.samples < 2) return misuse("the number of samples must be at least 2");
+  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
+    return misuse("the tolerance must be an angle in degrees, at least 0");
+  if (certified && options.access == Access::kSequential)
+    return misuse("bounds can only be computed for random access, not for sequential access");
+  if (!by_area && options.elements.kind == ElementKind::kFaces)
+    return misuse("a weighting has no meaning for normals of faces; choose vertices or corners");
+  if (!by_area && certified) return misuse("bounds can only be computed for normals weighted by area");
+  return Success{};
+}
+
+// Makes a row without results for each scheme that the options name.
+Result<std::vector<SchemeComparison>> rows_of(const CompareOptions& options) {
+  const ElementKind kind = options.elements.kind;
+  std::vector<SchemeComparison> rows;
+  for (const std::string& name : options.schemes.empty() ? default_schemes(kind) : options.schemes) {
+    const auto scheme = scheme_for(name, kind);
+    if (!scheme) return scheme.error();
+    const auto sequential = scheme.value()->sequential_operations();
+    SchemeComparison& row = rows.emplace_back();
+    row.scheme = name;
+    row.sequential = options.access == Access::kSequential && sequential.has_value();
+    row.operations = row.sequential ? *sequential : scheme.value()->operations();
+  }
+  return rows;
+}
+
+// Makes a comparison that says what was compared, and has no rows yet. `elements` is the number of compared elements.
+Comparison without_results(const Motion& motion, const CompareOptions& options, std::size_t elements) {
+  Comparison comparison{options.elements.kind,
+                        motion.topology.vertex_count(),
+                        motion.topology.face_count(),
+                        elements,
+                        motion.segments.size(),
+                        options.samples,
+                        {},
+                        motion.kind};
+  comparison.weighting = options.weighting;
+  comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
+  comparison.tolerance = options.tolerance;
+  return comparison;
+}
+
+// Makes the elements whose normals are compared.
+Result<Elements> elements_of(MotionStream& stream, const CompareOptions& options) {
+  const Topology& topology = stream.motion().topology;
+  if (options.elements.kind == ElementKind::kFaces) return Elements(topology);
+  Result<NormalGroups> groups = make_groups(stream, options.elements);
+  if (!groups) return groups.error();
+  return Elements(topology, std::move(groups).value(), options.weighting, options.samples);
+}
+
 }  // namespace
 
 std::vector<std::string> default_schemes(ElementKind kind) {
@@ -365,53 +421,30 @@ Result<Comparison> compare(MotionStream& stream, const CompareOptions& options) 
 
 Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions& options, CompareRun& run) {
   const Motion& motion = stream.motion();
-  if (options.samples < 2) return Error{ErrorCode::kUsage, "", "the number of samples must be at least 2"};
+  if (const Status status = check(options); !status) return status.error();
   const ElementKind kind = options.elements.kind;
   const bool certified = options.certify || options.tolerance;
-  if (options.tolerance && !(*options.tolerance >= 0 && std::isfinite(*options.tolerance)))
-    return Error{ErrorCode::kUsage, "", "the tolerance must be an angle in degrees, at least 0"};
-  if (certified && options.access == Access::kSequential)
-    return Error{ErrorCode::kUsage, "", "bounds can only be computed for random access, not for sequential access"};
-
-  const bool by_area = options.weighting == Weighting::kArea;
-  if (!by_area && kind == ElementKind::kFaces)
-    return Error{ErrorCode::kUsage, "", "a weighting has no meaning for normals of faces; choose vertices or corners"};
-  if (!by_area && certified)
-    return Error{ErrorCode::kUsage, "", "bounds can only be computed for normals weighted by area"};
-
+  Result<std::vector<SchemeComparison>> made = rows_of(options);
+  if (!made) return made.error();
+  std::vector<SchemeComparison> rows = std::move(made).value();
   // Results show the errors of all schemes relative to those of `linear`, so `linear` is computed even if no row shows
   // it.
-  std::vector<std::string> names = options.schemes.empty() ? default_schemes(kind) : options.schemes;
-  std::vector<SchemeComparison> rows;
-  for (const std::string& name : names) {
-    const auto scheme = scheme_for(name, kind);
-    if (!scheme) return scheme.error();
-    const auto sequential = scheme.value()->sequential_operations();
-    SchemeComparison row;
-    row.scheme = name;
-    row.sequential = options.access == Access::kSequential && sequential.has_value();
-    row.operations = row.sequential ? *sequential : scheme.value()->operations();
-    rows.push_back(std::move(row));
-  }
+  std::vector<std::string> names;
+  for (const SchemeComparison& row : rows) names.push_back(row.scheme);
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
 
   KeyframeChecksums seen(stream);
   if (const Status status = run.shard ? seen.begin() : Success{}; !status) return status.error();
-  std::optional<Elements> all;
-  if (kind == ElementKind::kFaces) {
-    all.emplace(motion.topology);
-  } else {
-    Result<NormalGroups> groups = make_groups(stream, options.elements);
-    if (!groups) return groups.error();
-    all.emplace(motion.topology, std::move(groups).value(), options.weighting, options.samples);
-  }
+  Result<Elements> elements = elements_of(stream, options);
+  if (!elements) return elements.error();
+  Elements& all = elements.value();
   // The errors of every row, for all elements at all samples.
   std::vector<std::vector<float>> each;
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;
     ErrorTable room{names[0], kind, motion.topology, {}};
     if (const Status status = reserve_rows(room, samples * rows.size(), run.expansion); !status) return status.error();
-    each.assign(rows.size(), std::vector<float>(samples * all->count()));
+    each.assign(rows.size(), std::vector<float>(samples * all.count()));
   }
   if (run.is_divided() && (options.keep_errors || options.keep_samples))
     return Error{ErrorCode::kUsage, "", "a run with --shard or --resume cannot keep the error of every sample"};
@@ -422,7 +455,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   const auto add_segment = [&](const ComparedSegment& found) {
     for (std::size_t s = 0; s < names.size(); ++s) add(totals[s], found.schemes[s]);
   };
-  const std::size_t blocks = block_count(all->count(), kBlockSize), at_once = kBlocksPerWaveAndThread * thread_count();
+  const std::size_t blocks = block_count(all.count(), kBlockSize), at_once = kBlocksPerWaveAndThread * thread_count();
   const Status begun = run.begin(
       motion.segments.size(), blocks, "comparison",
       [&](const ComparedSegment& known) { return known.schemes.size() == names.size(); }, add_segment);
@@ -441,8 +474,8 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
     ComparedSegment done{segment, {}};
     for (std::size_t s = 0; s < names.size(); ++s) {
       Tally& found = of_segment[s];
-      found.quality.max_at.element = all->first_output(found.quality.max_at.element);
-      found.certified.element = all->first_output(found.certified.element);
+      found.quality.max_at.element = all.first_output(found.quality.max_at.element);
+      found.certified.element = all.first_output(found.certified.element);
       times[s].prepare_ns.push_back(static_cast<float>(median(std::move(found.prepare_ns))));
       times[s].evaluate_ns.push_back(static_cast<float>(median(std::move(found.evaluate_ns))));
       done.schemes.push_back(found);
@@ -452,7 +485,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   };
   const Status compared = run.over(
       stream, segment_keys(motion), run.rest(), std::max<std::size_t>(at_once / blocks, 1), [&](IndexRange segments) {
-        all->enter(motion, segments.first, segments.end() - 1);
+        all.enter(motion, segments.first, segments.end() - 1);
         // Several small segments are computed together. A large segment is computed in several waves.
         const std::size_t wanted = segments.count * blocks;
         for (std::size_t first = 0; first < wanted; first += at_once) {
@@ -460,8 +493,8 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
           parallel_for(count, [&](std::size_t i) {
             const Segment segment = motion.segment(segments.first + (first + i) / blocks);
             const std::size_t first_element = (first + i) % blocks * kBlockSize;
-            const IndexRange range{first_element, std::min(kBlockSize, all->count() - first_element)};
-            wave[i] = compare_block(segment, *all, range, names, options, each);
+            const IndexRange range{first_element, std::min(kBlockSize, all.count() - first_element)};
+            wave[i] = compare_block(segment, all, range, names, options, each);
           });
           for (std::size_t i = 0; i < count; ++i) {
             const std::size_t segment = segments.first + (first + i) / blocks;
@@ -475,30 +508,20 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
       });
   if (!compared) return compared.error();
 
-  Comparison comparison{kind,
-                        motion.topology.vertex_count(),
-                        motion.topology.face_count(),
-                        all->count(),
-                        motion.segments.size(),
-                        options.samples,
-                        {},
-                        motion.kind};
-  comparison.weighting = options.weighting;
-  comparison.span = {motion.keyframes.front().time, motion.keyframes.back().time};
+  Comparison comparison = without_results(motion, options, all.count());
   comparison.schemes = std::move(rows);
-  comparison.tolerance = options.tolerance;
   for (std::size_t s = 0; s < comparison.schemes.size(); ++s) {
     SchemeComparison& row = comparison.schemes[s];
     row.prepare_ns = median(times[s].prepare_ns);
     row.evaluate_ns = median(times[s].evaluate_ns);
     if (s >= each.size()) continue;
     if (const Status status = stream.hold(0, 0); !status) return status.error();
-    comparison.errors.push_back(table_of(motion, *all, options, each.size() > 1 ? row.scheme : "", each[s]));
+    comparison.errors.push_back(table_of(motion, all, options, each.size() > 1 ? row.scheme : "", each[s]));
     each[s] = {};
   }
   if (run.shard) {
     NumberChecksum sharing;
-    sharing.add(all->element_of_output());
+    sharing.add(all.element_of_output());
     run.checksums["the options"] = checksum_of_options(options, names);
     run.checksums["the hard edges"] = sharing.value();
     const Status status = seen.finish(keyframes_of_shard(motion, *run.shard), run.checksums);
