@@ -358,7 +358,6 @@ TEST(Layers, guards_of_headers_have_the_names_of_their_files) {
     const fs::path inside = file.lexically_relative(file.string().starts_with("include/") ? "include" : ".");
     std::string guard =
         inside.string().starts_with("src/") ? "chronormal/" + inside.string().substr(4) : inside.string();
-    if (guard.starts_with("cli/")) guard = "chronormal/" + guard;
     for (char& letter : guard)
       letter = letter == '/' || letter == '.' || letter == '-' ? '_' : static_cast<char>(std::toupper(letter));
     EXPECT_NE(read(kRoot / file).find("#ifndef " + guard + "_\n"), std::string::npos) << file << ": " << guard << '_';
