@@ -47,7 +47,8 @@ def writer() -> ModuleType | None:
 
 
 def _put_back() -> None:
-    """Puts the exporter's own function back, unless another add-on has replaced it since."""
+    """Puts the exporter's own function that writes files back, unless another add-on has replaced the function
+    since."""
     global _replaced
     if _replaced is None:
         return

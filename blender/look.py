@@ -55,7 +55,7 @@ class Found:
 
 
 class Judge:
-    """Compares the normals of a file with those of Blender."""
+    """Compares the normals that a viewer would render from an exported file with the normals that Blender shows."""
 
     def __init__(self, subject: truth.Subject, is_baked: bool, frames: list[int], values: numpy.ndarray) -> None:
         self.subject, self.frames = subject, frames
@@ -180,7 +180,7 @@ def _repaint(state: "State", context: bpy.types.Context) -> None:
 
 
 def _keep(_state: "State", _colour: object) -> None:
-    """Ignores changes of a colour of the scale. A property without a setter would be greyed out in Blender."""
+    """A setter that ignores changes of a colour of the scale. Without a setter, Blender would grey the colour out."""
 
 
 class State(bpy.types.PropertyGroup):

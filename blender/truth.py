@@ -166,7 +166,7 @@ class Subject:
             weights[n - 1:n] = 1  # the first row is the base, with all weights 0
             here, there = self.normals(weights), plain.normals_at(plain.weights(weights))
             apart += ((here[corner] - there[vertex]) ** 2).sum(axis=1)
-        # After sorting, the nearest vertex of each corner comes first.
+        # Sorts the pairs by corner and then by distance, so that the nearest vertex of each corner comes first.
         best = numpy.lexsort((apart, corner))
         return vertex[best[first[:-1]]]
 
@@ -182,6 +182,7 @@ def _as_gltf(vectors: numpy.ndarray) -> numpy.ndarray:
 
 
 def _rows(table: numpy.ndarray) -> numpy.ndarray:
-    """Returns one value for each row of a table. Values are equal if the rows are equal. Adding 0 turns -0 into 0."""
+    """Returns one value for each row of a table of floats. Two values are equal if and only if their rows are equal.
+    Adding 0 turns -0 into 0."""
     table = numpy.ascontiguousarray(table + numpy.float32(0))
     return table.view(numpy.dtype((numpy.void, table.dtype.itemsize * table.shape[1]))).ravel()

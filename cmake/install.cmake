@@ -7,7 +7,7 @@ include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/chronormal)
 set(config_folder ${PROJECT_BINARY_DIR}/package)
 set(pkg_config_folder ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
-# relative, so that an installed package may be moved
+# The path from the folder of the .pc files to the prefix. A relative path lets users move an installed package.
 file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)
 
 # chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the file that describes a library to pkg-config.

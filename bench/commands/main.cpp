@@ -90,7 +90,8 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-// Measures a child process that runs body() and exits with its result.
+// Runs body() in a child process, which exits with the result of body(). Returns the wall time and the processor time
+// of the child in seconds.
 Times time_child(const std::string& name, const std::function<int()>& body) {
   const auto start = std::chrono::steady_clock::now();
   const pid_t child = ::fork();
@@ -253,7 +254,7 @@ Json measure_obj(const std::string& file) {
   for (const Reader& reader : readers) {
     double best = 1e300;
     for (int i = 0; i < 5; ++i) {
-      // Processor time, because other programs may run beside this one.
+      // Measures processor time, because other programs may run at the same time and lengthen the wall time.
       const std::clock_t start = std::clock();
       const std::vector<float> positions = reader.read();
       best = std::min(best, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);

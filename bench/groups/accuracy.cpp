@@ -23,7 +23,8 @@ constexpr float kFar = 1000;  // distance from the origin, in multiples of the r
 // The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
-// A way to compute the unit normals of all elements, one sample after the other.
+// A way to compute the unit normals of all elements. evaluate() computes the normals of one sample at t, and
+// normal_of() returns one of them.
 struct Path {
   std::string name;
   double bound = 0, bytes = 0;

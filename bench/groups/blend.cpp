@@ -22,8 +22,8 @@ constexpr std::size_t kTargets = 100, kDenseTargets = 5;
 constexpr double kMoved = 0.025;       // share of vertices that a target moves, as in a human face of 102 targets
 constexpr double kDisplacement = 0.1;  // displacement as a multiple of the radius of the ring
 constexpr double kExactError = 1e-6, kFloatError = 1e-3;
-// The limit in radians for the error of the linear sum. The sum is inexact by design, so the limit reveals gross
-// mistakes only.
+// The limit in radians for the error of normals that are the base normals plus weighted deltas. Such a sum is inexact
+// by design, so the limit reveals gross mistakes only.
 constexpr double kLinearError = 3.2;
 
 // Makes targets that move a region around a random vertex, less and less towards the border of the region. Their
@@ -254,7 +254,8 @@ void run_set(Suite& suite, const Size& size, const std::string& group, BlendSet 
     add("chosen", kExactError, "", [weights](Subject& on) { (void)on.normals.unit_normals(weights, on.result); });
     add("terms", kExactError, "", [weights](Subject& on) { (void)on.terms.unit_normals(weights, on.result); });
     add("touched part", kExactError, "", [weights](Subject& on) { (void)on.touched.unit_normals(weights, on.result); });
-    // Blending in float32 rounds the last bit of a position, which is large relative to the length of an edge.
+    // Blending in float32 rounds positions. The rounding error is large relative to the length of an edge, so the cases
+    // below get a larger limit.
     add("chosen in float32", kFloatError, "",
         [weights](Subject& on) { (void)on.chosen_in_float32.unit_normals(weights, on.result); });
     add("recompute", kFloatError, "the whole mesh, positions in float32", [weights](Subject& on) {

@@ -18,10 +18,12 @@ void run_meshes(Suite& suite);
 /// Measures every scheme, both at random t and in playback with small steps.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Measures certificates of the largest errors of schemes, and dense sampling for comparison.
+/// Measures how long certificates of the largest errors of schemes take, and dense sampling of these errors for
+/// comparison.
 void run_certificates(Suite& suite, const Size& size);
 
-/// Measures cones, bounds of clusters and mean normals over a segment, and sampling for comparison.
+/// Measures how long normal cones, bounds of clusters of faces, and mean normals take for a whole segment, and sampling
+/// of the normals for comparison.
 void run_cones(Suite& suite, const Size& size);
 
 /// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
@@ -32,7 +34,7 @@ void run_uses(Suite& suite, const Size& size);
 /// Measures how fast the crossings of points through the surface are found.
 void run_containment(Suite& suite, const Size& size);
 
-/// The cost and the quality of a scheme, for a table of quality against cost.
+/// The angular errors of a scheme in degrees, and its memory: one row of the table of quality against cost.
 struct SchemeQuality {
   std::string scheme, mesh;
   double mean_degrees = 0, max_degrees = 0;

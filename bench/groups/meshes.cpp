@@ -21,8 +21,8 @@ namespace chronormal::bench {
 namespace {
 
 constexpr std::size_t kFaces = 45000;
-// The limit in radians for the error at very thin triangles (needles) and at vertices whose face normals nearly cancel.
-// It reveals gross mistakes only.
+// The limit in radians for the error of normals of very thin triangles (needles), and of vertices whose face normals
+// nearly cancel. The limit reveals gross mistakes only.
 constexpr double kFloatLimit = 3.2;
 
 // Returns the torus, stretched along one axis so that half of its triangles have an aspect ratio of 10 and more.

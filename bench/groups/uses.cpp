@@ -69,7 +69,8 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Compares the results of some faces with many samples. A face that is culled must not show its front in any sample.
+// Checks the results of some faces against many samples. A face that is called front or back must show only this side
+// in all samples. Throws std::runtime_error otherwise.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

@@ -24,7 +24,8 @@ struct Certified {
   std::vector<float> shown;  // normals of the scheme at kTime
 };
 
-// Returns the largest angle in radians of each face over the samples. A certificate must be at least as large.
+// Returns for each face the largest angle, over kSamples values of t, between the normal of the scheme and the exact
+// normal, in radians. A certificate must be at least as large.
 std::vector<double> sampled(const Scheme& scheme, const Segment& segment, std::size_t count) {
   std::vector<double> worst(count);
   std::vector<float> shown(3 * count);

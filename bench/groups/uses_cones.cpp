@@ -48,7 +48,7 @@ NormalCone cone_of_ends(const ControlNormals& c) {
   return {to_float(axis), static_cast<float>(length(cross(u0, axis)))};
 }
 
-// Returns the share of the faces that leave their cone in at least one of many samples.
+// Returns the share of the faces whose normal leaves the cone of the face in at least one of many samples.
 double share_outside(const Subject& s) {
   std::size_t outside = 0;
   for (std::size_t f = 0; f < s.normals.size(); ++f) {

@@ -81,7 +81,8 @@ int winding_by_angles(const Scene& scene, std::size_t p, double t) {
   return static_cast<int>(std::lround(sum / (4 * 3.14159265358979323846)));
 }
 
-// Checks, for some points at several times, that the sum of crossings equals the winding number from solid angles.
+// Checks, for some points at several t, that the winding number at t = 0 plus the crossings before t equals the winding
+// number that is computed from solid angles.
 void verify(const Scene& scene) {
   const Windings start = scene.windings(0);
   const std::size_t step = 1 + scene.segment.topology->face_count() / 200;

@@ -22,7 +22,8 @@ namespace chronormal::bench {
 
 using Vector = std::array<double, 3>;
 
-/// The rule by which the faces of a vertex are added up: weighted by area, or all equally.
+/// The rule by which the normals of the faces around a vertex are added up: weighted by the area of the face, or all
+/// unit normals alike.
 enum class Rule { kArea, kUniform };
 
 /// Returns the angle between two vectors in radians, or pi if one of them is zero or NaN.
@@ -51,7 +52,7 @@ class Oracle {
   /// which |n(t)| is below 1e-7 of the sum of the areas.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
   /// Returns the angles in radians between the given exact normals and normal_of(element). If the exact normals are
-  /// sums by area, leaves out elements without a direction.
+  /// sums weighted by area, leaves out elements whose sum almost vanishes, so that it has no direction.
   [[nodiscard]] Errors errors(std::span<const Vector> exact, const std::function<Vector(std::size_t)>& normal_of) const;
 
  private:
@@ -60,7 +61,7 @@ class Oracle {
   Segment segment_;
   Elements kind_;
   std::vector<std::uint32_t> elements_;
-  // The terms of the sums, as pairs of an index into elements_ and a face.
+  // The faces whose normals are added up for each vertex, as pairs of an index into elements_ and a face.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;
   // for each element, the sum of the areas of its faces at both ends
   std::vector<double> areas_;

@@ -93,7 +93,7 @@ void Suite::run(const std::string& group, const Size& size, std::size_t element_
     const Bandwidth memory = meter_.at(one.bytes_read + one.bytes_written);
     if (read + written > 0 && one.threads == 1 && memory.bytes != 0)
       row.share_of_bandwidth =
-          // The bandwidth that the fastest run needs, relative to the best bandwidth of the memory.
+          // The bandwidth that the fastest run of the case needs, as a share of the largest bandwidth of the memory.
           std::max(read / memory.read, (read + written) / memory.stream) / (row.least_ns * each);
     rows_.push_back(std::move(row));
   }

@@ -25,7 +25,7 @@ struct Size {
   [[nodiscard]] std::string order() const { return shuffled ? "shuffled" : "grid"; }
 };
 
-/// A comparison with the oracle of the normals that a case has computed for one t.
+/// A check of one result of a case: the normals that the case has computed for one t are compared with the oracle.
 struct Check {
   double t = 0;
   std::function<Vector(std::size_t element)> normal_of;

@@ -77,8 +77,8 @@ void time_all(std::vector<Timed>& functions, const Effort& effort) {
     const int warm = seconds < kShort ? kWarmCalls : seconds < kSlow ? 1 : 0;
     benchmark::RegisterBenchmark(std::to_string(i).c_str(),
                                  [&run, warm](benchmark::State& state) {
-                                   // The functions that ran before have evicted the data of this function from the
-                                   // caches.
+                                   // Fills the caches with the data of this function, because the functions that ran
+                                   // before have evicted them.
                                    for (int call = 0; call < warm; ++call) run();
                                    for ([[maybe_unused]] auto _ : state) run();
                                  })

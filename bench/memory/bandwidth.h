@@ -42,7 +42,8 @@ class BandwidthMeter {
 
  private:
   AlignedBytes arena_;
-  // The key is a rounded working set. An entry has no figures until it is measured.
+  // The bandwidths for which want() asked. The key is the working set in bytes, rounded. An entry has no figures until
+  // it is measured.
   std::map<std::size_t, Bandwidth> measured_;
 };
 

@@ -1,5 +1,5 @@
-/// Adds the baselines: a loop in plain C++, a loop with Eigen, and the libraries in bench/peers that were installed
-/// when the benchmark was built.
+/// Adds the baselines to a benchmark: a loop in plain C++, a loop with Eigen, and the libraries in bench/peers that
+/// were installed when the benchmark was built.
 #ifndef BENCH_PATHS_RIVALS_H_
 #define BENCH_PATHS_RIVALS_H_
 
@@ -11,8 +11,8 @@
 
 namespace chronormal::bench {
 
-/// Adds loops that interpolate the positions and compute normals. `limit` is the largest allowed error in radians. The
-/// mesh must outlive the cases.
+/// Adds the cases of plain loops, which interpolate the positions and then compute normals. `limit` is the largest
+/// allowed error of a normal in radians. The mesh must outlive the cases.
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
 /// Returns the largest allowed error of normals from float32 positions on the torus, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
@@ -20,7 +20,7 @@ void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit
 /// computes normals.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 
-/// Returns the names and versions of the libraries that were built in.
+/// Returns the names and versions of the libraries with which this benchmark was built.
 [[nodiscard]] std::map<std::string, std::string> rival_versions();
 
 }  // namespace chronormal::bench

@@ -39,7 +39,8 @@ class LibraryMesh {
   virtual ~LibraryMesh() = default;
 };
 
-/// The rule by which a library adds up the faces of a vertex.
+/// The rule by which a library adds up the normals of the faces around a vertex: weighted by area, all alike, or by a
+/// rule of its own.
 enum class Rule { kArea, kUniform, kOther };
 
 /// A function of a library that computes normals. `compute` and `normal` accept only meshes of their own library.

@@ -19,9 +19,9 @@ struct BlendArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input, and compares the normals of blended targets with exact normals. For a glTF file, these are the
-/// stored normals, or normals computed from the geometry if the user chooses elements. Errors: kUsage for options that
-/// exclude each other; those of reading and of compare_blends().
+/// Reads the input, and compares the normals of blended targets with exact normals. For a glTF file, compares the
+/// stored normals and deltas, unless the user chooses elements, whose normals are then computed from the geometry.
+/// Errors: kUsage for options that exclude each other; those of reading and of compare_blends().
 [[nodiscard]] Result<NamedBlendComparison> compare_blend_input(const InputOptions& input,
                                                                const ElementArguments& elements,
                                                                const BlendArguments& arguments, Progress& progress);

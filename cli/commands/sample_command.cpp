@@ -165,8 +165,8 @@ Result<Request> understand(const SampleArguments& options) {
     if (const Status output = options.run.check_output(options.common); !output) return output.error();
     const Status distinct = check_distinct({{"OUT", options.common.output}}, input_files(options.input));
     if (!distinct) return distinct.error();
-    // OUT may exist already, because an interrupted run may have written it just before its end. write_samples()
-    // detects this case.
+    // A run with --resume may find that OUT exists already, because an interrupted run may have written it just before
+    // its end. write_samples() detects this case.
     return request;
   }
   const auto files = sample_files(request.output, request.sample.elements.kind, request.asked.count(), request.run);
@@ -177,7 +177,7 @@ Result<Request> understand(const SampleArguments& options) {
   return request;
 }
 
-// Takes the hard edges from the smoothing groups or the normals of the input.
+// Sets the hard edges of `elements` by the smoothing groups of the input if `what` is "groups", or else by its normals.
 Status take_hard_edges(Input& input, const std::string& what, ElementOptions& elements) {
   const std::string& file = input.shaded_by();
   if (file.empty())

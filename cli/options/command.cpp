@@ -20,8 +20,8 @@
 namespace chronormal::cli {
 namespace {
 
-// Prints how finely curves were cut, and warns if velocities do not fit the positions. Curves with wrong velocities
-// look plausible, so only this comparison reveals the mistake.
+// Prints how finely curves were cut into straight pieces. Warns if velocities do not fit the positions, since curves
+// with wrong velocities look plausible, and nothing else reveals the mistake.
 void say_of_curves(const std::string& command, const CutPath& cut, std::size_t faces, bool is_quiet) {
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)

@@ -66,8 +66,9 @@ struct JudgeArguments {
 
   /// Returns the table of these options. `of_viewers` is the help text for --for.
   [[nodiscard]] std::vector<Option> table(const std::string& of_viewers);
-  /// Writes the values that the user gave to the parameters. A parameter without a given value stays as it is. Errors:
-  /// kUsage for unknown names. Prints a warning in the name of `command` if the old name of an option was used.
+  /// Sets to_weighting and to_viewers to the values that the user gave. A parameter stays as it is if its option was
+  /// not given. Errors: kUsage for unknown names. Prints a warning in the name of `command` if the old name of an
+  /// option was used.
   [[nodiscard]] Status read(const char* command, std::optional<Weighting>& to_weighting,
                             std::vector<Viewer>& to_viewers) const;
 };

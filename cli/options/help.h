@@ -18,7 +18,7 @@ namespace chronormal::cli {
 [[nodiscard]] std::string help_of_program(const std::vector<Command>& commands, std::size_t columns);
 [[nodiscard]] std::string help_of_command(const Command& command, bool all, std::size_t columns);
 
-/// Returns the manual page for man(1).
+/// Returns the manual page of the program, for man(1).
 [[nodiscard]] std::string manual_page(const std::vector<Command>& commands);
 
 /// Returns the completions for bash, zsh or fish, as a file to be installed where that shell looks for completions.

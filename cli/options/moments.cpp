@@ -144,7 +144,8 @@ Result<AskedMoments::Pose> parse_pose(const std::string& list) {
   return pose;
 }
 
-// Parses the value of --step, N or N:M.
+// Parses the value of --step: N or N:M, where N is the number of steps per segment, and M the number of steps after
+// which normals are computed anew.
 Result<Stepping> parse_step(const std::string& text) {
   Stepping stepping;
   const std::vector<std::string_view> parts = split(text, ':');

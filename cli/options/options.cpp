@@ -72,7 +72,7 @@ void add_option(const Option& option, CLI::App& command) {
   added->required(rules.required);
   if (!rules.needs.empty()) added->needs(command.get_option(rules.needs));
   if (!rules.excludes.empty()) added->excludes(command.get_option(rules.excludes));
-  // The check in the table of the option comes first, because its message says more than "'x' is not a number".
+  // The check that the table has for the option runs first, because its message says more than "'x' is not a number".
   added->check(
       [target = option.target, check = rules.check](const std::string& value) {
         std::string wrong = check ? check(value) : "";

@@ -20,7 +20,7 @@ namespace chronormal::cli {
 /// the value is valid.
 using Check = std::function<std::string(const std::string& value)>;
 
-/// One row of the table: an option, or the arguments that are not options.
+/// One row of a command's table of options: an option, or the arguments that are not options.
 struct Option {
   /// A pointer to the variable that gets the value. Its type determines the syntax: a bool is a flag, a list gets a
   /// value each time that the option is given, and an optional remembers if the option was given.

@@ -52,7 +52,8 @@ class CommandRun {
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                const std::string& things, SegmentRun& run);
   /// Sets up a `run` that records a result for each segment in the journal. write(result) returns the result as text,
-  /// and read(text, name) reads this text in a later run. Errors: those of the function above, and those of read().
+  /// and read(text, name) reads this text in a later run. Errors: those of the prepare() without write and read, and
+  /// those of read().
   template <class Found, class Read>
   [[nodiscard]] Status prepare(const Input& input, const Motion& motion, ProgressCallback progress,
                                RecordedRun<Found>& run, std::string (*write)(const Found&), const Read& read) {
@@ -81,7 +82,7 @@ class CommandRun {
     return true;
   }
 
-  /// Returns true if OUT is only a part, which `merge` will join with others.
+  /// Returns true if OUT gets only the part of the result that --shard selects. The command `merge` joins such parts.
   [[nodiscard]] bool is_part() const noexcept { return shard_.has_value(); }
   /// Returns true if one process does all of the work without interruption, so that measured times are meaningful.
   [[nodiscard]] bool is_timed() const noexcept { return !journal_ && !has_ranks(); }
@@ -89,7 +90,7 @@ class CommandRun {
   /// Writes the result to OUT, and removes the journal. If OUT already has this text, an earlier run ended between
   /// these two steps, and OUT is not written again. Errors: those of print_to() and the journal.
   [[nodiscard]] Status finish(std::string_view text);
-  /// Removes the journal if OUT is already complete.
+  /// Ends a run whose caller has already completed OUT: removes the journal.
   [[nodiscard]] Status finish();
 
  private:
@@ -120,7 +121,7 @@ struct RunArguments {
   [[nodiscard]] std::optional<Shard> share() const;
 
   /// Checks the output like check_output() of the library, but accepts an OUT that an interrupted run may have written
-  /// just before its end. Errors: also kUsage for --resume without a file.
+  /// just before its end. Errors: those of that function; kUsage for --resume without a file as OUT.
   [[nodiscard]] Status check_output(const CommonOptions& common) const;
 
   /// Begins a run, or resumes an earlier run with the same options, which are read from the tables. Errors: kUsage with

@@ -28,7 +28,8 @@ constexpr int kFirst = 0;
 constexpr int kText = 1, kError = 2, kEnd = 3, kReady = 4;  // kinds of messages between ranks
 constexpr std::uint64_t kBlock = std::uint64_t{1} << 30U;
 constexpr std::chrono::milliseconds kNap{1};
-// The time that ranks get to notice the first rank's message, for which they look only now and then.
+// The time that the other ranks get to notice the first rank's message that all ranks must end. Ranks look for this
+// message only now and then.
 constexpr std::chrono::seconds kGrace{5};
 
 struct State {

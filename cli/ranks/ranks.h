@@ -50,7 +50,8 @@ void start_ranks(std::function<int(const Error&)> report);
 /// this function.
 void maximize_numbers(std::span<double> numbers);
 
-/// Returns the three functions above in the form that the library takes, or nullptr if there is only one process.
+/// Returns gather_texts(), broadcast_text() and maximize_numbers() in the form that the library takes, or nullptr if
+/// there is only one process.
 [[nodiscard]] inline const Peers* ranks_as_peers() {
   static const Peers peers{gather_texts, broadcast_text, maximize_numbers};
   return has_ranks() ? &peers : nullptr;

@@ -115,9 +115,9 @@ struct ViewerRow {
   bool is_named = true, is_better = false;
 };
 
-// Returns the errors that bake itself measured for each viewer, over the poses of some meshes: if of_animations is
-// true, of the meshes whose deltas are fitted to the animations, otherwise of all others. The averages cover fewer
-// samples than those of an audit.
+// Returns the errors that bake itself measured for each viewer, over the poses of some meshes. If of_animations is
+// true, these are the meshes whose deltas are fitted to the animations, otherwise all other meshes. The averages cover
+// fewer samples than those of an audit.
 std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   std::vector<ViewerRow> rows;
   for (const Viewer& viewer : kViewers) {
@@ -142,8 +142,8 @@ std::vector<ViewerRow> measured_rows(const GltfBake& bake, bool of_animations) {
   return rows;
 }
 
-// Returns the errors by which a file is judged. They are those of the audits, if there are audits and no deltas are
-// fitted to the animations alone. Otherwise they are the errors that bake measured.
+// Returns for each viewer the errors by which the report judges the baked file. They are the errors of the audits, if
+// there are audits and no deltas are fitted to the animations alone. Otherwise they are the errors that bake measured.
 std::vector<ViewerRow> viewer_rows(const GltfBake& bake, const BakeReport& report, bool of_animations) {
   std::vector<ViewerRow> rows = measured_rows(bake, of_animations);
   if (!report.audit || any_of_animations(bake)) return rows;
@@ -282,7 +282,7 @@ std::string name_of(const BakedCandidate& choice) {
 }
 
 // Returns a table with a row for each viewer and each candidate. If of_animations is true, the candidates are those
-// whose deltas are fitted to the animations, otherwise all others.
+// whose deltas are fitted to the animations, otherwise all other candidates.
 std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   Table table;
   table.add_column("mesh", "", Table::Align::kLeft);

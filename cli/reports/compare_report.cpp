@@ -111,7 +111,7 @@ std::string latex_text(const std::string& text) {
   for (const char c : printable(text)) {
     const auto code = static_cast<unsigned char>(c);
     if (code >= 0xC0 || code == '?') {
-      // This byte is the first of a character of several bytes.
+      // A character that takes several bytes in UTF-8 becomes one question mark. This byte is its first.
       result += '?';
     } else if (code >= 0x80 || code < 0x20) {
       continue;

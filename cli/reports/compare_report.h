@@ -18,14 +18,14 @@ struct TableColumns {
 /// Returns one aligned table with a line for each scheme.
 [[nodiscard]] std::string compare_table(const NamedComparison& input, TableColumns columns);
 
-/// Returns the table of the paper. It has a line for each scheme, and for each input the sum of the errors and the
-/// ratio of this sum to that of linear.
+/// Returns a table like Table 1 of the paper. It has a row for each scheme. For each input, it shows the sum of the
+/// scheme's errors and the ratio of this sum to the sum of the scheme `linear`.
 [[nodiscard]] std::string compare_tables_side_by_side(const std::vector<NamedComparison>& inputs);
 
-/// Returns both tables of the paper as LaTeX, for inputs that were compared by the same schemes. The first has the sums
-/// of the errors, and their ratios to the sum of linear. The second has the numbers of operations of an evaluation, at
-/// random times and in sequence. The tables need no LaTeX package; in names, characters outside of ASCII become
-/// question marks.
+/// Returns Tables 1 and 2 of the paper as LaTeX, for inputs that were compared by the same schemes. The first has the
+/// sums of the errors, and their ratios to the sum of the scheme `linear`. The second has the numbers of operations of
+/// an evaluation, at random times and in sequence. The tables need no LaTeX package; in names, characters outside of
+/// ASCII become question marks.
 [[nodiscard]] std::string compare_latex(const std::vector<NamedComparison>& inputs);
 
 /// Returns CSV: a header line, and a line for each input and scheme. Names with commas, quotes or line ends are quoted

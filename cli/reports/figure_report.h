@@ -8,8 +8,8 @@
 
 namespace chronormal::cli {
 
-/// Returns a line for each scheme, and below the lines the matrix of the paper and the frames at both ends. `input` is
-/// the name of the input.
+/// Returns a table with a row for each scheme, then the matrix M of the paper, which moves the face from t = 0 to t =
+/// 1, and then the frames of the schemes at both ends. `input` is the name of the input.
 [[nodiscard]] std::string figure_table(const std::string& input, const FaceFigure& figure);
 
 }  // namespace chronormal::cli

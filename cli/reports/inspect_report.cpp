@@ -177,7 +177,8 @@ std::string named_or_numbered(const std::string& name, const char* kind, std::si
   return name.empty() ? formatted("{} {}", kind, number) : printable(name, kLongestCell);
 }
 
-// Formats a weight with two decimals, because exporters compute weights, and 0 and 1 become slightly different numbers.
+// Formats a weight with two decimals. Exporters compute weights, so that a weight of 0 or 1 may be stored as a slightly
+// different number.
 std::string weight_cell(double weight) {
   std::string text = formatted("{:.2f}", weight);
   return text == "-0.00" ? "0.00" : text;

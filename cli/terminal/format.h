@@ -18,7 +18,7 @@
 
 namespace chronormal::cli {
 
-/// A number that a fmt::formatter below formats.
+/// A floating-point argument of formatted(). The fmt::formatter of this type prints a number that is not finite as "-".
 struct Number {
   double value = 0;
 };
@@ -54,7 +54,7 @@ template <>
 struct fmt::formatter<chronormal::cli::Number> {
   template <class Context>
   constexpr auto parse(Context& context) {
-    // At compile time, this checks the format.
+    // Checks the format if the compiler evaluates this call.
     if (std::is_constant_evaluated()) return fmt::formatter<double>().parse(context);
     const auto end = std::find(context.begin(), context.end(), '}');
     form_ = std::string_view(context.begin(), static_cast<std::size_t>(end - context.begin()));

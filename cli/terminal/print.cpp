@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kLongestEnding = 256;
 std::string who_ends = "chronormal: ";
 bool is_rank = false, is_silent = false;
-// Is 1 while this thread writes to stderr. Each thread has its own variable, because the handler of SIGPIPE runs in
-// the thread that writes.
+// A flag that is 1 while this thread writes to stderr. Each thread has its own flag, because the handler of SIGPIPE
+// runs in the thread that writes.
 thread_local volatile std::sig_atomic_t writes_to_stderr = 0;
 
 void write_to_stderr(std::string_view text) noexcept {

@@ -48,7 +48,7 @@ class Table {
   // Returns the width in characters that a column needs for its title, its unit, and those cells that are at most
   // `most` characters wide.
   [[nodiscard]] std::size_t width_of_column(std::size_t column, std::size_t most) const;
-  // Returns the table of the chosen columns with these widths, in lines of at most `columns` characters.
+  // Returns a table of the chosen columns, which have the given widths, in lines of at most `columns` characters.
   [[nodiscard]] std::string text_of(const std::vector<std::size_t>& chosen, const std::vector<std::size_t>& widths,
                                     std::size_t columns) const;
 

@@ -15,7 +15,7 @@ namespace {
 // The remedies for the errors that an audit finds. The last line of the report recommends one of them.
 enum class Remedy {
   kNone,  // no normal is wrong
-  // No judged normal is wrong, but others could not be judged, or none was judged.
+  // No judged normal is wrong, but some normals could not be judged, or no normal was judged at all.
   kUnknown,
   // The normals are right but tangents are wrong; bake writes no tangents.
   kTangents,
@@ -47,8 +47,8 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
   return std::any_of(input.audit.subjects.begin(), input.audit.subjects.end(), drives);
 }
 
-// Lists the subjects with errors. If `baked` is true, lists only those of meshes that were baked before, otherwise only
-// all others.
+// Lists the subjects with errors. If `baked` is true, lists only subjects of meshes that were baked before; otherwise
+// lists only subjects of other meshes.
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)

@@ -25,7 +25,7 @@ using Align = Table::Align;
 constexpr std::size_t kLongestBar = 40;
 constexpr double kSeen = 0.005;                     // the smallest number of degrees that two decimals show
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples for the columns of percentiles
-// smallest displacement that is reported, as a share of the size of the mesh
+// The smallest displacement of a vertex in a viewer that is reported, as a share of the size of the mesh.
 constexpr double kDisplaced = 1e-5;
 
 // Returns words that say if the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges

@@ -67,9 +67,9 @@ void normal_cones(std::span<const ControlNormals> normals, double t0, double t1,
 void face_normal_cones(const Segment& segment, IndexRange faces, double t0, double t1,
                        std::span<NormalCone> result) noexcept;
 
-/// Returns the cone of a vertex or corner, whose normal is the sum of the normals of these faces
-/// (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face. Preconditions
-/// are those of face_normal_cones().
+/// Returns the cone of a vertex or corner over the times [t0, t1]. Its normal is the sum of the normals of the given
+/// faces (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face.
+/// Preconditions: the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 [[nodiscard]] NormalCone normal_cone_of_faces(const Segment& segment, std::span<const std::uint32_t> faces, double t0,
                                               double t1) noexcept;
 
@@ -102,7 +102,7 @@ void face_normal_cones(const Segment& segment, IndexRange faces, double t0, doub
 // Threads    pure, on the thread that calls.
 // Source     meshoptimizer 0.18, src/clusterizer.cpp; Shirman, Abi-Ezzi: The cone of normals technique (1993).
 
-/// The members of meshopt_Bounds, in their order.
+/// The bounds of a cluster of faces: the members of meshoptimizer's meshopt_Bounds, in the same order.
 struct ClusterBounds {
   float center[3] = {};  ///< center and radius: a sphere that contains the whole path of every vertex
   float radius = 0;
@@ -159,9 +159,9 @@ struct ShutterNormal {
 void face_shutter_normals(const Segment& segment, IndexRange faces, double t0, double t1,
                           std::span<ShutterNormal> result) noexcept;
 
-/// Returns the mean normal and the mean unit normal of a vertex or corner, whose normal is the sum of the normals of
-/// these faces (NormalGroups::faces()). Always computes with integers, which takes some microseconds for each face.
-/// Preconditions are those of face_shutter_normals().
+/// Returns the mean normal and the mean unit normal of a vertex or corner over the times [t0, t1]. Its normal is the
+/// sum of the normals of the given faces (NormalGroups::faces()). Always computes with integers, which takes some
+/// microseconds for each face. Preconditions: the faces exist in the topology; 0 <= t0 <= t1 <= 1.
 [[nodiscard]] ShutterNormal shutter_normal_of_faces(const Segment& segment, std::span<const std::uint32_t> faces,
                                                     double t0, double t1) noexcept;
 

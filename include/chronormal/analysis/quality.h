@@ -29,8 +29,8 @@ namespace chronormal {
 /// faces.count elements; t is in [0, 1].
 void reference_normals(const Segment& segment, IndexRange faces, double t, std::span<Vec3d> result) noexcept;
 
-/// Returns n(t) of a vertex or corner with the same accuracy. n(t) is the sum of the normals of its faces, which may
-/// nearly cancel. Threads: pure. Precondition: t is in [0, 1].
+/// Returns n(t) of a vertex or corner, as accurately as reference_normals(). n(t) is the sum of the normals of the
+/// given faces, which may nearly cancel. Threads: pure. Precondition: t is in [0, 1].
 [[nodiscard]] Vec3d reference_normal(const Segment& segment, std::span<const std::uint32_t> faces, double t) noexcept;
 
 /// The normal n(t) of a face in double, and the sum of the absolute values of the products that make it up, which

@@ -39,8 +39,9 @@ struct Found {
 /// Finds copies, which are vertices at the same point as a vertex with a lower index.
 [[nodiscard]] Found find_copies(const Points& points);
 
-/// The counts of a mesh, which the comment at the top of this file explains. For edges and pairs of faces, `first` is
-/// the lowest face that has such an edge or belongs to such a pair.
+/// The counts of edges, pieces, vertices and coinciding faces of a mesh. The comment at the top of this file defines
+/// the kinds of edges. For edges and pairs of faces, Found::first is the lowest face that has such an edge or belongs
+/// to such a pair.
 struct Surface {
   std::size_t edges = 0;
   Found open_edges, non_manifold_edges, turned_edges, seam_edges;
@@ -53,7 +54,8 @@ struct Surface {
   std::size_t most_corners = 0;  ///< the largest number of corners of a face
 };
 
-/// Counts everything in Surface for a mesh. `points` tells which vertices of the mesh are one point.
+/// Counts the edges of each kind, the pieces and all other members of Surface for a mesh. `points` tells which vertices
+/// of the mesh are one point.
 [[nodiscard]] Surface survey(const Topology& topology, const Points& points);
 
 }  // namespace chronormal

@@ -11,7 +11,7 @@
 
 namespace chronormal {
 
-// The following classes let the caller of a long computation end the computation early.
+// Classes and a function by which the caller of a long computation can end the computation early.
 
 /// The exception that ends a computation at the caller's request. Afterwards files and memory that the computation was
 /// writing are incomplete. An object whose non-const function was interrupted may only be destroyed.
@@ -59,10 +59,10 @@ void check_interruption();
 /// Order      a result must not depend on the order: write to slot i, and combine the slots in order afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-/// Selects the calling thread, or all cores if there is enough work.
+/// The threads that a function uses: only the calling thread, or all cores if there is enough work.
 enum class Threads { kOne, kAll };
 
-/// Returns the number of threads that parallel_for may use.
+/// Returns the number of threads that a parallel_for() called by this thread may use.
 [[nodiscard]] std::size_t thread_count() noexcept;
 
 /// Sets the number of threads that parallel_for() uses on this thread during the object's lifetime. The number may

@@ -71,8 +71,8 @@ struct GltfExtraTarget {
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
 };
 
-/// Selects how a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; files with this
-/// encoding are marked as kHarmless.
+/// The ways in which a bake encodes the normals of targets (workflow/bake.h). kKeys is for sequences; a file with this
+/// encoding is marked as kHarmless.
 enum class BakeEncoding { kHarmless, kExact, kEndpoint, kSmallest, kKeys };
 
 /// An encoding, and its name on the command line, in JSON and in the mark of a file.
@@ -115,7 +115,7 @@ class GltfSkin;
 /// caller.
 using FileResolver = std::function<Result<std::string_view>(const std::string& name)>;
 
-/// Selects the interpolation of weights between two keys.
+/// The interpolation of the weights of targets between two keys of an animation.
 enum class GltfInterpolation { kLinear, kStep, kCubicSpline };
 
 struct GltfPrimitive {
@@ -354,9 +354,9 @@ class GltfEdit {
   [[nodiscard]] std::size_t add_vectors(std::span<const float> vectors, const GltfVectors& options = {});
   [[nodiscard]] std::size_t add_scalars(std::span<const float> scalars, const GltfVectors& options = {});
 
-  /// Leaves out of the result those arrays that only the source uses, if they are in buffers inside the result (BIN
-  /// chunk, data URIs). Later bytes of the buffer move towards its start; all indices stay. A file with extensions that
-  /// may refer to arrays in unknown ways keeps all its bytes.
+  /// Leaves out of the result those arrays that the source uses but the result does not, if they are in buffers inside
+  /// the result (BIN chunk, data URIs). Later bytes of the buffer move towards its start; all indices stay. A file with
+  /// extensions that may refer to arrays in unknown ways keeps all its bytes.
   void leave_out_unused();
 
   /// Lists the differences between a result at this path and the source: the sorted pointers of the result that are
