@@ -25,9 +25,9 @@
 /// Moments    Crossings within a moment of 2^-47 of a segment may be reported as their sum: a point that touches an
 ///            edge from outside has no crossing, and a point that goes through the edge has one. At the very moment of
 ///            touching, the tie may be decided either way, so w may differ from its value right before and right after.
-/// Shapes     P = points, as (P, 3) float32. Threads    const functions may run at the same time, and use all cores.
-/// Results are the same on any number. Source     docs/theory.md, section 2; Edelsbrunner, Muecke, Simulation of
-/// Simplicity (1990).
+/// Shapes     P = points, as (P, 3) float32.
+/// Threads    const functions may run at the same time, and use all cores. Results are the same on any number.
+/// Source     docs/theory.md, section 2; Edelsbrunner, Muecke, Simulation of Simplicity (1990).
 #ifndef CHRONORMAL_ANALYSIS_CONTAINMENT_H_
 #define CHRONORMAL_ANALYSIS_CONTAINMENT_H_
 

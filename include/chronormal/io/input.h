@@ -43,7 +43,7 @@ inline namespace internal {
 class Expansion;  // limits the memory and the output that reading a file may cause
 }
 
-/// Selects which of the normals and smoothing groups that meshes store are kept.
+/// The part of the stored normals and smoothing groups of meshes that is kept in memory.
 enum class KeepShading {
   kNone,
   kFirst,  ///< the normals of the first keyframe: the base of targets, or the mesh of a point cache
@@ -81,8 +81,8 @@ struct InputOptions {
   FileResolver resolve = {};
   /// Is called after each file has been read, with the number of files read so far and the number of all files.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
-  /// Select the keyframes of a sequence that are used: the first, the last, and the step from one to the next. All
-  /// count from 0.
+  /// Select the keyframes of a sequence that are used. `from` and `to` are the indices of the first and the last one,
+  /// counted from 0. `every` is the step from one keyframe to the next.
   std::size_t from = 0;
   std::optional<std::size_t> to = {};
   std::size_t every = 1;
@@ -282,7 +282,8 @@ struct PointPaths {
 
 [[nodiscard]] Result<PointPaths> read_points_file(const std::string& path);
 
-/// Reads points from the bytes of such a file; `name` is for messages.
+/// Reads points from the bytes of a .npy file; `name` is the name of the file in messages. Errors: kInvalidInput, as
+/// for a file.
 [[nodiscard]] Result<PointPaths> parse_points(std::string_view bytes, const std::string& name);
 
 // Poses of a rig from a JSON file: the weights that a program or a person gives its morph targets.
@@ -310,7 +311,7 @@ struct RigPose {
 /// Reads a file of poses: at least one pose, each with finite weights.
 [[nodiscard]] Result<std::vector<RigPose>> read_poses_file(const std::string& path);
 
-/// Reads poses from the text of such a file; `name` is for messages.
+/// Reads poses from JSON text: at least one pose, each with finite weights. `name` is the name of the file in messages.
 [[nodiscard]] Result<std::vector<RigPose>> parse_poses(std::string_view text, const std::string& name);
 
 }  // namespace chronormal

@@ -48,13 +48,14 @@ class Topology {
  public:
   Topology() = default;
 
-  /// Builds polygons over the vertices 0 ... vertex_count - 1 from corners and offsets, as described above. Errors: a
-  /// face of fewer than 3 corners, a corner whose vertex does not exist, or offsets that do not ascend from 0 to the
-  /// number of corners. The place is "face F" or "face F, corner C". O(corners).
+  /// Builds polygons over the vertices 0 ... vertex_count - 1. `corners` has the vertex of each corner, face after
+  /// face; `offsets` has the first corner of each face, and then the number of corners. Errors: a face of fewer than 3
+  /// corners, a corner whose vertex does not exist, or offsets that do not ascend from 0 to the number of corners. The
+  /// place is "face F" or "face F, corner C". O(corners).
   [[nodiscard]] static Result<Topology> polygons(std::size_t vertex_count, std::vector<std::uint32_t> offsets,
                                                  std::vector<std::uint32_t> corners);
 
-  /// Builds triangles from three corners each. Errors and cost as for polygons().
+  /// Builds triangles from three corners each, in O(corners). Errors: those of polygons().
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::vector<std::uint32_t> corners);
   /// Builds triangles from an index buffer of 16 bits, which is copied.
   [[nodiscard]] static Result<Topology> triangles(std::size_t vertex_count, std::span<const std::uint16_t> corners);
@@ -80,7 +81,7 @@ class Topology {
 
  private:
   std::size_t vertex_count_ = 0;
-  // Index of the first corner of each face, and the end; empty if all faces are triangles.
+  // The index of the first corner of each face, and then the number of corners; empty if all faces are triangles.
   std::vector<std::uint32_t> offsets_;
   std::vector<std::uint32_t> corners_;
 };
@@ -305,7 +306,7 @@ struct BlendSet {
 /// Errors: kInvalidInput with the place "base, vertex V" or "target K, entry N".
 [[nodiscard]] Status validate(const BlendSet& set);
 
-/// Checks a target that is to become number k of a set with this topology. Errors: those of the other validate().
+/// Checks a target that is to become target k of a set with this topology. Errors: those of validate() for a set.
 [[nodiscard]] Status validate(const BlendTarget& target, const Topology& topology, std::size_t k);
 
 /// Writes the blended positions at some weights, (V, 3) in double, without rounding to float32 in between. Targets of

@@ -125,7 +125,7 @@ struct VelocityFit {
   double direction = 1;
 
   /// Returns true if a turn of up to about 200 degrees from keyframe to keyframe, or an acceleration from rest, could
-  /// explain both numbers.
+  /// explain `length` and `direction`.
   [[nodiscard]] bool is_plausible() const noexcept { return length >= 1.0 / 3 && length <= 3 && direction >= 0; }
 };
 /// Compares velocities with positions in up to 64 evenly distributed segments whose keyframes both have velocities. If

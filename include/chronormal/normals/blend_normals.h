@@ -53,7 +53,7 @@ enum class BlendPath {
   kWhole,    ///< blend positions, and recompute all elements
 };
 
-/// Returns "terms", "touched" or "whole".
+/// Returns the name of a path: "terms", "touched" or "whole".
 [[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
 
 /// The default limit of memory, one gigabyte. The terms of many dense targets take more, but then another path than
@@ -93,7 +93,7 @@ struct BlendCost {
 };
 
 /// Predicts the memory from the faces of each target and the rings of points around elements, without computing terms.
-/// Pure. Preconditions: the set is valid, and the groups are groups of its topology that keep their corners.
+/// Pure. Preconditions: the set is valid; the groups are groups of its topology, and forget_corners() was not called.
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
 [[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
                                            const BlendNormalsOptions& options = {});
@@ -117,8 +117,8 @@ struct BlendEvaluation : BlendChoice {
 
 class BlendNormals {
  public:
-  /// Prepare the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h),
-  /// and the groups must be groups of its topology that keep their corners. Throw only std::bad_alloc.
+  /// Prepare the normals of the faces of a set, or of the elements of groups. The set must be valid (motion/motion.h).
+  /// The groups must be groups of its topology, and forget_corners() was not called. Throw only std::bad_alloc.
   [[nodiscard]] static BlendNormals of_faces(BlendSet set, const BlendNormalsOptions& options = {});
   [[nodiscard]] static BlendNormals of_groups(BlendSet set, NormalGroups groups,
                                               const BlendNormalsOptions& options = {});

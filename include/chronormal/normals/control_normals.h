@@ -29,7 +29,7 @@
 
 namespace chronormal {
 
-/// The control normals of an element: those of a face, or the sum of those of several faces.
+/// The control normals of an element: those of a face, or their sums over several faces.
 struct ControlNormals {
   Vec3d n0, m, n1;
 
@@ -72,8 +72,9 @@ struct UnitNormal {
 };
 
 /// Returns n(t) / |n(t)| in double; Direction defines the result where n(t) = 0. The limit is taken from later times at
-/// t = 0, and from earlier times elsewhere. Inside a segment n(t) counts as zero if it is below 8 rounding errors of
-/// its control normals. Callers that have positions and need an exact decision use MeshNormals or NormalCurves.
+/// t = 0, and from earlier times elsewhere. Inside a segment n(t) counts as zero if |n(t)| is below 8 times the
+/// rounding error of its control normals. Callers that have positions and need an exact decision use MeshNormals or
+/// NormalCurves.
 [[nodiscard]] UnitNormal unit_normal_at(const ControlNormals& normals, double t) noexcept;
 
 // Normals of meshes that move as a whole: rigid and affine motion.
@@ -118,7 +119,8 @@ struct NodeTransform {
 /// The matrix that transforms normals, for an affine transform.
 struct NormalMatrix {
   std::array<Vec3d, 3> columns;
-  /// True if det < 0. Normals still point outwards, but corners are counter-clockwise if seen from inside.
+  /// True if the determinant of the transform is negative. Normals still point outwards, but corners are
+  /// counter-clockwise if seen from inside.
   bool mirrored = false;
 
   [[nodiscard]] Vec3d operator()(const Vec3d& normal) const noexcept {

@@ -74,7 +74,7 @@ enum class ControlFormat {
   kSnorm11,
 };
 
-/// Returns the number of bytes per output: 36, 20 or 12.
+/// Returns the number of bytes that an output takes in a format: 36, 20 or 12.
 [[nodiscard]] std::size_t bytes_of(ControlFormat format) noexcept;
 
 class MeshNormals {
@@ -83,7 +83,7 @@ class MeshNormals {
   /// weighting than area.
   [[nodiscard]] static Result<MeshNormals> make(Topology topology, const MeshNormalsOptions& options = {});
   /// Makes an object for the segments of a motion, whose keyframes together decide which vertices share a normal. The
-  /// motion must be valid, or at rest. Errors: also those of make_groups().
+  /// motion must be valid, or at rest. Errors: those of make() for a topology, and those of make_groups().
   [[nodiscard]] static Result<MeshNormals> make(const Motion& motion, const MeshNormalsOptions& options = {});
 
   /// Makes another object for the same mesh, for example one for each of many characters. It has no positions or
@@ -116,8 +116,8 @@ class MeshNormals {
   /// size() elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
-  /// Writes the unit normals at t, encoded in four bytes each. normals/normal_curves.h explains the encodings, and the
-  /// encoding of (0, 0, 0).
+  /// Writes the unit normals at t, encoded in four bytes each (normals/normal_curves.h). A zero normal is written as 0,
+  /// which Octahedral decodes as (0, 0, 1).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result,
                            IndexRange outputs = kAllOutputs) const noexcept;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result,

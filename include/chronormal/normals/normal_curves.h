@@ -121,10 +121,10 @@ class NormalCurves {
                                               NormalCurves* reuse = nullptr);
 
   /// Writes n(t) / |n(t)| of every element. If n(t) = 0, the result is the limit direction (see Direction), or (0, 0,
-  /// 0) if n is zero in the whole segment. Returns the number of (0, 0, 0) written, usually 0. control_normals.h
-  /// explains t outside [0, 1]. Precondition: result has size() elements.
+  /// 0) if n is zero in the whole segment. Returns the number of (0, 0, 0) written, usually 0. A t outside [0, 1] is
+  /// moved to the nearer end (control_normals.h). Precondition: result has size() elements.
   std::size_t unit_normals(const LocalTime& t, VectorView<float> result, Threads threads = Threads::kOne) const;
-  /// Write the unit normals in four bytes each. The comment on Octahedral above explains the encoding of (0, 0, 0).
+  /// Write the unit normals in four bytes each. A zero normal is written as 0, which Octahedral decodes as (0, 0, 1).
   std::size_t unit_normals(const LocalTime& t, std::span<Octahedral> result, Threads threads = Threads::kOne) const;
   std::size_t unit_normals(const LocalTime& t, std::span<Rgb10A2> result, Threads threads = Threads::kOne) const;
 

@@ -68,8 +68,8 @@ struct Points {
 /// points of a face of the other in reversed order, the sheets do not share points. O(V log V + F), times the number of
 /// keyframes if vertices coincide. The motion must be valid.
 [[nodiscard]] Points weld_coincident(const Motion& motion);
-/// Makes the points for a stream. Keyframes are read only until no two vertices coincide in all of them. Errors: those
-/// of the stream.
+/// Makes one point of the vertices whose coordinates are equal in all keyframes of a stream. Keyframes are read only
+/// until no two vertices coincide in all of them. Errors: those of the stream.
 [[nodiscard]] Result<Points> weld_coincident(MotionStream& stream);
 
 /// The largest angle in degrees between two stored normals that count as roundings of the same normal.
@@ -91,8 +91,8 @@ class NormalGroups {
   /// of its point. Precondition: the points belong to this topology. Takes O(corners log corners), as do all functions
   /// below that state no other cost.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
-  /// Makes one element of each point like the function above, but leaves out some corners. All left-out corners of a
-  /// point become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
+  /// Makes one element of each point, with all corners at this point except those that are left out. All left-out
+  /// corners of a point become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 
@@ -190,30 +190,30 @@ void group_control_normals(const NormalGroups& groups, std::span<const ControlNo
 void group_control_normals(const Segment& segment, const NormalGroups& groups, std::span<const ControlNormals> of_faces,
                            IndexRange elements, std::span<ControlNormals> result) noexcept;
 
-/// Return the control normals of all faces of a segment, or of all elements of groups, with the precision of
-/// face_control_normals() and of the function above. They run on all cores.
+/// Return the control normals of all faces of a segment, or of all elements of groups, as precise as
+/// face_control_normals() or group_control_normals() computes them for a segment. Run on all cores.
 [[nodiscard]] std::vector<ControlNormals> all_face_control_normals(const Segment& segment);
 [[nodiscard]] std::vector<ControlNormals> all_group_control_normals(const Segment& segment, const NormalGroups& groups);
 
-// Selects the elements that have a normal (each face, each vertex, or each corner of a face), and the elements that
-// share one.
+// The kinds of elements that have a normal (each face, each vertex, or each corner of a face), and the rules by which
+// corners share a normal.
 //
-// Threads    everything here is pure.
+// Threads: everything here is pure.
 
 enum class ElementKind { kFaces, kVertices, kCorners };
 
-/// Returns "faces", "vertices" or "corners".
+/// Returns the name of a kind in the plural: "faces", "vertices" or "corners".
 [[nodiscard]] std::string_view element_kind_name(ElementKind kind) noexcept;
 
-/// Returns "face", "vertex" or "corner".
+/// Returns the name of a kind in the singular: "face", "vertex" or "corner".
 [[nodiscard]] std::string_view one_element(ElementKind kind) noexcept;
 
-/// Finds a kind by its name. Errors: kUsage, with all names.
+/// Finds a kind of element by its name. Errors: kUsage for an unknown name, with all names.
 [[nodiscard]] Result<ElementKind> make_element_kind(std::string_view name);
 
-/// Selects for which elements normals are computed, and which corners share a normal. Corners share normals across
-/// smooth edges. Hard edges come from the crease angle, or from the smoothing groups or the normals of a file (Input in
-/// io/input.h). The arrays of groups and normals must outlive the options.
+/// The elements for which normals are computed, and the rule by which corners share a normal. Corners share normals
+/// across smooth edges. Hard edges come from the crease angle, or from the smoothing groups or the normals of a file
+/// (Input in io/input.h). The arrays of groups and normals must outlive the options.
 struct ElementOptions {
   ElementKind kind = ElementKind::kVertices;
   /// True if vertices that coincide in all keyframes share a normal, so that seams do not show.
@@ -229,8 +229,8 @@ struct ElementOptions {
 /// motion may be a mesh at rest, which is a keyframe without segments. Preconditions: the motion is otherwise valid;
 /// the kind is not kFaces.
 [[nodiscard]] Result<NormalGroups> make_groups(const Motion& motion, const ElementOptions& options);
-/// Makes the groups for a stream, whose keyframes are read as by weld_coincident(). Errors: those of the function
-/// above, and those of the stream.
+/// Makes the groups of corners for a stream, whose keyframes are read as by weld_coincident(). Errors: those of
+/// make_groups() for a motion, and those of the stream.
 [[nodiscard]] Result<NormalGroups> make_groups(MotionStream& stream, const ElementOptions& options);
 
 }  // namespace chronormal

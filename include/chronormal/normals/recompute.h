@@ -97,13 +97,13 @@ class FloatRecompute {
   ~FloatRecompute();
   /// Prepares the normals of the faces of a mesh. Throws only std::bad_alloc.
   explicit FloatRecompute(const Topology& topology);
-  /// Prepares the normals of the elements of groups, which must belong to the topology and keep their corners.
-  /// O(corners).
+  /// Prepares the normals of the elements of groups. The groups must belong to the topology, and forget_corners() was
+  /// not called for them. O(corners).
   FloatRecompute(const Topology& topology, const NormalGroups& groups);
 
-  /// Writes n / |n| of every element at t of a segment, and returns the number of (0, 0, 0) written. control_normals.h
-  /// explains t outside [0, 1] and NaN. Preconditions: the segment has as many vertices as the topology; result has
-  /// size() elements.
+  /// Writes n / |n| of every element at t of a segment, and returns the number of (0, 0, 0) written. A t outside [0, 1]
+  /// is moved to the nearer end; if t is NaN, every normal is (0, 0, 0). Preconditions: the segment has as many
+  /// vertices as the topology; result has size() elements.
   std::size_t unit_normals(const Segment& segment, double t, VectorView<float> result, Threads threads = Threads::kOne);
   /// Writes the normals of a mesh with the given positions, for example of blend shapes, and returns the number of (0,
   /// 0, 0) written.

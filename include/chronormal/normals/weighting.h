@@ -65,7 +65,7 @@ struct WeightingInfo {
   std::string_view summary;  ///< a description of one line
 };
 
-/// All weightings, in the order of the table above.
+/// All weightings, with their names and meanings. The first is the default.
 inline constexpr std::array<WeightingInfo, 7> kAllWeightings = {{
     {Weighting::kArea, "area", "the area of the face; the only one that is exact at every time"},
     {Weighting::kAngle, "angle", "the angle of the face at the vertex"},
@@ -98,7 +98,7 @@ void face_normals_at(const Segment& segment, const LocalTime& t, IndexRange face
 void weighted_normals_at(const Segment& segment, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 
-/// Returns the weighted normals of all elements. Runs on all cores.
+/// Returns the weighted normals of all elements at t, not scaled to length 1. Runs on all cores.
 [[nodiscard]] std::vector<Vec3d> all_weighted_normals_at(const Segment& segment, const NormalGroups& groups,
                                                          Weighting weighting, const LocalTime& t);
 

@@ -71,7 +71,7 @@ struct OperationCounts {
 /// vector.
 inline constexpr std::size_t kDefaultAnchorInterval = 64;
 
-/// Plays a scheme at equal steps of t. Each step is computed from the previous step (sequential access).
+/// A playback of a scheme at equal steps of t. Each step is computed from the previous step (sequential access).
 class SchemePlayback {
  public:
   SchemePlayback() = default;
@@ -123,11 +123,12 @@ class Scheme {
   [[nodiscard]] virtual std::size_t bytes() const noexcept = 0;
   /// Returns the operations per element of one evaluate(), counted by running the same code with a scalar that counts.
   [[nodiscard]] virtual OperationCounts operations() const = 0;
-  /// Returns the operations per element and step of a playback, counted in the same way; no value if play() returns
-  /// nullptr.
+  /// Returns the operations per element and step of a playback, or no value if play() returns nullptr. The operations
+  /// are counted by running the same code with a scalar that counts.
   [[nodiscard]] virtual std::optional<OperationCounts> sequential_operations() const { return std::nullopt; }
 
-  /// Returns true if every normal that evaluate() writes is guaranteed to be within kExactTolerance of the exact one.
+  /// Returns true if every normal that evaluate() writes is guaranteed to be within kExactTolerance of the exact
+  /// normal.
   [[nodiscard]] virtual bool is_exact() const noexcept { return false; }
   /// Returns the curves that were fitted to the block, for certify() in analysis/certify.h. Returns nullptr if the
   /// curves are not known; certify() then cannot bound the error. The curves are valid until the next prepare().

@@ -117,7 +117,7 @@ struct AuditSubject {
 
   Kind kind = Kind::kTarget;
   std::string name;  ///< name of the target, animation or expression; may be empty
-  /// Numbers in a glTF file; `target` is also set for targets over a base mesh (--base).
+  /// The indices of the mesh and the target in a glTF file. `target` is also set for targets over a base mesh (--base).
   std::optional<std::size_t> mesh, target;
   /// `animation` and `track` are set for a track, together with its node. For a pose in which the file opens, `node` is
   /// the first node that opens in it.
@@ -137,7 +137,7 @@ struct AuditSubject {
   }
 };
 
-/// Returns "target", "track", "sequence", "expression", "opening" or "poses".
+/// Returns the name of a kind of subject: "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
 /// Returns the name of the number that tells the samples of a subject apart: "weight", "time", or "pose" for the number
 /// of a pose.
@@ -156,8 +156,8 @@ struct AuthoredOffset {
   double area_mean = 0;  ///< mean angle to area-weighted normals in degrees
   /// True if true normals are summed over polygons, although the file has only their triangles.
   bool of_polygons = false;
-  /// The weighting that is closest to the stored normals on average. `closest_mean` is the average angle to it in
-  /// degrees, `closest_worst` the largest.
+  /// The weighting whose normals are closest to the stored normals on average. `closest_mean` and `closest_worst` are
+  /// the average and the largest angle between its normals and the stored normals, in degrees.
   Weighting closest = Weighting::kArea;
   double closest_mean = 0, closest_worst = 0;
 
@@ -210,7 +210,7 @@ struct ViewerAudit {
   /// diagonal of the bounding box of the mesh's base.
   double displaced = 0;
   /// The number of targets of a mesh beyond the viewer's limit; Viewer::beyond tells how the viewer treats a mesh with
-  /// more targets. The errors above are those of a viewer that ignores the targets beyond the limit.
+  /// more targets. `error` is then the error of a viewer that ignores the targets beyond the limit.
   std::size_t beyond = 0;
 
   /// Returns true if the viewer supports the file and its errors are within the limit in degrees
@@ -297,7 +297,8 @@ struct AuditLimits {
 /// kInvalidInput if the number of normals does not fit. Precondition: the motion is valid.
 [[nodiscard]] Result<Audit> audit(const Motion& motion, const StoredNormals& normals, const AuditOptions& options);
 /// Audits a stream while holding two keyframes at a time. The stream is read twice in full. It is also read twice in
-/// part: until all vertices have moved, and until no two vertices coincide. Errors: also those of the stream.
+/// part: until all vertices have moved, and until no two vertices coincide. Errors: those of audit() for a motion, and
+/// those of the stream.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options);
 
 }  // namespace chronormal

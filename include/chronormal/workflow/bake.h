@@ -44,14 +44,14 @@ class Expansion;  // limits the memory and the output that reading a file may ca
 }
 
 inline constexpr double kHarmlessTolerance = 0.5, kExactBakeTolerance = 0.001;  ///< in degrees
-/// The smallest tolerance of the encoding keys, in degrees. The rounding to float32 in viewers would use up a smaller
-/// one.
+/// The smallest tolerance of the encoding kKeys, in degrees. If a tolerance were smaller, the rounding to float32 in
+/// viewers alone could exceed it.
 inline constexpr double kLeastKeyTolerance = 0.001;
 
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< by default kSmallest, and kExact for sequences
-  /// The viewers to bake for. By default these are the viewers that add up deltas (three.js, Babylon.js, PlayCanvas,
-  /// Bevy). By default, `spared` is then set to the viewers that keep unit normals (Godot, Filament).
+  /// The viewers to bake for. If the list is empty, these are the viewers that add up deltas (three.js, Babylon.js,
+  /// PlayCanvas, Bevy), and `spared` is set to the viewers that keep unit normals (Godot, Filament).
   std::vector<Viewer> viewers = {};
   /// Viewers in which normals should not become worse. Among candidates that are otherwise equal, one that makes no
   /// normal worse in these viewers is preferred.
@@ -140,7 +140,7 @@ struct ViewerChange {
   std::array<Errors, 3> poses;
 };
 
-/// A candidate that kSmallest has evaluated for a mesh.
+/// A way to store the normals of a mesh that kSmallest has tried, with its size and its errors.
 struct BakedCandidate {
   /// The name of the kind of candidate: "as it is", "own deltas", "products", "quadratics" or "low rank".
   std::string_view name;
@@ -203,14 +203,15 @@ struct BakedMesh {
   /// The error in degrees, along the animations, that comes from cutting cubic splines into lines and from leaving out
   /// pairs of targets.
   double resampling_error = 0;
-  /// True if KHR_animation_pointer drives a single weight. Only the encoding kExact then adds correction targets.
+  /// True if an animation drives a single weight of the mesh by KHR_animation_pointer. Only the encoding kExact then
+  /// adds correction targets.
   bool has_lone_weight = false;
   /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
   /// normals.
   bool already_baked = false;
   std::vector<ViewerChange> viewers;       ///< the errors of each named viewer if the mesh changed; empty for kExact
   std::vector<BakedCandidate> candidates;  ///< the candidates that kSmallest has evaluated
-  /// Number of correction targets that exceed the number of targets that the viewers support.
+  /// The number of correction targets that were left out, because viewers do not support so many targets.
   std::size_t left_out = 0;
   /// The nodes with the mesh whose extras are not a JSON object, so that the drivers of correction targets cannot be
   /// stored there.
@@ -285,7 +286,7 @@ struct SequenceBake {
 /// passes that hold two keyframes at a time, or for the encoding keys all keyframes between two keys. The arrays wait
 /// in an unnamed file in the folder of `path` until the JSON in front of them is known, so only this JSON and fits of a
 /// weighting need memory that grows with the number of keyframes. If `path` is a stream or a device, the arrays wait in
-/// memory. Errors: also those of the stream and of write_output().
+/// memory. Errors: those of bake_sequence() for a motion, of the stream and of write_output().
 [[nodiscard]] Result<SequenceBake> bake_sequence(MotionStream& stream, const BakeOptions& options,
                                                  const std::string& path, bool force);
 

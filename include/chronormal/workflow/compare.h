@@ -38,8 +38,8 @@
 
 namespace chronormal {
 
-/// Returns the names of the default schemes: those in the rows of the paper's table, and our own. Schemes that need
-/// faces are left out for other elements.
+/// Returns the names of the default schemes: the schemes in the rows of the paper's Table 1, and our own. For elements
+/// other than faces, schemes that need faces are left out.
 [[nodiscard]] std::vector<std::string> default_schemes(ElementKind kind = ElementKind::kFaces);
 
 /// The orders in which the samples of a segment are computed (section 3 of the paper).
@@ -95,7 +95,8 @@ struct SchemeComparison {
   /// Number of (element, segment) combinations that are evaluated in double.
   std::size_t flagged = 0;
   bool sequential = false;  ///< true if the scheme was played step by step
-  /// Nanoseconds per element; includes computing control normals if the scheme uses them.
+  /// The time of prepare() in nanoseconds per element. It includes computing the control normals if the scheme uses
+  /// them.
   double prepare_ns = 0;
   double evaluate_ns = 0;  ///< nanoseconds per element and sample
   double bytes = 0;        ///< number of bytes per element that an evaluation reads
@@ -121,7 +122,8 @@ struct Comparison {
   std::optional<std::size_t> cheapest = {};
   Weighting weighting = Weighting::kArea;  ///< the weighting for vertices and corners
   std::array<double, 2> span = {};         ///< the times of the first and the last keyframe
-  /// The cut of curved paths; the caller that has cut them sets it, for reports.
+  /// The numbers that describe how curved paths were cut into straight pieces. The caller that has cut the paths sets
+  /// them, for reports.
   std::optional<CutPath> cut = {};
 };
 
@@ -137,7 +139,7 @@ struct Comparison {
 /// Precondition: the motion is valid (validate() in motion/motion.h)
 [[nodiscard]] Result<Comparison> compare(const Motion& motion, const CompareOptions& options);
 /// Compares the schemes for a stream. Holds so many segments at a time that each thread has a few thousand elements,
-/// and at least one segment. Errors: also those of the stream.
+/// and at least one segment. Errors: those of compare() for a motion, and those of the stream.
 [[nodiscard]] Result<Comparison> compare(MotionStream& stream, const CompareOptions& options);
 
 /// Estimates the cost of an evaluation, by which schemes are sorted. Each byte that is read, each addition and each
@@ -171,7 +173,7 @@ struct BlendCompareOptions {
 
 enum class BlendDeltas { kFile, kEndPoint, kLeastSquares, kExact };
 
-/// Returns "file", "end point", "least squares" or "exact".
+/// Returns the name of a kind of deltas: "file", "end point", "least squares" or "exact".
 [[nodiscard]] std::string_view name_of(BlendDeltas deltas) noexcept;
 
 struct BlendError {
@@ -221,8 +223,8 @@ struct BlendComparison {
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
 /// Compares the deltas for all meshes of a file that have targets and normals; with options.animation, only for the
-/// meshes that this animation drives. Errors: those of the function above, and those of GltfDocument; kUsage if the
-/// animation does not exist or drives none of the meshes, and for random weights of a mesh whose targets are the
+/// meshes that this animation drives. Errors: those of compare_blends() for a motion, and those of GltfDocument; kUsage
+/// if the animation does not exist or drives none of the meshes, and for random weights of a mesh whose targets are the
 /// keyframes of a baked sequence; kInvalidInput if no mesh can be compared.
 [[nodiscard]] Result<BlendComparison> compare_blends(const GltfDocument& document,
                                                      const BlendCompareOptions& options = {});

@@ -102,7 +102,7 @@ struct Inspection {
 [[nodiscard]] Result<Inspection> inspect(MotionStream& stream,
                                          const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// The inspection of a primitive with faces. GltfPrimitive has further properties of it.
+/// The inspection of a primitive with faces. Further properties of the primitive are in GltfPrimitive.
 struct GltfPrimitiveInspection {
   std::size_t mesh = 0, primitive = 0;
   std::size_t triangles = 0;

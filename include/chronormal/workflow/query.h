@@ -66,8 +66,8 @@ struct QueryColumn {
 };
 
 struct QueryTable {
-  /// The prefix of the names of its arrays in a file, or empty. The table "crossing" has the arrays crossing_face and
-  /// so on.
+  /// The prefix of the names of the table's arrays in a file, or empty. The table "crossing" has the arrays
+  /// crossing_face and so on.
   std::string name;
   std::string meaning;  ///< a description of the rows for users: "collapses of faces"
   std::vector<QueryColumn> columns = {};
