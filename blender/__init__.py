@@ -27,8 +27,8 @@ bl_info = {
     "category": "Import-Export",
 }
 
-# The exporter and the importer of glTF look for names like these in the module of every enabled add-on, and call what
-# they find.
+# The exporter and the importer of glTF look for names such as glTF2_pre_export_callback in the module of every enabled
+# add-on, and call what they find.
 glTF2_pre_export_callback = export.before_export
 glTF2_post_export_callback = export.before_writing
 glTF2ImportUserExtension = baked.RecogniseBakedFiles

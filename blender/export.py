@@ -29,7 +29,7 @@ _PARAMETERS = ["gltf", "export_settings", "encoder", "glb_buffer"]
 # The module whose function is replaced at the moment, its original function, and the replacement.
 _replaced: tuple[ModuleType, Callable[..., Any], Callable[..., Any]] | None = None
 
-# True while the add-on itself exports an object in order to check it. Such a file is not baked.
+# True while the add-on itself exports an object in order to check it. The file of such an export is not baked.
 is_paused = False
 
 

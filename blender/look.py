@@ -70,7 +70,7 @@ class Judge:
             self.file = shown.read(_baked(path))
 
     def errors(self, weights: numpy.ndarray, time: float | None = None) -> numpy.ndarray:
-        """Returns the error of every corner in degrees for these weights of the author's keys."""
+        """Returns the error of every corner in degrees at the given weights of the author's keys."""
         normals = self.file.normals_at(self.file.weights(weights, time))
         return shown.degrees_between(normals[self.vertices], shown.unit(self.subject.normals(weights)))
 

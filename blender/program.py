@@ -66,8 +66,8 @@ def make_executable(path: Path) -> None:
 
 
 def find(preferred: str) -> Path:
-    """Returns the program that the preferences name, or else the one in bin/, or else one on PATH. Raises Unavailable
-    if there is none."""
+    """Returns the program that the preferences name, or else the program in bin/, or else a program on PATH. Raises
+    Unavailable if there is none."""
     if preferred:
         path = Path(preferred)
         if not path.is_file():

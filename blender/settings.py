@@ -55,7 +55,7 @@ class Preferences(bpy.types.AddonPreferences):
     )
 
     def options(self) -> list[str]:
-        """Returns these settings as options of `chronormal bake`."""
+        """Returns the settings of the export as options of `chronormal bake`."""
         result: list[str] = []
         if self.viewers:
             result += ["--for", ",".join(name for name, _, _ in VIEWERS if name in self.viewers)]

@@ -12,8 +12,8 @@ file(RELATIVE_PATH prefix_from_pkg_config /${pkg_config_folder} /)
 
 # chronormal_install_pkg_config(TARGET REQUIRES LIBS): installs the file that describes a library to pkg-config.
 function(chronormal_install_pkg_config target requires libraries)
-  # A program that links static libraries must also link the libraries that these need. They are therefore in Requires
-  # and not in Requires.private.
+  # A program that links a static library must also link the libraries that the static library needs. Therefore the
+  # needed libraries are in Requires and not in Requires.private.
   file(CONFIGURE OUTPUT ${config_folder}/${target}.pc CONTENT
 "prefix=\${pcfiledir}/@prefix_from_pkg_config@
 libdir=\${prefix}/@CMAKE_INSTALL_LIBDIR@

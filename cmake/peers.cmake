@@ -1,4 +1,4 @@
-# Finds the other libraries with which benchmarks are compared. ./run bench installs and uses them.
+# Finds the libraries with which the benchmarks compare chronormal. ./run bench installs and uses these libraries.
 find_package(OpenMesh QUIET)
 find_package(VTK QUIET COMPONENTS CommonCore CommonDataModel FiltersCore FiltersModeling)
 # CGAL complains about build types that are not Release. This setting silences it.

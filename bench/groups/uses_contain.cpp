@@ -98,7 +98,7 @@ void verify(const Scene& scene) {
   }
 }
 
-// Counts the crossings that a test for single instants notices when it is called at kSamples instants.
+// Counts the crossings that a program would notice that tests only at kSamples instants which points are inside.
 std::size_t noticed(const Scene& scene) {
   std::size_t count = 0;
   Windings before = scene.windings(0);

@@ -49,7 +49,7 @@ class Oracle {
   /// Returns n(t) of each chosen element, not normalised.
   [[nodiscard]] std::vector<Vector> normals(double t, Rule rule = Rule::kArea) const;
   /// Returns the angles in radians between n(t) and normal_of(element). Leaves out elements without a direction, for
-  /// which |n(t)| is below 1e-7 of the sum of the areas.
+  /// which |n(t)| is below 1e-7 of the areas of their faces.
   [[nodiscard]] Errors errors(double t, Rule rule, const std::function<Vector(std::size_t)>& normal_of) const;
   /// Returns the angles in radians between the given exact normals and normal_of(element). If the exact normals are
   /// sums weighted by area, leaves out elements whose sum almost vanishes, so that it has no direction.
@@ -63,7 +63,7 @@ class Oracle {
   std::vector<std::uint32_t> elements_;
   // The faces whose normals are added up for each vertex, as pairs of an index into elements_ and a face.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> terms_;
-  // for each element, the sum of the areas of its faces at both ends
+  // The sum of the areas of the faces of each element, at both ends of the segment.
   std::vector<double> areas_;
 };
 

@@ -31,7 +31,7 @@ class BandwidthMeter {
  public:
   /// Asks for the bandwidth at a working set in bytes, which is then measured together with the other functions.
   void want(std::size_t working_set);
-  /// Appends to `functions` those that measure the bandwidth.
+  /// Appends to `functions` the functions that measure the bandwidths for which want() asked.
   void append(std::vector<Timed>& functions);
   /// Takes the times of the functions that append() added last. Their first index is `first`.
   void take(const std::vector<Timed>& functions, std::size_t first);

@@ -393,8 +393,8 @@ Result<int> run(BakeArguments options) {
   Progress progress(options.common.quiet);
   const Result<BakeOptions> how = understand(options);
   if (!how) return how.error();
-  // The extension of the output alone reveals this error, so it is reported before the input is read. Other errors
-  // about this name depend on the input.
+  // An output with an extension that bake cannot write is refused before the input is read. Other errors in the name of
+  // the output depend on the input.
   const bool writes = !options.plan;
   if (writes && !is_stream(options.common.output) && is_motion_file(options.common.output))
     return misuse(options.common.output, "bake can only write glTF; choose a name that ends in .glb, .gltf or .vrm");

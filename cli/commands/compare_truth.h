@@ -17,8 +17,8 @@ struct TruthArguments {
   [[nodiscard]] std::vector<Option> table();
 };
 
-/// Reads the input, leaves some keyframes out, and compares interpolated normals with the normals at these keyframes.
-/// Errors: those of reading and of compare_with_truth().
+/// Reads the input, leaves some keyframes out, and compares interpolated normals with the normals at the keyframes that
+/// were left out. Errors: those of reading and of compare_with_truth().
 [[nodiscard]] Result<NamedTruthComparison> compare_input_with_truth(const InputOptions& input,
                                                                     const ElementArguments& elements,
                                                                     const TruthArguments& arguments,

@@ -64,7 +64,7 @@ struct JudgeArguments {
   std::string viewers_by_old_name;     ///< given by --host, the old name of --for, which causes a warning
   std::optional<std::size_t> samples;  ///< samples per segment
 
-  /// Returns the table of these options. `of_viewers` is the help text for --for.
+  /// Returns the table of the options --weighting, --for and --samples. `of_viewers` is the help text for --for.
   [[nodiscard]] std::vector<Option> table(const std::string& of_viewers);
   /// Sets to_weighting and to_viewers to the values that the user gave. A parameter stays as it is if its option was
   /// not given. Errors: kUsage for unknown names. Prints a warning in the name of `command` if the old name of an

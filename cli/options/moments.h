@@ -46,7 +46,7 @@ struct AskedMoments {
   std::vector<Pose> poses;
   std::optional<Stepping> stepping;
 
-  /// Returns the number of moments, or 1 if the number depends on the input.
+  /// Returns the number of moments that the user chose, or 1 if the number depends on the input.
   [[nodiscard]] std::size_t count() const noexcept;
 };
 

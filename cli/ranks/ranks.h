@@ -57,8 +57,8 @@ void maximize_numbers(std::span<double> numbers);
   return has_ranks() ? &peers : nullptr;
 }
 
-/// Returns a callback that passes progress on to `progress`, and also looks for errors of other ranks. It may end the
-/// process.
+/// Returns a callback that passes progress on to `progress`, and also looks for errors of other ranks. If another rank
+/// has failed, the callback may end the process.
 using ProgressCallback = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] ProgressCallback watching_ranks(ProgressCallback progress);
 

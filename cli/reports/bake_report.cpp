@@ -251,7 +251,7 @@ std::string left_over(const GltfBake& bake) {
       kHarmlessTolerance);
 }
 
-// Returns a text about the number of corrections that bake left out, and the reason.
+// Returns a text about the number of correction targets that bake left out, and the reason.
 std::string left_text(const GltfBake& bake) {
   std::size_t left_out = 0;
   for (const BakedMesh& mesh : bake.meshes) left_out += mesh.left_out;

@@ -19,7 +19,7 @@ namespace chronormal::cli {
 [[nodiscard]] std::string bake_text(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Returns tables of the targets, bytes and errors of each candidate for each mesh, as the bake compares them.
+/// Returns tables with the targets, bytes and errors of every candidate that the bake has compared for each mesh.
 [[nodiscard]] std::string plan_text(const GltfBake& bake, const BakeReport& report);
 
 }  // namespace chronormal::cli

@@ -93,7 +93,8 @@ struct FaceCollapses {
 /// The viewpoint of a query. Coordinates are used exactly as given, and must be in the range of float32.
 struct View {
   bool is_eye = false;
-  /// The positions of the eye at the start and the end of its path; both are the direction if is_eye is false.
+  /// The positions of the eye at the start and at the end of its path. If is_eye is false, both are the direction to
+  /// the viewer.
   Vec3d from, to;
   /// The fractions of the eye's path at t = 0 and at t = 1, for a path that is longer than the segment.
   LocalTime start = 0.0, end = 1.0;

@@ -24,7 +24,7 @@
 
 namespace chronormal {
 
-/// The number of things of one kind in a mesh, and the lowest index among them.
+/// A count of edges, vertices or faces of one kind in a mesh, and the lowest index among them.
 struct Found {
   std::size_t count = 0;
   std::size_t first = 0;  ///< the lowest index; 0 if count is 0

@@ -63,9 +63,9 @@ struct GltfExtraTarget {
   std::vector<QuadraticTerm> quadratic;
 
   /// Returns the weight of this target for given weights of the mesh's own targets. `weights` has one number for each
-  /// of these.
+  /// own target.
   [[nodiscard]] double weight(std::span<const double> weights) const noexcept;
-  /// Returns true if the weight of this target is nonzero when w_i is the only nonzero weight.
+  /// Returns true if the weight of this correction target is nonzero when own target i has the only nonzero weight.
   [[nodiscard]] bool follows(std::size_t i) const noexcept;
 
   friend bool operator==(const GltfExtraTarget&, const GltfExtraTarget&) = default;
@@ -166,8 +166,8 @@ struct GltfNode {
 /// mesh that has no weights of its own gets such a track.
 struct GltfTrack {
   std::size_t node = 0, channel = 0;
-  /// The index of the first track in the animation that has the same keys, interpolation and number of targets, and
-  /// therefore the same weights.
+  /// The index of the first track in the animation that has the same keys, interpolation and number of targets as this
+  /// track, and therefore the same weights.
   std::size_t same_keys_as = 0;
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::size_t key_count = 0;
@@ -228,7 +228,7 @@ struct GltfOptions {
 class GltfDocument {
  public:
   /// Opens a file; "-" is the standard input. Errors: kFailed with the path as the place if the file cannot be read;
-  /// those of reading glTF, described at the top of this file.
+  /// kInvalidInput, with a JSON pointer or a byte offset, if the file is not valid glTF.
   [[nodiscard]] static Result<GltfDocument> open(const std::string& path, const GltfOptions& options = {});
 
   /// Reads a document from bytes, which must outlive the document. `name` is used in messages. `folder` is the folder
@@ -278,7 +278,8 @@ class GltfDocument {
   [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,
                                                     bool shading) const;
 
-  /// Reads the keys of a track, which is given by the index of its animation and its own index there.
+  /// Reads the keys of a track, which is given by the index of the animation and by the index of the track in this
+  /// animation.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
 
   /// Finds an animation by its name, or else by its index. Errors: kUsage with the names of all animations.

@@ -273,7 +273,8 @@ using TargetNames = std::vector<std::vector<std::string>>;
 //            type, or coordinates that are not finite or too large for float32; kFailed if the file cannot be read.
 // Threads    pure
 
-/// The two ends of n straight lines, as (n, 3) numbers each. The ends of a point that rests are equal.
+/// The straight lines on which n points move: both ends of each line, as (n, 3) numbers. The ends of a point that rests
+/// are equal.
 struct PointPaths {
   std::vector<double> from, to;
 

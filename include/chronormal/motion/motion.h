@@ -137,8 +137,8 @@ struct Motion {
   Topology topology;
   std::vector<Keyframe> keyframes;
   std::vector<SegmentKeys> segments;
-  /// The number of the separate object to which each vertex belongs, (V). Vertices of different objects are never one
-  /// point, even at the same place. If this is empty, all vertices belong to one object.
+  /// The number of the object to which each vertex belongs, (V), in a mesh of separate objects. Vertices of different
+  /// objects are never one point, even at the same place. If the list is empty, all vertices belong to one object.
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
   /// The point that is (0, 0, 0) in the positions of all keyframes. It is nonzero only if a file has coordinates far
@@ -232,8 +232,8 @@ class MotionStream {
   explicit MotionStream(const Motion& whole);
 
   /// Wraps a motion whose keyframes are read by `read` when they are needed. `outline` is the motion without positions,
-  /// except perhaps those of the first keyframe; everything else in it must be valid (see validate()). `kept` is in
-  /// bytes.
+  /// except perhaps those of the first keyframe; everything else in it must be valid (see validate()). If all keyframes
+  /// together take at most `kept` bytes, they stay in memory once they were read.
   MotionStream(Motion outline, Reader read, std::size_t kept = kUsuallyKept);
 
   MotionStream(MotionStream&& other) noexcept;

@@ -103,7 +103,8 @@ struct BlendChoice {
   BlendPath path = BlendPath::kTerms;
   std::size_t active_targets = 0;    ///< number of targets with nonzero weights
   std::size_t touched_elements = 0;  ///< number of elements with a face that an active target moves
-  /// Number of touched elements with a term that is not stored. They are computed from blended positions on every path.
+  /// The number of touched elements that need a term which is not stored. They are computed from blended positions on
+  /// every path.
   std::size_t unstored_elements = 0;
   double terms_ns = 0, touched_ns = 0, whole_ns = 0;  ///< the costs that the model expects of each path, in nanoseconds
 };

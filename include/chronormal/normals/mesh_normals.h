@@ -100,7 +100,8 @@ class MeshNormals {
   /// if a position is not finite (the place is "keyframe 0, vertex V"); for the first segment also those of
   /// make_groups().
   [[nodiscard]] Status set_segment(VectorView<const float> from, VectorView<const float> to);
-  /// Prepares a segment of a motion of the same mesh. Residuals of the positions are used.
+  /// Prepares a segment of a motion of the same mesh. Uses the residuals of positions, which are the remainders of
+  /// their rounding to float32. Errors: those of set_segment() for positions.
   [[nodiscard]] Status set_segment(const Segment& segment);
 
   /// Prepares the next segment step by step, while the current one is evaluated. begin_segment() does no work yet; its

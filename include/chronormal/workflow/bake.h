@@ -124,8 +124,8 @@ struct ShownErrors {
   }
 };
 
-/// The errors of a mesh in one viewer before and after a bake. Normals are those that the skins of the mesh's nodes
-/// transform.
+/// The errors of a mesh in one viewer before and after a bake. They are the errors of normals as the skins of the nodes
+/// with the mesh transform them.
 struct ViewerChange {
   struct Errors {
     ShownErrors before, after;
@@ -163,7 +163,8 @@ struct BakedCandidate {
   double rounded = 0;
 };
 
-/// Returns true if the chosen candidate misses the given tolerance only because compressors round.
+/// Returns true if the chosen candidate misses the given tolerance only because compressors of glTF files round
+/// normals.
 [[nodiscard]] inline bool is_beyond_by_rounding(const BakedCandidate& choice, const BakeOptions& options) {
   return options.tolerance && choice.within && choice.rounded > *options.tolerance;
 }
@@ -203,8 +204,8 @@ struct BakedMesh {
   /// The error in degrees, along the animations, that comes from cutting cubic splines into lines and from leaving out
   /// pairs of targets.
   double resampling_error = 0;
-  /// True if an animation drives a single weight of the mesh by KHR_animation_pointer. Only the encoding kExact then
-  /// adds correction targets.
+  /// True if an animation drives a single weight of the mesh by KHR_animation_pointer. The mesh then gets no correction
+  /// targets; a bake with the encoding kExact fails if it needs any.
   bool has_lone_weight = false;
   /// True if nothing was changed, because the mesh was baked before. `candidates` then shows the errors of its present
   /// normals.

@@ -34,7 +34,7 @@ namespace chronormal {
 // Units      degrees
 // Threads    these are plain values. Adding the same parts in the same order gives the same bits.
 
-/// The limits in degrees between the bins of the histogram: below 0.1, 0.1 to 0.5, ... and from 90 on.
+/// The limits in degrees between the bins of the histogram of errors: below 0.1, 0.1 to 0.5, ... and from 90 on.
 inline constexpr std::array<double, 9> kAuditBinEdges = {0.1, 0.5, 1, 2, 5, 10, 25, 45, 90};
 inline constexpr std::size_t kAuditBins = kAuditBinEdges.size() + 1;
 

@@ -130,8 +130,8 @@ struct GltfInspection {
   std::size_t without_faces = 0;       ///< number of primitives of points or lines, or without positions
 };
 
-/// Reads all geometry and all weight tracks one after the other. Memory: that of the largest primitive, and data that
-/// the document keeps. Errors: those of GltfDocument.
+/// Inspects a document. Reads all geometry and all weight tracks one after the other. Memory: that of the largest
+/// primitive, and data that the document keeps. Errors: those of GltfDocument.
 [[nodiscard]] Result<GltfInspection> inspect(const GltfDocument& document);
 
 /// Counts the vertices of a motion that coincide with a vertex of lower number in all keyframes, but have another
