@@ -20,7 +20,7 @@ IDLE = "idle correction"
 
 
 def mark_of(thing: bpy.types.ID) -> dict[str, Any] | None:
-    """Returns the mark that a bake left on a mesh or an object, or None without a mark."""
+    """Returns the mark that a bake left on a mesh or an object, or None if there is no mark."""
     value = thing.get(MARK)
     if hasattr(value, "to_dict"):
         value = value.to_dict()

@@ -12,7 +12,8 @@ last: tuple[str, str] = ("", "")
 
 
 def _running_operator() -> bpy.types.Operator | None:
-    """Returns the operator that is running. The exporter does not pass it to its hooks, so the callers are searched."""
+    """Returns the operator that is running. The exporter does not pass the operator to its hooks, so this function
+    looks for it in the functions that called it."""
     frame = sys._getframe(1)  # pylint: disable=protected-access
     while frame is not None:
         owner = frame.f_locals.get("self")

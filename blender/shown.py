@@ -35,7 +35,7 @@ def _chunks(data: bytes) -> tuple[dict[str, Any], bytes]:
 
 
 class _Arrays:
-    """Reads the arrays of a document. The key of an array is the index of its accessor."""
+    """Reads the arrays of a glTF document. An array is named by the index of its accessor."""
 
     def __init__(self, document: dict[str, Any], binary: bytes) -> None:
         self.document, self.binary = document, binary

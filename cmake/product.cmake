@@ -179,7 +179,7 @@ function(chronormal_add_product suffix flags)
   target_link_libraries(chronormal_cli${suffix} PRIVATE chronormal_io${suffix} ${flags} CLI11::CLI11 fmt::fmt
                                                         nlohmann_json::nlohmann_json)
   if(WIN32)
-    # The main thread gets as much stack as on Linux.
+    # On Windows, the main thread gets as much stack as on Linux.
     target_link_options(chronormal_cli${suffix} PRIVATE -static -Wl,--stack,8388608)
   elseif(CHRONORMAL_STATIC)
     # The program is linked with -static-pie, so that the system may load it at any address.

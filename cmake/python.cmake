@@ -31,7 +31,8 @@ foreach(file __init__.py _chronormal.pyi py.typed)
   configure_file(${PROJECT_SOURCE_DIR}/python/chronormal/${file} ${python_package}/${file} COPYONLY)
 endforeach()
 
-# Adds the tests of the package: one for each file, with the program and the C library to compare with.
+# Adds the tests of the Python package, one for each file. The tests compare results of the package with results of the
+# program and of the C library.
 if(CHRONORMAL_TESTS)
   file(GLOB python_tests CONFIGURE_DEPENDS python/tests/test_*.py)
   foreach(file ${python_tests})

@@ -46,7 +46,7 @@ struct Subject {
   }
 };
 
-// Makes a Path whose normals are three floats each.
+// Makes a Path that writes normals to memory as three floats each.
 Path float_path(const Subject& subject, std::string name, double bound, double bytes,
                 std::function<void(std::size_t, double, VectorView<float>)> evaluate) {
   auto memory = std::make_shared<std::vector<float>>(3 * subject.count);

@@ -29,7 +29,7 @@ void run_cones(Suite& suite, const Size& size);
 /// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
 void run_blend(Suite& suite, const Size& size);
 
-/// Measures queries about a whole segment: when faces collapse, and which way they face.
+/// Measures how long queries about a whole segment take: when faces collapse, and from which side a viewer sees them.
 void run_uses(Suite& suite, const Size& size);
 /// Measures how fast the crossings of points through the surface are found.
 void run_containment(Suite& suite, const Size& size);

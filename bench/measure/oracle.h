@@ -29,7 +29,7 @@ enum class Rule { kArea, kUniform };
 /// Returns the angle between two vectors in radians, or pi if one of them is zero or NaN.
 [[nodiscard]] double angle(const Vector& a, const Vector& b);
 
-/// The errors of an approximation over many elements, in radians.
+/// The angular errors of the approximate normals of many elements, in radians.
 struct Errors {
   std::vector<double> sorted;
 

@@ -50,7 +50,7 @@ struct AskedMoments {
   [[nodiscard]] std::size_t count() const noexcept;
 };
 
-/// Parses the arguments. Errors: kUsage, with the option as the place.
+/// Parses the values of --times, --weights and --step. Errors: kUsage, with the option as the place.
 [[nodiscard]] Result<AskedMoments> understand(const MomentArguments& arguments);
 
 /// Returns the moments for this input, or no moments for a mesh at rest. Errors: those of Input::motion(); kUsage if

@@ -104,7 +104,8 @@ int print_or_report(const std::string& text) {
   return printed ? kExitDone : report("", printed.error());
 }
 
-// Returns "; did you mean NAME?", or an empty text.
+// Returns "; did you mean NAME?" with the name that is most similar to the word, or an empty text if no name is
+// similar.
 std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(word, names);
   return nearest.empty() ? "" : formatted("; did you mean {}?", nearest);

@@ -152,7 +152,7 @@ Error error_of(const std::string& text) {
           text.substr(message)};
 }
 
-// Adds the number of the rank to an error. Usage errors get no number, because all ranks have the same ones.
+// Adds the number of the rank to an error. Usage errors get no number, because every rank has the same usage errors.
 Error of_rank(int rank, Error error) {
   if (error.code != ErrorCode::kUsage)
     error.place = formatted("rank {}{}{}", rank, error.place.empty() ? "" : ": ", error.place);

@@ -306,8 +306,8 @@ std::string plan_of_viewers(const GltfBake& bake, bool of_animations) {
   return any ? formatted("\nerrors {}:\n\n{}", poses_words(of_animations), table.text()) : "";
 }
 
-// Returns the respects in which a result is worse or better, with figures: "on average (0.6400 degrees, before
-// 3.3200)".
+// Returns in words the respects in which the errors after a bake are worse or better, with figures: "on average (0.6400
+// degrees, before 3.3200)".
 std::string respects_text(const WorseRespects& respects, const BeforeAndAfter& audit) {
   const MotionError &before = audit.before.error, &after = audit.after.error;
   std::string text;

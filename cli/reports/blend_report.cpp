@@ -50,7 +50,8 @@ std::string target_name(const BlendSubject& subject, std::size_t target) {
   return name.empty() ? formatted("{}", target) : name;
 }
 
-// Returns the targets of the worst sample and their weights, the largest weights first.
+// Returns the targets that are active at the sample with the worst error, with their weights, the largest weights
+// first.
 std::string targets_cell(const BlendSubject& subject, const BlendError& error) {
   std::vector<BlendError::Weight> weights = error.worst_weights;
   if (weights.empty()) return "-";

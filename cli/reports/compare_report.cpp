@@ -1,4 +1,4 @@
-// Formats the result of `compare` as a table and as CSV.
+// Formats the result of `compare` as a table, as CSV and as LaTeX.
 #include "cli/reports/compare_report.h"
 
 #include <array>

@@ -9,7 +9,7 @@
 
 namespace chronormal::cli {
 
-/// Columns that a table may have besides the errors.
+/// The columns that a table has besides the names and errors of schemes.
 struct TableColumns {
   bool times = true;  ///< false to get the same table in every run
   bool operations = false;

@@ -8,7 +8,8 @@
 
 namespace chronormal::cli {
 
-/// Returns facts, tables of targets, primitives and tracks, and two lines for each problem. Long tables are cut off.
+/// Returns the whole report: facts about the input, tables of targets, primitives and tracks, and two lines for each
+/// problem. Long tables are cut off.
 [[nodiscard]] std::string inspect_text(const Inspected& input);
 
 }  // namespace chronormal::cli

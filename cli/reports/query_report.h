@@ -8,7 +8,8 @@
 
 namespace chronormal::cli {
 
-/// Returns the facts, one line each, and the first rows of every table. `input` is the name of the input file.
+/// Returns the facts of an answer, one line each, and the first rows of every table of the answer. `input` is the name
+/// of the input file.
 [[nodiscard]] std::string query_text(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::cli

@@ -29,7 +29,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress() { clear(); }
 
-  /// Returns true if only warnings are printed.
+  /// Returns true if the user asked for no output except warnings.
   [[nodiscard]] bool is_quiet() const noexcept { return is_quiet_; }
 
   /// Returns a function by which the library reports progress. This object must outlive the function. The bar shows a
@@ -47,7 +47,7 @@ class Progress {
   struct Work {
     std::string label, things;
     std::size_t count = 0;
-    // The time and the progress at the first report.
+    // The time at the first report of progress, and the share of the work that was done then.
     Clock::time_point start = {};
     double done_at_start = -1;
   };

@@ -20,16 +20,16 @@ namespace chronormal::cli {
 /// colours, or if CLICOLOR_FORCE is set and not 0. NO_COLOR turns colours off in any case.
 [[nodiscard]] bool shows_colour(int stream);
 
-/// Return the text with emphasis, for titles, errors and warnings. An empty text stays empty.
+/// Return the text with marks of emphasis for a title, an error or a warning. An empty text stays empty.
 [[nodiscard]] std::string heading(std::string_view text);
 [[nodiscard]] std::string alarming(std::string_view text);
 [[nodiscard]] std::string warning(std::string_view text);
 
-/// Returns the text without any emphasis.
+/// Returns the text without its marks of emphasis.
 [[nodiscard]] std::string plain(std::string_view text);
 
-/// Returns the text with emphasis for its headings. A heading is a line that begins in the first column and ends in a
-/// colon.
+/// Returns the text with marks of emphasis around its headings. A heading is a line that begins in the first column and
+/// ends in a colon.
 [[nodiscard]] std::string with_headings(std::string_view text);
 
 }  // namespace chronormal::cli

@@ -17,7 +17,7 @@ enum class Remedy {
   kNone,  // no normal is wrong
   // No judged normal is wrong, but some normals could not be judged, or no normal was judged at all.
   kUnknown,
-  // The normals are right but tangents are wrong; bake writes no tangents.
+  // The normals are right but tangents are wrong. The remedy is to export other tangents.
   kTangents,
   kViewers,   // normals are right by the specification, but wrong in viewers that differ from it
   kRule,      // the requested rule is not the one that viewers use for glTF files
@@ -80,7 +80,7 @@ Remedy remedy_of(const Audited& input) {
   return input.bake.empty() ? Remedy::kTargets : Remedy::kBake;
 }
 
-// Returns the weightings of the wrong subjects: "angle-weighted", "angle- and max-weighted".
+// Returns the weightings of the subjects with wrong normals, in words: "angle-weighted", "angle- and max-weighted".
 std::string weighting_words(const std::vector<const AuditSubject*>& subjects) {
   std::string text;
   for (const WeightingInfo& info : kAllWeightings) {

@@ -51,7 +51,8 @@ std::string torn(const MotionError& error) {
   return formatted("{:.2g}", edges);
 }
 
-// Returns a line that explains by which weighting true normals are defined, unless it is the usual one, by area.
+// Returns a line that names the weighting by which true normals are defined, or an empty text for the usual weighting,
+// which is by area.
 std::string weighting_words(const Audited& input) {
   const Audit& audit = input.audit;
   if (audit.weighting == Weighting::kArea) return "";

@@ -10,7 +10,7 @@
 
 namespace chronormal::cli {
 
-/// One input with its audit.
+/// An opened input, its audit, and the limits for the errors of the audit.
 struct Audited {
   Input opened;
   Audit audit;
@@ -21,8 +21,8 @@ struct Audited {
   /// Returns the document of a glTF file, or nullptr for other inputs.
   [[nodiscard]] const GltfDocument* document() const noexcept { return opened.document(); }
   [[nodiscard]] bool passed(const ViewerAudit& viewer) const { return limits.allow(viewer); }
-  /// Returns true if the limits are met in every viewer that the user named, or by the rule if the user named none. A
-  /// file in which nothing moves meets all limits.
+  /// Returns true if the errors are within the limits in every viewer that the user named, or by the rule of the audit
+  /// if the user named no viewer. A file in which nothing moves is within all limits.
   [[nodiscard]] bool passed() const { return limits.allow(audit); }
 };
 

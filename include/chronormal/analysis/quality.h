@@ -60,7 +60,7 @@ struct Quality {
   [[nodiscard]] double mean() const noexcept;  ///< the mean angle in radians; 0 if nothing was summed
   [[nodiscard]] double rms() const noexcept;   ///< the root of the mean squared angle, in radians
 
-  /// Adds the errors of a batch of samples of one segment at one t. The error of element first_element + i is the angle
+  /// Adds the errors of a batch of samples of one segment at one t. The error of element first.element + i is the angle
   /// between normals[i] and exact[i], which need not be unit vectors.
   void add(std::span<const Vec3d> exact, VectorView<const float> normals, const ErrorPlace& first);
 

@@ -96,7 +96,8 @@ struct View {
   /// The positions of the eye at the start and at the end of its path. If is_eye is false, both are the direction to
   /// the viewer.
   Vec3d from, to;
-  /// The fractions of the eye's path at t = 0 and at t = 1, for a path that is longer than the segment.
+  /// The fractions of the eye's path at which the eye is at t = 0 and at t = 1. They differ from 0 and 1 if the path is
+  /// longer than the segment.
   LocalTime start = 0.0, end = 1.0;
 
   /// Makes a viewer infinitely far away in the direction `to_viewer`. This viewer sees the front of each face whose
@@ -128,7 +129,7 @@ struct FacingChange {
 struct Facing {
   std::array<FacingChange, 3> at;  ///< the changes, in ascending order of t
   std::size_t count = 0;
-  /// The side in the whole segment if count is 0; kNone if the face is always edge-on or without area.
+  /// The side that is seen in the whole segment, if count is 0; kNone if the face is always edge-on or without area.
   Side side = Side::kNone;
 
   [[nodiscard]] std::span<const FacingChange> changes() const& noexcept { return {at.data(), count}; }

@@ -91,7 +91,7 @@ template <class T, std::size_t M>
   return power;
 }
 
-/// Converts a polynomial to Bernstein form.
+/// Converts a polynomial from power form to Bernstein form.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr Bernstein<T, N> to_bernstein(const Power<T, N>& p) {
   Bernstein<T, N> b;

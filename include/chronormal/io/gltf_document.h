@@ -320,7 +320,7 @@ class GltfDocument {
 //            memory.
 // Threads    an edit and its document belong to one thread at a time.
 
-/// The options for writing an accessor of new numbers.
+/// The options for writing an array of numbers as a new accessor.
 struct GltfVectors {
   bool bounds = false;  ///< true to write min and max, which accessors of positions and times must have
   /// True to store every component, even if all are zero. If false, an array that is mostly zero becomes a sparse

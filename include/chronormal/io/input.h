@@ -151,7 +151,7 @@ class Input {
   /// Returns the name of the input for messages: the name of its only file, "first ... last", the base, or the built-in
   /// morph.
   [[nodiscard]] const std::string& name() const noexcept;
-  /// Returns the size of the file in bytes, if the input is a glTF document.
+  /// Returns the size of the glTF file in bytes, or 0 for any other input.
   [[nodiscard]] std::size_t file_size() const noexcept;
 
   /// Returns the limit on the memory and output that this input may cause. The limit depends on the number of bytes

@@ -107,7 +107,7 @@ enum class MotionKind {
   kAnimation,  ///< weights of targets over time; like a sequence, but without a segment where weights jump
 };
 
-/// Returns "sequence", "targets" or "animation".
+/// Returns the name of a kind of motion: "sequence", "targets" or "animation".
 [[nodiscard]] std::string_view motion_kind_name(MotionKind kind) noexcept;
 
 struct Motion {

@@ -157,7 +157,7 @@ class NormalCurves {
   /// Returns the memory in use, in bytes. Each index of the curves counts as 8 bytes, also on 32-bit machines. The
   /// padding of the last block and the memory that is kept for the next `reuse` do not count.
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// The number of elements that take a certain number of bytes each.
+  /// A number of elements that take the same number of bytes each.
   struct ByteCount {
     std::size_t bytes = 0;  ///< number of bytes for each of these elements
     std::size_t elements = 0;

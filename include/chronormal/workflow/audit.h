@@ -80,7 +80,7 @@ inline constexpr std::size_t kMostAuditSamples = 1000001;  ///< largest number o
 
 struct AuditOptions {
   std::optional<AuditRule> rule = {};  ///< by default kGltf for glTF, and kNlerp for sequences
-  /// Number of samples per segment; by default 21, or fewer in long tracks (about 210 in all).
+  /// The number of samples per segment. The default is 21, or fewer in long tracks, which get about 210 samples in all.
   std::optional<std::size_t> samples = {};
   /// For glTF, the number of segments of a track that are judged, approximately. In longer tracks only every second,
   /// third or later segment is judged. 0 stands for all segments.
@@ -139,8 +139,8 @@ struct AuditSubject {
 
 /// Returns the name of a kind of subject: "target", "track", "sequence", "expression", "opening" or "poses".
 [[nodiscard]] const char* audit_subject_name(AuditSubject::Kind kind) noexcept;
-/// Returns the name of the number that tells the samples of a subject apart: "weight", "time", or "pose" for the number
-/// of a pose.
+/// Returns the name of the number that tells apart the samples of a kind of subject: "weight", "time", or "pose" if
+/// poses are numbered.
 [[nodiscard]] const char* audit_moment_name(AuditSubject::Kind kind) noexcept;
 
 /// The angles between stored base normals and the normals of the geometry.
@@ -229,8 +229,8 @@ struct Audit {
   std::array<double, 2> span = {};  ///< for a sequence: the times of its first and last keyframe
   std::optional<CutPath> cut = {};  ///< the cut of curved paths; the caller that has cut them sets it, for reports
   std::vector<AuditSubject> subjects;
-  /// The number of targets, tracks and expressions that move nothing for which normals can be judged. They are not
-  /// subjects.
+  /// The number of targets, tracks and expressions that move no vertex whose normals can be judged. They are not in
+  /// `subjects`.
   std::size_t still = 0;
   MotionError error;                 ///< errors of all subjects
   std::optional<std::size_t> worst;  ///< index of the subject with the worst error

@@ -113,7 +113,7 @@ struct ShownErrors {
   double mean = 0;
   double most = 0;  ///< 99.9 % of the errors are below this angle, which is rounded by at most a tenth
   double worst = 0;
-  /// The numbers of samples, each an edge in a pose, at which the errors of neighbouring normals differ by more than
+  /// The numbers of samples, each an edge in a pose, at which the errors at both ends of the edge differ by more than
   /// 10, 20 and 40 degrees.
   std::array<std::size_t, 3> tears{};
   std::size_t poses = 0;

@@ -87,7 +87,8 @@ struct CompareOptions {
 struct SchemeComparison {
   std::string scheme;
   Quality quality;
-  /// The sum of errors divided by that of `linear`; no value if `linear` has only rounding errors.
+  /// The sum of the errors of this scheme divided by the sum of the errors of `linear`; no value if `linear` has only
+  /// rounding errors.
   std::optional<double> relative_to_linear;
   /// The number of (element, segment) combinations for which the scheme is not defined, so that it used a documented
   /// fallback.
@@ -256,7 +257,8 @@ struct TruthOptions {
 struct TruthRow {
   std::string path;    ///< "linear", "catmull-rom" or "hermite"
   std::string scheme;  ///< the scheme on a linear path; "exact" on a curved one
-  /// max_at has the segment between kept keyframes, the face or the first vertex or corner, and the local t.
+  /// In max_at, `segment` is the segment between two kept keyframes, `element` is the face or the first vertex or
+  /// corner of the element, and t is the local t.
   Quality quality;
 };
 

@@ -79,7 +79,7 @@ class FineBins {
   [[nodiscard]] std::span<const Bin> filled() const noexcept { return bins_; }
   [[nodiscard]] std::size_t operator[](std::size_t number) const noexcept;
 
-  /// Adds `count` to the count of a bin. Preconditions: number < kAuditFineBins and count <= kMostCount.
+  /// Adds `count` to the count of the bin `number`. Preconditions: number < kAuditFineBins and count <= kMostCount.
   void add(std::size_t number, std::uint64_t count);
   void add(const FineBins& other);
   friend bool operator==(const FineBins&, const FineBins&) = default;

@@ -24,7 +24,7 @@
 
 namespace chronormal {
 
-/// The counts of faces that have some property at keyframes or in segments.
+/// The combinations of a face and a keyframe, or of a face and a segment, that have some property.
 struct Places {
   std::size_t pairs = 0;
   std::size_t faces = 0;
@@ -39,7 +39,7 @@ struct Largest {
   std::size_t segment = 0, element = 0;  ///< the number of the segment, and of the vertex or face
 };
 
-/// The inspection of a segment. For morph targets, a segment is a target.
+/// The results of inspecting one segment. For morph targets, a segment is a target.
 struct SegmentInspection {
   std::size_t moved_vertices = 0;
   Largest motion;              ///< the longest displacement of a vertex, in units of length of the file
@@ -175,7 +175,7 @@ struct Inspected {
     Input input, const std::string& animation,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
-/// Inspects a motion of the caller, or a mesh, with a name for messages.
+/// Inspects a motion, or a mesh at rest, that did not come from a file. `name` is its name in messages.
 [[nodiscard]] Inspected inspect_input(const Motion& motion, std::string name);
 
 }  // namespace chronormal

@@ -155,7 +155,7 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 [[nodiscard]] std::uint64_t json_bytes_of_query(const QueryAnswer& answer) noexcept;
 
 /// Returns the errors that write_query() would return for a path, so that a caller can find out before a long
-/// computation.
+/// computation. Errors: kUsage for an extension other than .npz; those of check_output().
 [[nodiscard]] Status check_query_output(const std::string& path, bool force);
 
 }  // namespace chronormal
