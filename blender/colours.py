@@ -56,7 +56,8 @@ def clear(mesh: bpy.types.Mesh) -> bool:
 
 
 def hide() -> None:
-    """Removes the attributes of all meshes before an export, since the exporter would write them into the file."""
+    """Removes from all meshes the attributes that paint() added, before an export, since the exporter would write them
+    into the file."""
     _hidden.clear()
     for mesh in bpy.data.meshes:
         attribute = mesh.attributes.get(DEGREES)

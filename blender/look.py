@@ -21,15 +21,15 @@ from . import baked, colours, program, settings, shown, truth
 # The largest numbers of frames and of pairs of keys that are checked.
 MOST_FRAMES, MOST_PAIRS = 250, 100
 LISTED_FRAMES, LISTED_KEYS, LISTED_PAIRS, LISTED_PLACES = 3, 6, 6, 5
-# The smallest distance between listed places, as a share of the object's size.
+# The smallest distance between two places in the panel's list, as a share of the object's size.
 APART = 0.1
-# Errors below this number of degrees are not listed.
+# Poses and places whose error is below this number of degrees are not in the panel's list.
 VISIBLE = 0.1
 
 
 @dataclass
 class Pose:
-    """A pose to check: the values of the keys, and the name of the pose."""
+    """A pose to check: the values of the shape keys, and the name of the pose."""
 
     kind: str  # one of the kinds of Finding.kind
     name: str

@@ -17,7 +17,7 @@
 
 namespace chronormal::fuzz {
 
-/// What was read from a glTF file in which every part was read, and the errors of the parts that could not be read.
+/// The result of reading every part of a glTF file, with the errors of the parts that could not be read.
 class GltfReading {
  public:
   std::vector<Error> errors;    ///< in the order in which they occurred

@@ -12,10 +12,10 @@ namespace chronormal::bench {
 
 void run_faces(Suite& suite, const Size& size);
 void run_vertices(Suite& suite, const Size& size);
-/// Measures meshes other than the torus: thin triangles, varied valence, a sphere that collapses, and meshes by other
-/// people in CHRONORMAL_DATA (a dance, a human face).
+/// Measures how long unit normals take on meshes other than the torus: thin triangles, varied valence, a sphere that
+/// collapses, and meshes by other people in CHRONORMAL_DATA (a dance, a human face).
 void run_meshes(Suite& suite);
-/// Measures every scheme, both at random t and in playback with small steps.
+/// Measures how long every scheme takes, both at random t and in playback with small steps.
 void run_schemes(Suite& suite, const Size& size);
 
 /// Measures how long certificates of the largest errors of schemes take, and dense sampling of these errors for
@@ -26,7 +26,8 @@ void run_certificates(Suite& suite, const Size& size);
 /// of the normals for comparison.
 void run_cones(Suite& suite, const Size& size);
 
-/// Measures blend shapes: many sparse targets with a few active at once, and few targets that move every vertex.
+/// Measures how long normals of blend shapes take: many sparse targets with a few active at once, and few targets that
+/// move every vertex.
 void run_blend(Suite& suite, const Size& size);
 
 /// Measures how long queries about a whole segment take: when faces collapse, and from which side a viewer sees them.

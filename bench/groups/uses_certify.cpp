@@ -1,6 +1,6 @@
-// Measures certificates of the largest error over a segment. For comparison, also measures common practice, which
-// evaluates the scheme at 64 moments, compares each normal with the exact one, and hopes that no error between these
-// moments is larger.
+// Measures how long certificates of the largest error over a segment take. For comparison, also measures common
+// practice, which evaluates the scheme at 64 moments, compares each normal with the exact normal, and hopes that no
+// error between these moments is larger.
 
 #include <algorithm>
 #include <cmath>

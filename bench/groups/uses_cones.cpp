@@ -1,5 +1,6 @@
-// Measures cones, bounds of clusters and mean normals over a whole segment. For comparison, also measures common
-// practice: cones of the two ends, meshoptimizer's bounds at some instants, and means of many samples.
+// Measures how long normal cones, bounds of clusters of faces, and mean normals take for a whole segment. For
+// comparison, also measures common practice: cones of the two ends, meshoptimizer's bounds at some instants, and means
+// of many samples.
 
 #include <fmt/core.h>
 #include <meshoptimizer.h>

@@ -1,4 +1,4 @@
-// Makes the meshes that are measured, in grid order and shuffled.
+// Makes the torus meshes on which the benchmarks run, in the order of the grid and in random order.
 #include "measure/meshes.h"
 
 #include <algorithm>

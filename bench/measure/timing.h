@@ -26,7 +26,7 @@ struct Timed {
   std::vector<double> nanoseconds = {};  ///< nanoseconds of a call, one value for each repetition
 };
 
-/// Estimates how many seconds a call takes, from a few calls.
+/// Estimates from a few calls how many seconds one call of run() takes.
 [[nodiscard]] double roughly_timed(const std::function<void()>& run);
 
 /// Times all functions, and sets their `nanoseconds`.

@@ -29,7 +29,7 @@ struct Bandwidth {
 
 class BandwidthMeter {
  public:
-  /// Asks for the bandwidth at a working set in bytes, which is then measured together with the other functions.
+  /// Requests the bandwidth at a working set in bytes. append() then adds its measurement to the functions to be timed.
   void want(std::size_t working_set);
   /// Appends to `functions` the functions that measure the bandwidths for which want() asked.
   void append(std::vector<Timed>& functions);

@@ -12,7 +12,7 @@ namespace chronormal::bench {
 
 class BareLoop {
  public:
-  /// The number of bytes that the loop reads for each element.
+  /// The number of bytes that the loop reads for each element: no bytes, or as many as compact or exact curves take.
   enum class Reads { kNothing = 0, kCompact = 20, kExact = 36 };
 
   /// Prepares to run over `count` elements, rounded up to a multiple of 16, and to write 12 bytes for each. Tries

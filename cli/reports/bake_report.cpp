@@ -192,7 +192,7 @@ std::string viewers_text(const GltfBake& bake, const BakeReport& report) {
   return viewers_table(bake, report, false) + viewers_table(bake, report, true);
 }
 
-// Returns the titles of the viewers in some rows: "three.js, Babylon.js".
+// Returns the titles of the viewers of the given rows: "three.js, Babylon.js".
 std::string titles_of(const std::vector<ViewerRow>& rows) {
   std::string text;
   for (const ViewerRow& row : rows) text.append(text.empty() ? "" : ", ").append(row.viewer->title);

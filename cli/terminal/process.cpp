@@ -21,7 +21,7 @@ volatile std::sig_atomic_t stderr_is_terminal = 0;
 std::atomic<const char*> last_words{nullptr};
 static_assert(std::atomic<const char*>::is_always_lock_free, "a signal handler may not wait");
 
-// Clears the line before the message, because it may show a progress bar.
+// Clears the current line of the terminal before it prints the message, because the line may show a progress bar.
 void end_line_and_say(const char* message) {
   if (stderr_is_terminal != 0) say_raw("\r\033[K");
   say_ending(message);

@@ -1,6 +1,6 @@
 /// chronormal: the normals of triangle meshes that deform. Includes all public headers of the library `chronormal`, in
 /// the order in which they build on each other. A header includes only headers of its own folder and of folders that
-/// come earlier here. chronormal_io.h has files and the workflows on them.
+/// come earlier in this list. chronormal_io.h has files and the workflows on them.
 #ifndef CHRONORMAL_CHRONORMAL_H_
 #define CHRONORMAL_CHRONORMAL_H_
 

@@ -56,7 +56,7 @@ std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked
   return result;
 }
 
-// Returns the titles of the viewers in which some normal is wrong, between commas.
+// Returns the titles of the viewers in which some normal is wrong, separated by commas.
 std::string wrong_viewers(const Audited& input) {
   std::string titles;
   for (const ViewerAudit& viewer : input.audit.viewers) {

@@ -236,7 +236,7 @@ class GltfDocument {
   [[nodiscard]] static Result<GltfDocument> read(std::string_view bytes, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
-  /// Reads an open file (io/bytes/file.h); the document takes ownership of it.
+  /// Reads a document from an open file (io/bytes/file.h). The document takes ownership of the file.
   [[nodiscard]] static Result<GltfDocument> read(FileBytes file, const std::string& name,
                                                  const std::optional<std::string>& folder = std::nullopt,
                                                  const GltfOptions& options = {});
@@ -282,7 +282,8 @@ class GltfDocument {
   /// animation.
   [[nodiscard]] Result<GltfKeys> keys(std::size_t animation, std::size_t track) const;
 
-  /// Finds an animation by its name, or else by its index. Errors: kUsage with the names of all animations.
+  /// Finds an animation by its name, or else by its index. Errors: kUsage for an unknown animation, with the names of
+  /// all animations.
   [[nodiscard]] Result<std::size_t> find_animation(const std::string& name_or_index) const;
 
  private:

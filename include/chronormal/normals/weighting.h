@@ -83,7 +83,7 @@ inline constexpr std::array<WeightingInfo, 5> kWeightings = {kAllWeightings[0], 
 
 [[nodiscard]] std::string_view weighting_name(Weighting weighting) noexcept;
 
-/// Finds a weighting by its name. Errors: kUsage, with all names.
+/// Finds a weighting by its name. Errors: kUsage for an unknown name, with all names.
 [[nodiscard]] Result<Weighting> make_weighting(std::string_view name);
 
 /// Writes n of a range of faces at t: twice the vector area, with an error of at most 2^-30 of its length. n is exactly

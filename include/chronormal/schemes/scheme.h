@@ -135,7 +135,8 @@ class Scheme {
   [[nodiscard]] virtual std::shared_ptr<const FittedCurves> fitted_curves() const { return nullptr; }
 };
 
-/// Makes a scheme from its name. Errors: kUsage, with the known names or the range of a parameter.
+/// Makes a scheme from its name. Errors: kUsage for an unknown name, with all known names, and for a parameter out of
+/// its range, with this range.
 [[nodiscard]] Result<std::unique_ptr<Scheme>> make_scheme(std::string_view name);
 
 struct SchemeDescription {

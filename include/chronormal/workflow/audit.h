@@ -66,7 +66,7 @@ enum class AuditRule {
 };
 
 [[nodiscard]] std::string_view audit_rule_name(AuditRule rule) noexcept;
-/// Finds a rule by its name. Errors: kUsage, with all names.
+/// Finds a rule by its name. Errors: kUsage for an unknown name, with all names.
 [[nodiscard]] Result<AuditRule> make_audit_rule(std::string_view name);
 
 /// The error in degrees up to which normals do not count as faulty. It is this large because some files store normals
@@ -182,8 +182,8 @@ struct AuditFinding {
     kSkinned,
     kUnreadSkin,  ///< a note: a skin of a node cannot be read, so normals are judged without it
     kBaked,       ///< a note: the file was baked
-    /// A note: another program has recomputed the normals of a baked file, so its correction targets have no effect any
-    /// more.
+    /// A note: another program has recomputed the normals of a baked file, so the correction targets of the file have
+    /// no effect any more.
     kEmptied,
     kSequenceTargets,  ///< a note: targets are the keyframes of a baked sequence, which have no meaning one by one
     kBeyondViewer      ///< a note: a mesh has more targets than a viewer supports

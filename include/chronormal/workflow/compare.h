@@ -218,9 +218,10 @@ struct BlendComparison {
 };
 
 /// Compares the deltas of blend shapes, which are given as a valid motion of targets. Cost: for each weight vector an
-/// evaluation, a recomputation of the mesh, and the angles. Errors: kUsage for options beyond their range, more active
-/// targets than there are, and a motion that is not blend shapes; those of make_groups() and blend_set_of();
-/// kInvalidInput if there are so many targets that the weight vectors do not fit into memory.
+/// evaluation of the deltas, a recomputation of the normals of the mesh, and the angles between both. Errors: kUsage
+/// for options beyond their range, more active targets than there are, and a motion that is not blend shapes; those of
+/// make_groups() and blend_set_of(); kInvalidInput if there are so many targets that the weight vectors do not fit into
+/// memory.
 [[nodiscard]] Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOptions& options = {});
 
 /// Compares the deltas for all meshes of a file that have targets and normals; with options.animation, only for the

@@ -105,9 +105,10 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///                  to_lower), and at none outside of [from, to]; cut off at the ends of the span
 ///     silhouette   segment, vertices, faces, from, from_upper, to_lower, to: the two faces of an edge show different
 ///                  sides
-/// Silhouettes are included if requested, for faces only. The normals of vertices or corners, which are sums over
-/// faces, are decided exactly as well, each seen from its vertex: the column is then `vertex` or `corner`, without rows
-/// for vertices in no face. Errors: those of make_groups() and segment_parts(); kUsage for the direction (0, 0, 0).
+/// Silhouettes are included if requested, for faces only. The sides of vertices or corners, whose normals are sums over
+/// faces, are decided exactly as well, as seen from the vertex. The column `face` is then `vertex` or `corner`, and
+/// vertices in no face have no row. Errors: those of make_groups() and segment_parts(); kUsage for the direction (0, 0,
+/// 0).
 [[nodiscard]] Result<QueryAnswer> query_facing(const Motion& motion, const View& view, bool silhouettes,
                                                const QuerySpan& span = {}, const QueryProgress& progress = {},
                                                const ElementOptions& elements = {ElementKind::kFaces});
@@ -128,9 +129,9 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///     ""        segment, face, axis, sine, half_angle (degrees, rounded up): one row for each segment and face
 ///     meshlet   segment, index, and the members of meshopt_Bounds (analysis/cones.h), which are valid for that part
 ///     member    meshlet, face
-/// The last two tables are included if `meshlets` is given, the largest number of triangles in a meshlet: meshoptimizer
-/// builds meshlets from the first keyframe. Errors: those of segment_parts(); kUsage, with --meshlets as the place, for
-/// a number that is not a multiple of 4 up to 512, and for a mesh of polygons.
+/// The last two tables are included if `meshlets`, the largest number of triangles in a meshlet, is given.
+/// meshoptimizer builds the meshlets from the first keyframe. Errors: those of segment_parts(); kUsage, with --meshlets
+/// as the place, for a number that is not a multiple of 4 up to 512, and for a mesh of polygons.
 [[nodiscard]] Result<QueryAnswer> query_cones(const Motion& motion, std::optional<std::size_t> meshlets = {},
                                               const QuerySpan& span = {}, const QueryProgress& progress = {});
 
@@ -139,8 +140,8 @@ using QueryProgress = std::function<void(std::size_t done, std::size_t total)>;
 ///               (the direction halfway between the unit normals at both ends, which is the mean of lerp and nlerp),
 ///               and ends_off (degrees between ends and mean_unit): one row for each segment and face
 ///     span      the same columns without segment, for all parts together, weighted by their duration; not for targets
-/// For vertices or corners the column is `vertex` or `corner`, and everything is computed in integers. Errors: those of
-/// make_groups() and segment_parts().
+/// For vertices or corners, the column `face` is `vertex` or `corner`, and everything is computed in integers. Errors:
+/// those of make_groups() and segment_parts().
 [[nodiscard]] Result<QueryAnswer> query_shutter(const Motion& motion, const QuerySpan& span = {},
                                                 const QueryProgress& progress = {},
                                                 const ElementOptions& elements = {ElementKind::kFaces});
