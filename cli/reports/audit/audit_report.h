@@ -42,7 +42,7 @@ struct Audited {
 /// Names the place of the largest error among the samples whose true normal nearly vanishes.
 [[nodiscard]] std::string faint_label(const Audited& input);
 
-/// Names the place of the first sample around which the normals of faces cancel.
+/// Names the place of the first sample of a vertex at which the normals of the faces around cancel.
 [[nodiscard]] std::string cancelled_label(const Audited& input);
 
 }  // namespace chronormal::cli

@@ -271,8 +271,8 @@ class GltfDocument {
     bool shading = false;  ///< true to read normals and tangents, of the base and of the targets
     bool targets = true;
   };
-  /// Reads a primitive. Memory: that of the result; pieces that were decompressed are kept until the document is
-  /// destroyed. Precondition: has_faces() is true for the primitive.
+  /// Reads a primitive. Memory: that of the result, and decompressed pieces of the file, which are kept until the
+  /// document is destroyed. Precondition: has_faces() is true for the primitive.
   [[nodiscard]] Result<GltfGeometry> geometry(std::size_t mesh, std::size_t primitive, const Wanted& wanted) const;
   /// Reads one target of a primitive, as geometry() reads all of its targets.
   [[nodiscard]] Result<GltfGeometry::Target> target(std::size_t mesh, std::size_t primitive, std::size_t index,

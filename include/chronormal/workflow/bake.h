@@ -51,7 +51,7 @@ inline constexpr double kLeastKeyTolerance = 0.001;
 struct BakeOptions {
   std::optional<BakeEncoding> encoding = {};  ///< by default kSmallest, and kExact for sequences
   /// The viewers to bake for. If the list is empty, these are the viewers that add up deltas (three.js, Babylon.js,
-  /// PlayCanvas, Bevy), and `spared` is set to the viewers that keep unit normals (Godot, Filament).
+  /// PlayCanvas, Bevy), and the viewers that keep unit normals (Godot, Filament) are added to `spared`.
   std::vector<Viewer> viewers = {};
   /// Viewers in which normals should not become worse. Among candidates that are otherwise equal, one that makes no
   /// normal worse in these viewers is preferred.

@@ -24,7 +24,8 @@
 
 namespace chronormal {
 
-/// The combinations of a face and a keyframe, or of a face and a segment, that have some property.
+/// Counts of the combinations of a face and a keyframe, or of a face and a segment, that have some property, and the
+/// first such combination.
 struct Places {
   std::size_t pairs = 0;
   std::size_t faces = 0;
