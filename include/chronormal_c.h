@@ -117,7 +117,8 @@ CHRONORMAL_API void chronormal_output_init(chronormal_output* output, void* data
 /* Normals between two arrays of positions, exact for every t in [0, 1]. */
 typedef struct chronormal_curves chronormal_curves;
 
-/* Prepares a segment. Options may be NULL. `from` and `to` must have a position for each vertex. */
+/* Prepares the curves of a segment, in which vertices move straight from `from` to `to`. Options may be NULL. `from`
+ * and `to` must have a position for each vertex. */
 CHRONORMAL_API chronormal_status chronormal_curves_create(const chronormal_mesh* mesh, chronormal_vectors from,
                                                           chronormal_vectors to, const chronormal_options* options,
                                                           chronormal_curves** result);
@@ -125,7 +126,7 @@ CHRONORMAL_API chronormal_status chronormal_curves_create(const chronormal_mesh*
  * stay the same. */
 CHRONORMAL_API chronormal_status chronormal_curves_next(chronormal_curves* curves, chronormal_vectors from,
                                                         chronormal_vectors to);
-/* Returns the number of normals: faces, vertices or corners. */
+/* Returns the number of normals: one for each face, vertex or corner. */
 CHRONORMAL_API size_t chronormal_curves_size(const chronormal_curves* curves);
 /* Returns the number of bytes of memory that the curves take. */
 CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
@@ -138,8 +139,8 @@ CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curve
  * output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
-/* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact one
- * at t: the error of an interpolation. The angle is 180 if only one of the two has a direction. */
+/* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact
+ * normal at t: the error of an interpolation. The angle is 180 if only one of the two has a direction. */
 CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t,
                                                           chronormal_vectors normals, float* degrees);
 CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);
@@ -160,7 +161,7 @@ CHRONORMAL_API chronormal_status chronormal_blend_create(const chronormal_mesh* 
                                                          const chronormal_target* targets, size_t target_count,
                                                          const chronormal_options* options, chronormal_blend** result);
 CHRONORMAL_API size_t chronormal_blend_size(const chronormal_blend* blend);
-/* Writes the unit normals at some weights, with a weight for each target. */
+/* Writes the unit normals of the blend shapes at `weights`, which has a weight for each target. */
 CHRONORMAL_API chronormal_status chronormal_blend_unit_normals(chronormal_blend* blend, const double* weights,
                                                                chronormal_result normals, size_t* zeros);
 /* Sets the weights and moves the vertices, once per frame. Afterwards several threads may write ranges of normals. */
@@ -180,9 +181,9 @@ CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files
  * whose normals are within 0.01 degrees (or the tolerance in "catmull-rom:0.1") of the curve's normals, plus the effect
  * of rounding positions to float. Errors: CHRONORMAL_USAGE if the motion cannot have such paths. */
 CHRONORMAL_API chronormal_status chronormal_motion_follow(chronormal_motion* motion, const char* path);
-/* Returns the number of normals: faces, vertices or corners. */
+/* Returns the number of normals: one for each face, vertex or corner. */
 CHRONORMAL_API size_t chronormal_motion_size(const chronormal_motion* motion);
-/* Returns the first and the last time in seconds; 0 and 0 for targets. */
+/* Returns the first and the last time of a motion in seconds; 0 and 0 for morph targets. */
 CHRONORMAL_API void chronormal_motion_times(const chronormal_motion* motion, double* first, double* last);
 CHRONORMAL_API chronormal_status chronormal_motion_unit_normals(chronormal_motion* motion, double time,
                                                                 chronormal_result normals);

@@ -37,9 +37,9 @@ export function drive(formulas, w) {
 }
 
 /**
- * Returns the mark of a mesh, or else the mark of the nearest object above it. extrasOf(object) returns the extras of
- * an object. A viewer makes a mesh of several primitives into an object with a child for each primitive, and gltfpack
- * puts a mesh into a new node below the node with the extras.
+ * Returns the mark (extras.chronormal) of a mesh, or else the mark of the nearest object above the mesh.
+ * extrasOf(object) returns the extras of an object. A viewer makes a mesh of several primitives into an object with a
+ * child for each primitive, and gltfpack puts a mesh into a new node below the node with the extras.
  */
 export function markOf(object, extrasOf) {
   for (; object; object = object.parent) {

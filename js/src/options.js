@@ -5,7 +5,8 @@ import { ChronormalError } from './error.js';
 
 const USAGE = 2; // the exit code of the program for a wrong call
 
-// Each kind of value has a test for the kind, and its description.
+// The kinds of values that options have. Each kind is a test of a value, and the text that describes the kind in
+// messages.
 const isText = (value) => typeof value === 'string';
 const NUMBER = [(value) => typeof value === 'number' && Number.isFinite(value), 'a finite number'];
 const FLAG = [(value) => typeof value === 'boolean', 'true or false'];
@@ -79,7 +80,7 @@ function refuseName(name, command, known) {
 /**
  * Returns the words of the command line for the options of a call.
  * @throws {ChronormalError} code 2 if an option has an unknown name
- * @throws {TypeError} if a value is of another kind
+ * @throws {TypeError} if a value is of another kind than its option demands
  */
 export function flagsOf(command, options) {
   if (!isObject(options)) throw new TypeError('options: the value must be an object');

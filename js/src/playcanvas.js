@@ -6,7 +6,8 @@ import { formulasOf, markOf, weightOf } from './drive.js';
 // The applications that are driven. The key of an entry is an application, and its value is {update, driven}.
 const attached = new WeakMap();
 
-// Returns the mark of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the file.
+// Returns the mark (extras.chronormal) of each PlayCanvas mesh of a container. A PlayCanvas mesh is a primitive of the
+// file.
 function marksOf({ gltf, renders }) {
   const nodes = (gltf.nodes ?? []).map((node) => ({ extras: node.extras, mesh: node.mesh }));
   gltf.nodes?.forEach(({ children = [] }, i) => children.forEach((child) => (nodes[child].parent = nodes[i])));

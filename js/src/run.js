@@ -25,7 +25,7 @@ async function compileWith(platform) {
 }
 
 /**
- * Compiles the program, unless it is already compiled. A short run spends most of its time on this.
+ * Compiles the program, unless it is already compiled. A short run spends most of its time on compiling.
  * @returns {Promise<WebAssembly.Module>}
  */
 export function compile(platform) {
@@ -49,7 +49,7 @@ class Sink {
   }
   put(byte) {
     this.bytes[this.count++] = byte;
-    // 37 is "%", which ends a progress bar
+    // 10 is the line feed; 37 is "%", which ends a progress bar
     if (this.count === PIECE || (this.byLine && (byte === 10 || byte === 37))) this.flush();
   }
   flush() {
@@ -64,7 +64,7 @@ class Sink {
  * @param {string[]} args the command line, without the name of the program
  * @param {object} world the environment of the program:
  *   prepare(FS, NODEFS)   puts files into the program's file system before it starts
- *   finish(FS)            takes files out of it after the end; the return value becomes `result`
+ *   finish(FS)            takes files out of the file system after the end; the return value becomes `result`
  *   stdout, stderr        functions that get the output as pieces of bytes (Uint8Array)
  *   terminals             {stdout, stderr}: true for each of them that is a terminal
  *   stdin                 the content of standard input (Uint8Array)

@@ -2,8 +2,8 @@
 // weights that the application or a mixer has set for the mesh's own targets.
 import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
-// The meshes that are driven. The key of an entry is a mesh, and its value is {formulas, before, now}: the functions
-// that ran before the mesh was drawn until attach(), and since then.
+// The meshes that are driven. The key of an entry is a mesh, and its value is {formulas, before, now}: `before` is the
+// onBeforeRender() of the mesh before attach(), and `now` the one that attach() has set.
 const attached = new WeakMap();
 
 function formulasOfMesh(mesh) {

@@ -74,7 +74,7 @@ export interface AuditOptions extends MotionOptions {
   /** The two weights between which each target alone is moved. Default: '0:1'. */
   weights?: `${number}:${number}`;
   tolerance?: number;
-  /** The largest number of edges of a glTF file that may be torn at one moment. */
+  /** The largest number of edges of a glTF file over which errors may jump by more than 10 degrees at one moment. */
   tears?: number;
   noWeld?: boolean;
 }
@@ -150,7 +150,7 @@ export interface SampleOptions extends MotionOptions {
 export interface Sampled {
   /** The x, y and z of each normal, in the order of `shape`; (0, 0, 0) if there is no normal. */
   normals: Float32Array;
-  /** Three numbers: of times or poses, of elements, and of coordinates (3). */
+  /** Three numbers: the number of times or poses, of elements, and of coordinates (3). */
   shape: number[];
   warnings: string[];
 }

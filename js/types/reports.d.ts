@@ -50,7 +50,10 @@ export interface MotionError {
   no_normal: number;
   faint: number;
   faint_worst_degrees: number;
-  /** The number of samples without a true normal, although the faces around have an area. Each one exceeds any tolerance. */
+  /**
+   * The number of samples without a true normal, although the faces around have an area. Each such sample exceeds any
+   * tolerance.
+   */
   cancelled: number;
   unlit: number;
   /**

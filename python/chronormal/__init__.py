@@ -41,7 +41,7 @@ _Weighting = Literal["area", "angle", "uniform", "area-angle", "max", "inverse-e
 
 
 def _vectors(array, place):
-    """Return the array itself if it is C-contiguous float32, or else one such copy."""
+    """Return the array itself if it is C-contiguous float32, or else a copy that is."""
     array = _np.asarray(array)
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array

@@ -123,7 +123,8 @@ void refuse_to_be_pickled(Class& made) {
   made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
 }
 
-// Sets the number of threads: 1 is the calling thread, 0 is all cores, and a larger number is that many.
+// The number of threads of a call while the object lives: 1 is the calling thread, 0 is all cores, and a larger number
+// is that many.
 class ChosenThreads {
  public:
   explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {
@@ -137,9 +138,9 @@ class ChosenThreads {
   std::optional<ThreadLimit> limit_;
 };
 
-// Fills the memory of new objects of Python with zeros. `Curves.__new__(Curves)` makes an object without calling its
-// constructor, and pybind11 then passes this memory to a method. From the zero members, the method recognises that the
-// constructor did not run.
+// The base of classes whose new objects have memory filled with zeros. `Curves.__new__(Curves)` makes an object without
+// calling its constructor, and pybind11 then passes this memory to a method. From the zero members, the method
+// recognises that the constructor did not run.
 struct ZeroedObject {
   static void* operator new(std::size_t size) {
     void* const memory = ::operator new(size);

@@ -1,4 +1,4 @@
-// Returns certificates to Python as arrays.
+// Returns certificates, which bound the largest error of a scheme, to Python as arrays.
 #include "computation.h"
 
 namespace chronormal::python {

@@ -6,7 +6,8 @@
 namespace chronormal::python {
 namespace {
 
-// Counts the turns (computation.h) in progress, over all objects, and the forks that wait until these turns end.
+// The gate between turns and forks. A turn is the permission of a thread to compute with an object (computation.h). The
+// gate counts the turns of all objects in progress, and the forks that wait until no other thread has a turn.
 class ForkGate {
  public:
   void begin_turn() {

@@ -38,7 +38,7 @@ def vertex_normals(positions, faces):
 
 
 def angle(a, b):
-    """Return the angles between rows in radians, by atan2."""
+    """Return the angle in radians between each row of `a` and the same row of `b`, by atan2."""
     a, b = np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)
     return np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), (a * b).sum(-1))
 

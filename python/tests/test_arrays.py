@@ -128,7 +128,7 @@ class MotionTest(unittest.TestCase):
                 broken = cn.Motion.__new__(cn.Motion)
                 with self.assertRaises((ValueError, TypeError, RuntimeError)):
                     broken.__setstate__((*state[:i], wrong, *state[i + 1:]))
-                    # Some members accept every value of their type, which is as good as a refusal.
+                    # Some members of the state accept every value of their type. The test then raises the error itself.
                     raise ValueError
 
 

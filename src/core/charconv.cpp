@@ -1,8 +1,8 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
-// This part is for the two files of tools/two_files.py, which are built without fmt and format numbers only for
-// messages.
+// The next part is for the two files that tools/two_files.py makes. They are built without fmt and format numbers only
+// for messages.
 #ifdef CHRONORMAL_ALONE
 
 #include <cstdio>

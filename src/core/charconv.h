@@ -28,8 +28,8 @@ template <std::integral T>
 }
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, float& value) noexcept;
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, double& value) noexcept;
-/// Write the fewest digits from which the same number is read back. They use scientific or fixed notation, whichever is
-/// shorter.
+/// Write a number with the fewest digits from which the same number is read back. The text has scientific or fixed
+/// notation, whichever is shorter.
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, float value);
 [[nodiscard]] std::to_chars_result to_chars(char* first, char* last, double value);
 /// Writes a number with `precision` digits after the point, or with `precision` digits in total if the format is

@@ -1,5 +1,5 @@
-/// Memory for arrays that are read or written from front to back. It is aligned to cache lines, and has huge pages for
-/// large arrays.
+/// Memory for arrays that are read or written from front to back. The memory is aligned to cache lines, and has huge
+/// pages for large arrays.
 #ifndef CHRONORMAL_CORE_MEMORY_H_
 #define CHRONORMAL_CORE_MEMORY_H_
 

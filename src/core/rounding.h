@@ -51,7 +51,7 @@ class VectorSum {
     return chronormal::without_rounding(value_, 4 * kUnitRoundoff * static_cast<double>(terms_) * magnitude_);
   }
 
-  /// Returns the largest component of the sum of absolute values.
+  /// Returns the largest component of the sum of the terms' absolute values.
   [[nodiscard]] double size() const noexcept { return max_abs(magnitude_); }
   /// Returns a bound of the error of any component of without_rounding(), compared with the exact sum of the terms.
   [[nodiscard]] double error() const noexcept {

@@ -60,11 +60,11 @@ enum class NormalLength {
 };
 
 /// The steps of sequential access (section 3 of the paper). Normals are computed at t = 0, 1/steps, ..., 1 of each
-/// segment, each from the previous ones by additions or by a rotation.
+/// segment, each from the normals of the previous steps, by additions or by a rotation.
 struct Stepping {
   std::size_t steps = 1;  ///< number of steps per segment, at least 1
-  /// The number of steps after which the state is computed anew, so that errors do not add up further. 0 means never,
-  /// as in the paper.
+  /// The number of steps after which normals are computed directly from t again, so that errors do not add up further.
+  /// 0 means never, as in the paper.
   std::size_t anchor_interval = kDefaultAnchorInterval;
 };
 
@@ -117,7 +117,7 @@ class NormalSampler {
   /// step by step.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
   /// Makes a sampler of a stream. A pose at a time reads the two keyframes around the time, and a pose of weights reads
-  /// all keyframes. Errors: also those of the stream, here and for each pose.
+  /// all keyframes. Errors: those of make() for a motion, and those of the stream, here and for each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
   /// Computes the pose at a time in seconds. Prepares the segment that contains this time, unless the last request was
@@ -129,19 +129,20 @@ class NormalSampler {
   /// the range of float32 and, with a scheme, for weights that are not between the base and one target.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
-  /// Computes the pose of keyframe 0, which is the only pose of a mesh at rest. A stream must hold keyframe 0.
+  /// Computes the pose of keyframe 0, which is the only pose of a mesh at rest. Precondition: if the motion is read as
+  /// a stream, keyframe 0 is in memory.
   [[nodiscard]] Pose at_rest() const;
 
-  /// Returns the number of outputs: faces, vertices or corners.
+  /// Returns the number of outputs: one for each face, vertex or corner.
   [[nodiscard]] std::size_t output_count() const noexcept;
 
-  /// Returns the element of each output; the span is empty for faces, which are their own elements.
+  /// Returns the index of the element of each output; the span is empty for faces, which are their own elements.
   [[nodiscard]] std::span<const std::uint32_t> element_of_output() const noexcept;
 
-  /// Returns the normals of a pose, copied to every output: (outputs, 3).
+  /// Returns the normals of a pose as (outputs, 3): each output gets a copy of its element's normal.
   [[nodiscard]] std::vector<float> normals_of_outputs(const Pose& pose) const;
 
-  /// Returns the largest drift of all poses so far; it is zero without stepping.
+  /// Returns the largest error of playback in all poses so far; zero without stepping.
   [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
  private:
@@ -152,7 +153,7 @@ class NormalSampler {
   [[nodiscard]] std::size_t element_count() const noexcept;
   // Computes area-weighted unit normals at t by the curves of the segment, which are kept for later moments.
   [[nodiscard]] std::vector<float> unit_normals(const Segment& segment, const LocalTime& t);
-  // Computes normals for this moment only, without preparing data for others.
+  // Computes normals for this moment only, without preparing data for other moments.
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
   // Computes normals with the scheme. `time` is only used to report where the drift is largest.
   [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
@@ -182,14 +183,14 @@ class NormalSampler {
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };
 
-/// Finds a format by its name. Errors: kUsage, with all names.
+/// Finds a format by its name. Errors: kUsage for an unknown name; the message lists all names.
 [[nodiscard]] Result<SampleFormat> make_sample_format(std::string_view name);
 
 /// Finds the format of a file by its extension; returns no value for another extension.
 [[nodiscard]] std::optional<SampleFormat> find_sample_format(std::string_view path);
 
-/// The largest number of bytes of the arrays in a .npz file for a pipe. These arrays stay in memory until the file is
-/// written.
+/// The largest number of bytes of the arrays in a .npz file that is written to a pipe. These arrays stay in memory
+/// until the file is written.
 inline constexpr std::size_t kMostSampleBytes = addressable(std::uint64_t{4} << 30);
 
 struct SampleOutput {

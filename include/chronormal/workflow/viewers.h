@@ -33,7 +33,9 @@
 
 namespace chronormal {
 
-/// The rules by which viewers compute the rendered normal, which the comment at the top of this file explains.
+/// The rules by which viewers compute the rendered normal from stored normals and deltas: kSum adds them as stored,
+/// kUnit first makes a unit normal for each target, and kClamped rounds them to integers for [-1, 1]. The formulas are
+/// at the top of this file.
 enum class NormalRule { kSum, kUnit, kClamped };
 
 /// The rules by which viewers play a track of weights. A resampled track has 30 samples per second and is linear in
@@ -43,9 +45,11 @@ enum class TrackRule {
   /// A CUBICSPLINE track is resampled from time 0 on, including its last key; other tracks as specified.
   kSplinesResampled,
   kAllResampled,  ///< every track is resampled, from the first key of the animation on
-  /// Tangents of a CUBICSPLINE track are multiplied by the elapsed share of the time between two keys.
+  /// Tangents of a CUBICSPLINE track are multiplied by the elapsed share of the time between two keys, not by that
+  /// time.
   kSplinesWithoutDuration,
-  /// A CUBICSPLINE track is read as the first third of its numbers, and weights are zero afterwards.
+  /// Only the in-tangents of a CUBICSPLINE track are taken, and read as the in-tangent, value and out-tangent of each
+  /// key. The weights of later keys, for which no numbers are left, are zero.
   kSplinesMisread,
 };
 
@@ -77,7 +81,7 @@ struct Viewer {
   double least_weight = 0;
   bool adds_tangents = true;     ///< true to add up tangents of targets; otherwise the tangents of the base are used
   std::size_t most_targets = 0;  ///< largest number of targets of a primitive; 0 if there is no known limit
-  /// A description of how the viewer treats a file with more targets, if there is a limit.
+  /// A description of how the viewer treats a file with more than most_targets targets, if there is this limit.
   std::string_view beyond = {};
   std::string_view source = {};  ///< the place where this behaviour is documented
 
@@ -167,7 +171,8 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 /// Returns the value D' that a viewer stores for the delta D of a target. For each unit of the target's weight, a
 /// viewer adds D' to kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& delta) noexcept;
-/// Returns the same value as the function above, for callers that already know the result of kept_normal().
+/// Returns the same value as kept_delta() without `kept_normal`, for callers that already know the result of
+/// kept_normal().
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
@@ -175,14 +180,16 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 /// target of the mesh if `targets` is empty.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 
-/// Returns the vector with which the sum of a vertex begins. It is N', or zero in viewers with 16-bit floats, which sum
-/// deltas separately. Each target in turn adds its weight times kept_delta() to this vector, in float32.
+/// Returns the vector with which a viewer begins to add up the normal of a vertex. The vector is N', or zero in viewers
+/// with 16-bit floats, which sum deltas separately. Each target in turn adds its weight times kept_delta() to this
+/// vector, in float32.
 [[nodiscard]] constexpr Vec3f first_of_sum(const Viewer& viewer, const Vec3f& kept_normal) noexcept {
   return viewer.keeps_halves() ? Vec3f{} : kept_normal;
 }
 
-/// Return the normal that a viewer renders, computed from the sum of a vertex. vector_of_sum() returns a vector in its
-/// direction, and shown_of_sum() the unit normal. The result is zero or not finite if the sum is.
+/// Return the normal that a viewer renders, computed from the sum at a vertex (first_of_sum() and the weighted deltas).
+/// vector_of_sum() returns a vector in its direction, and shown_of_sum() the unit normal. The result is zero or not
+/// finite if the sum is.
 [[nodiscard]] Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 

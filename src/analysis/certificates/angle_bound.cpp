@@ -31,7 +31,7 @@ constexpr auto kShares = [] {
   return shares;
 }();
 
-// Returns an upper bound of asin(x) in radians. It is pi / 2 for x >= 1.
+// Returns an upper bound of asin(x) in radians. The bound is pi / 2 for x >= 1.
 double arc_sine_bound(double x) {
   if (!(x < 1)) return kHalfTurn / 2;
   return x <= 0.5 ? x * (1 + 0.25 * x * x) : x * (kHalfTurn / 2);
@@ -75,8 +75,8 @@ double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcep
   for (const double d : dot_products) largest_dot = std::max(largest_dot, std::fabs(d));
   const double p_length = std::sqrt(p_square), n_length = std::sqrt(n_square);
   if (!(p_length > 0 && n_length > 0 && std::isfinite(p_length))) return kHalfTurn;
-  // The slacks bound the rounding of the squares of S and D. The rounding of S and D themselves counts as an error of
-  // p.
+  // The slacks bound the rounding errors of |S|^2 and of D^2, where S = p x n and D = p . n. The rounding of S and D
+  // themselves counts as an error of p.
   const double cross_slack = kRounding * largest_cross, dot_slack = kRounding * largest_dot * largest_dot;
   const bool is_ahead = *std::min_element(dot_products.begin(), dot_products.end()) > kRounding * p_length * n_length;
 

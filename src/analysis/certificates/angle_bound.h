@@ -22,7 +22,7 @@
 
 namespace chronormal::inline internal {
 
-/// The vector that a scheme makes on a piece, before it is scaled to length 1.
+/// The vector p(t) that a scheme makes on a piece of a segment, before the vector is scaled to length 1.
 struct CurvePiece {
   Bernstein<Vec3d, 3> p;
   /// Bound of the distance between the rendered vector and p(t), at any t of the piece.
@@ -32,7 +32,7 @@ struct CurvePiece {
   double angle = 0;          ///< a further error of the direction of the rendered vector, in radians
 };
 
-/// The normal on a piece, and a bound of the length of its error.
+/// The exact normal on a piece of a segment, as a quadratic, and a bound of the length of its error.
 struct NormalPiece {
   Bernstein<Vec3d, 2> n;
   Bernstein<double, 2> error;

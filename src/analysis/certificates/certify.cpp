@@ -39,8 +39,8 @@ constexpr double kLongestOfThree = 1.7320509;  // the largest length of a vector
 // The rounding error of splitting a polynomial, relative to its largest coefficient.
 constexpr double kCutting = 0x1p-46;
 
-// Returns the factor that scales the largest component to 1. Returns 1 for a zero vector, of which only the error is
-// scaled.
+// Returns the factor that scales a vector with the largest component `largest` to a largest component of 1. Returns 1
+// for the zero vector, so that its error keeps its unit.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
 // Divides a quadratic that is certainly zero at an end of [0, 1] by t or by 1 - t. The quotient has the same direction
@@ -133,7 +133,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// The data that all elements of a block share.
+// Certifies the elements of a block. The object has the data that all these elements share.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme)

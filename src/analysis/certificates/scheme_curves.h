@@ -29,9 +29,10 @@ namespace chronormal::inline internal {
 /// Curves that are exactly cubics: weighted sums whose weights have degree 3 at most, and quadratics.
 class CubicCurve {
  public:
-  /// Takes a weighted sum. Precondition: basis.degree() is at most 3.
+  /// Takes the weights and the coefficients of a weighted sum. Precondition: basis.degree() is at most 3.
   CubicCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
-  /// Takes the numerator of the scheme `rational`, which is a quadratic whose weights are Bernstein polynomials.
+  /// Takes the coefficients of the numerator of the scheme `rational`, which is a quadratic whose weights are Bernstein
+  /// polynomials.
   explicit CubicCurve(ElementCoefficients c) noexcept;
   /// Takes a line between two vectors, each of which may be anywhere in a ball of the given radius.
   CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
@@ -51,7 +52,7 @@ class CubicCurve {
 /// and the same slopes at the ends.
 class SumCurve {
  public:
-  /// Takes a weighted sum. Precondition: basis.degree() is at least 3.
+  /// Takes the weights and the coefficients of a weighted sum. Precondition: basis.degree() is at least 3.
   SumCurve(const WeightBasis& basis, ElementCoefficients c) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;
@@ -62,8 +63,8 @@ class SumCurve {
   double radius_ = 0;
 };
 
-/// Great arcs and other circular arcs. An arc may reach its middle at another time than 1/2. It is then given by the
-/// share of time before its middle, and runs in warped time; see warped_normal().
+/// Great arcs and other circular arcs. If an arc reaches its middle at another time than 1/2, its last coefficient is
+/// the share of time before its middle. Such an arc runs in warped time; see warped_normal().
 class ArcCurve {
  public:
   /// Takes the coefficients w, p, q, A of one of the formulas kGreatArc, kCircleArc and kTimedCircleArc, in their

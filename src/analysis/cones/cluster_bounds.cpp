@@ -16,7 +16,8 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kAxisRefinements = 10;
-// The sine of 84 degrees; a wider cone would hardly ever pass the culling test.
+// The sine of the widest half-angle, 84 degrees, of a cone that is kept. A wider cone would hardly ever pass the
+// culling test.
 constexpr double kWidest = 0.995;
 constexpr double kTestSlack = 0x1p-20;  // the error of the culling test in float32: some ten roundings of 2^-24
 // The factor that covers rounding a bound up to float, and the roundings before that.
@@ -65,7 +66,7 @@ class Cluster {
     bounds.radius = static_cast<float>(kRoundUp * (length(off) + error));
   }
 
-  // Returns a cone around the cones of all faces.
+  // Returns a cone around the normal cones of all faces of the cluster.
   [[nodiscard]] NormalCone cone() const {
     std::vector<NormalCone> cones(faces_.size());
     for_runs([&](IndexRange run, std::size_t at) {

@@ -237,7 +237,7 @@ class Passage {
     }
   }
 
-  // Returns the sign of the volume at t, which depends on whether t is before or after the root.
+  // Returns the sign at t of the volume of a triangle, which changes at the root.
   [[nodiscard]] static int sign_at(const Root& root, const CrossingSigns& signs, Tick t) {
     if (t <= root.cell.from) return -root.change;
     if (t >= root.cell.to) return root.change;
@@ -294,7 +294,7 @@ class Passage {
   std::vector<Crossing> summed_;
 };
 
-// Calls body(block, range) for blocks of points, in parallel.
+// Calls body(block, range) for each block of points, in parallel. `range` has the indices of the points.
 template <class Body>
 void for_blocks(std::size_t count, const Body& body) {
   parallel_for((count + kPointsPerBlock - 1) / kPointsPerBlock, [&](std::size_t block) {

@@ -31,7 +31,8 @@ Triple cross_of(const Triple& b, const Triple& c) noexcept {
 double dot_of(const Triple& a, const Triple& b) noexcept { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 Triple sum_of(const Triple& a, const Triple& b) noexcept { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
-// Returns the Bernstein coefficients of the volume over a cell, each multiplied by its binomial coefficient.
+// Returns the Bernstein coefficients of the volume a . (b x c) over a cell of time, each multiplied by its binomial
+// coefficient.
 Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::array<Triple, 3>& to) noexcept {
   const Triple before = cross_of(from[1], from[2]), after = cross_of(to[1], to[2]);
   const Triple between = sum_of(cross_of(from[1], to[2]), cross_of(to[1], from[2]));
@@ -98,8 +99,8 @@ class ExactCell {
     weights_ = {{{weight(kTicks - cell.from), weight(cell.from)}, {weight(kTicks - cell.to), weight(cell.to)}}};
   }
 
-  // Returns the sign of coefficient i of the volume. This coefficient is a sum over all ways to take i corners at the
-  // end of the cell and the others at its beginning.
+  // Returns the sign of Bernstein coefficient i of the volume over the cell. This coefficient is a sum over all ways to
+  // take i corners at the end of the cell and the others at its beginning.
   [[nodiscard]] int volume(std::size_t i) noexcept {
     Volume value;
     for (const auto& at : choices(3, i)) {
@@ -124,7 +125,7 @@ class ExactCell {
     return 0;
   }
 
-  // Returns the sign of coefficient i of the side of an edge along an axis.
+  // Returns the sign of Bernstein coefficient i of the side S of an edge (crossing_signs.h), taken along an axis.
   [[nodiscard]] int side(std::size_t edge, std::size_t axis, std::size_t i) noexcept {
     const std::size_t next = kNext[edge], x = first_of(axis), y = second_of(axis);
     Product value;
@@ -201,7 +202,7 @@ class ExactCell {
     return {axis == 0 ? at.x : axis == 1 ? at.y : at.z, axis == 0 ? left.x : axis == 1 ? left.y : left.z};
   }
 
-  // Adds (p - q) * weight to `result`.
+  // Adds (p - q) * weight to the integer `result`.
   void add_difference(const Unrounded& p, const Unrounded& q, const UnitFraction& weight,
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
@@ -257,7 +258,8 @@ int common_sign(const std::array<int, kCount>& signs) noexcept {
   return signs[0];
 }
 
-// Returns the sign of each value that is larger than `bound`, the bound of its error, and 0 for the other values.
+// Returns the sign of each value whose absolute value is above `bound`, the bound of its error, and 0 for the other
+// values.
 template <std::size_t kCount>
 std::array<int, kCount> rounded_signs(const std::array<double, kCount>& values, double bound) noexcept {
   std::array<int, kCount> signs;

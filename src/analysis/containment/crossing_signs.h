@@ -70,17 +70,18 @@ class CrossingSigns {
   /// triangle.
   [[nodiscard]] bool is_beside() const noexcept;
 
-  /// Returns the answer for a cell of time. `axis` (0, 1 or 2) is the axis along which sides are taken.
+  /// Tells whether the point crosses the triangle during a cell of time. `axis` (0, 1 or 2) is the axis along which
+  /// sides are taken.
   [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
   /// Returns the number that the triangle adds to the winding number at a moment. It is 1 if the half-line from the
   /// point along the axis leaves the mesh through the triangle, -1 if the half-line enters the mesh, and otherwise 0.
   [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
 
-  /// Returns the sign of the volume at a moment.
+  /// Returns the sign of the volume V at a moment, which tells on which side of the triangle's plane the point is.
   [[nodiscard]] int volume_at(Tick t) const noexcept;
 
-  /// Returns the volume over a cell, to the precision of double.
+  /// Returns the Bernstein coefficients of the volume V over a cell of time, to the precision of double.
   [[nodiscard]] Bernstein<double, 3> rounded_volume(const Cell& cell) const noexcept;
 
  private:

@@ -37,8 +37,8 @@ struct BoxTree {
   std::vector<std::uint32_t> order;  ///< numbers of the triangles, ordered so that those of a node are consecutive
 };
 
-/// Builds a tree of triangles, in which triangles that are near each other in these positions are in the same nodes.
-/// corners has three vertices for each triangle. O(n log n).
+/// Builds a tree of triangles, in which triangles that are near each other at `positions` are in the same nodes.
+/// `corners` has three vertices for each triangle. O(n log n).
 [[nodiscard]] BoxTree build_box_tree(VectorView<const float> positions, std::span<const std::uint32_t> corners);
 
 /// A box that moves, given by its limits at both ends of a segment. Points on a limit are inside.

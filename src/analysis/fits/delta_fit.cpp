@@ -20,7 +20,8 @@ Vec3d at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-// Factors the linear system of the named targets. Its matrix is a part of the normal equations of all targets.
+// Factors the linear system of some targets, whose indices are `named`. The matrix is a part of the normal equations of
+// all targets.
 Cholesky factor(const std::vector<double>& matrix, std::size_t size, std::span<const std::uint32_t> named) {
   const std::size_t count = named.size();
   std::vector<double> part(count * count);

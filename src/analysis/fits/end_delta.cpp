@@ -107,7 +107,7 @@ double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexce
   return std::max(key_between(from, sample.u), key_between(to, sample.u));
 }
 
-// Returns the largest key of the angles at all samples.
+// Returns the largest key of the angles between the line and the normals at all samples.
 double largest_key(const Samples& samples, const Vec3d& from, const Vec3d& to) noexcept {
   double largest = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) largest = std::max(largest, line_key(from, to, samples[i]));
@@ -250,8 +250,8 @@ class ScaleSearch {
     return x;
   }
 
-  // Returns the best log s of a grid, refined by halving its step. It is used if some angle is 90 degrees or more for
-  // every s, since the largest angle may then have several local minima.
+  // Returns the best log s of a grid, refined by halving its step. The grid is used if some angle is 90 degrees or more
+  // for every s, since the largest angle may then have several local minima.
   [[nodiscard]] double best_of_grid() const noexcept {
     constexpr int kGrid = 44, kHalvings = 20;
     double step = 2 * kRange / kGrid, best = 0, best_key = largest(0);

@@ -54,7 +54,8 @@ ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32
   return area;
 }
 
-// The numbers of digits suffice for floats of up to 277 bits and for a time of up to 253 bits.
+// The numbers of digits of positions and areas at t as wide integers. They suffice for floats of up to 277 bits and for
+// a time of up to 253 bits.
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 
@@ -84,8 +85,8 @@ class ExactArea {
     }
   }
 
-  // Returns the sum at a time. The sum of the cross products of neighbouring corners is twice the vector area of a
-  // face, whatever the origin.
+  // Returns the sum of n(t) over the faces at a time. The sum of the cross products of neighbouring corners is twice
+  // the vector area of a face, whatever the origin.
   [[nodiscard]] Vec3d at(double time) const {
     const UnitFraction t = UnitFraction::of(time < 0x1p-200 ? 0 : time);
     std::array<WideInteger<kAreaDigits>, 3> sum;

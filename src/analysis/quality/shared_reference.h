@@ -1,4 +1,5 @@
-/// Computes the exact normals of quality.h for elements that share faces with many corners. Private to the library.
+/// Computes the exact normals of analysis/quality.h for elements that share faces with many corners. Private to the
+/// library.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 #define CHRONORMAL_ANALYSIS_QUALITY_SHARED_REFERENCE_H_
 
@@ -10,8 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns reference_normal() of these faces. `areas` are the results of reference_area() for them at t, so that faces
-/// which several elements share are computed once.
+/// Returns the exact normal of some faces at t, as reference_normal() of analysis/quality.h does. `areas` are the
+/// results of reference_area() for the faces at t, so that faces which several elements share are computed once.
 [[nodiscard]] Vec3d reference_normal(const SharedFaces& shared, std::span<const std::uint32_t> faces,
                                      std::span<const ReferenceArea> areas, double t) noexcept;
 

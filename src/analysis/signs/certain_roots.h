@@ -25,7 +25,7 @@ template <std::size_t M>
 class CertainRoots {
  public:
   /// Finds the roots of all polynomials whose coefficients are within `error` of p. Returns false if two such
-  /// polynomials have, or might have, different numbers of roots. (If it returns true, no root is at 0 or 1.)
+  /// polynomials have, or might have, different numbers of roots. If it returns true, no root is at 0 or 1.
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
@@ -41,8 +41,8 @@ class CertainRoots {
 
   [[nodiscard]] int sign_of(double value) const noexcept { return value > error_ ? 1 : value < -error_ ? -1 : 0; }
 
-  // Settles the part of [0, 1] that begins at t0 and has this width. On this part the polynomial is p. Returns false if
-  // the part could not be settled.
+  // Settles the part of [0, 1] that begins at t0 and is `width` wide. p has the Bernstein coefficients over this part.
+  // Returns false if the part could not be settled.
   bool settle(const std::array<double, M>& p, double t0, double width, int halvings) noexcept {
     const int first = sign_of(p[0]), last = sign_of(p[M - 1]);
     if (first != 0 && last != 0) {
@@ -87,7 +87,7 @@ class CertainRoots {
   }
 
   // Finds the only root by Newton's method, from the root of a quadratic that agrees with p at the ends and in the
-  // middle. Bisection keeps the root between values of different signs. Rounding limits its accuracy.
+  // middle. Bisection keeps the root between values of different signs. Rounding limits the accuracy of the result.
   static Guess only_root(const std::array<double, 4>& p) noexcept {
     constexpr double kLastStep = 0x1p-28;  // after a step of this size, the error is about the square of the step
     const double a1 = 3 * (p[1] - p[0]), a2 = 3 * ((p[2] - p[1]) - (p[1] - p[0])),

@@ -48,7 +48,7 @@ bool spans_space(const ControlNormals& c) noexcept {
   return size > 0x1p-900 && size < 0x1p900 && determinant > 8 * kShare * size;
 }
 
-// Returns v or -v. Adding the zero vector turns negative zeros into zeros, which are easier to read.
+// Returns sign * v. Adding the zero vector turns negative zeros into zeros, which are easier to read.
 Vec3d signed_by(int sign, const Vec3d& v) noexcept { return Vec3d{} + static_cast<double>(sign) * v; }
 
 // Returns the unit vector along a vector of integers, or its opposite if sign is -1. The common unit of the integers
@@ -66,7 +66,7 @@ IntegerPolynomial<2, kDigits> component(const Vectors& c, std::size_t k) noexcep
   return {{c[0][k], c[1][k], c[2][k]}};
 }
 
-// Returns the determinant p.a[i] q.a[j] - p.a[j] q.a[i] of two coefficients of each polynomial.
+// Returns the determinant p.a[i] q.a[j] - p.a[j] q.a[i] of the coefficients i and j of two polynomials.
 Product minor(const IntegerPolynomial<2, kDigits>& p, const IntegerPolynomial<2, kDigits>& q, std::size_t i,
               std::size_t j) noexcept {
   Product result;

@@ -1,4 +1,5 @@
-// Decides the sides of faces in three stages. Each stage settles the faces for which its answer is certain.
+// Decides the sides of faces by the sign of f(t) = n(t) . w(t), where w is the vector to the viewer. Each of three
+// stages settles the faces for which its answer is certain.
 //
 // 1. The Bernstein coefficients of f, from control normals that are within 2^-26 of their length of the exact ones:
 //    if all are clearly positive, or all negative, so is f. This is the answer for most faces.
@@ -55,7 +56,7 @@ void leave(std::size_t i, FacingCoefficients& f) noexcept {
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
 }
 
-// Computes the coefficients of f for a block of faces from their control normals, which is the first stage.
+// Computes the coefficients of f = n . w for a block of faces from their control normals, which is the first stage.
 void glance(const Segment& segment, IndexRange faces, const ControlNormals* normals, const View& view,
             FacingCoefficients& result) noexcept {
   const bool fits = fits_double(view);
@@ -86,7 +87,7 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
 }
 
 // Returns the sides of a face that may be seen while the shutter is open, from the coefficients of the first stage
-// alone. Returns no value if these are not precise enough.
+// alone. Returns no value if the coefficients are not precise enough.
 template <std::size_t M>
 std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size_t i, double t0, double t1) noexcept {
   if (f.signs[i] != 0) return static_cast<ShutterSide>(f.signs[i]);
@@ -104,7 +105,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   }
   constexpr double kRoundings = 64;  // number of roundings in the coefficients and in restrict_to()
   bound += kRoundings * kUnitRoundoff * size;
-  // If both a front and a back are certainly seen, at one of these five times, the answer is kBoth.
+  // If the front is certainly seen at one of these five times and the back at another, the answer is kBoth.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
     const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
@@ -255,7 +256,7 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// Returns f for a normal and a vector to the viewer, multiplied by a positive number.
+// Returns f = n . w for a normal n and a vector w to the viewer, multiplied by a positive number.
 template <std::size_t kDegree, std::size_t kDigits>
 auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;
@@ -270,8 +271,8 @@ auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   return f;
 }
 
-// Calls body(f) with the exact f of a normal that is seen from a vertex. M is the number of coefficients of f, which is
-// 3 for a direction and 4 for an eye.
+// Calls body(f) with the exact f = n . w of a normal n and the vector w from a vertex to the viewer. M is the number of
+// coefficients of f, which is 3 for a direction and 4 for an eye.
 template <std::size_t M, class Body>
 void in_integers(const Segment& segment, const ExactCurve& normal, std::uint32_t vertex, const View& view,
                  const Body& body) noexcept {
@@ -311,8 +312,8 @@ void close_in(const Polynomial& f, int before, double& lower, double& upper) noe
 
 bool is_wide(const ExactRoot& root) noexcept { return root.upper - root.lower > kWidestBracket; }
 
-// Finds all roots of f, whose coefficients are within `error` of p. If they are not certain, calls decide(body), which
-// calls body with the exact f.
+// Finds all roots of f, whose coefficients are within `error` of p. If the roots are not certain, calls decide(body),
+// which calls body with the exact f.
 template <std::size_t M, class Decide>
 Facing facing_by_roots(const std::array<double, M>& p, double error, const Decide& decide) noexcept {
   ExactRoots roots;
@@ -419,7 +420,7 @@ void find_in_block(const Segment& segment, IndexRange faces, const ControlNormal
   }
 }
 
-// Returns the sides of a face that may be seen at t in [t0, t1].
+// Returns the sides of a face that the viewer may see at some t in [t0, t1].
 ShutterSide side_over(const Facing& facing, double t0, double t1) noexcept {
   bool shows_front = false, shows_back = false;
   const auto show = [&](Side side) {

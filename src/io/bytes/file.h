@@ -34,7 +34,7 @@ class FileBytes {
   [[nodiscard]] static Result<FileBytes> open(const std::string& path, std::size_t most_of_stream = kMostOfStream);
 
   /// Returns the bytes that the function `resolve` finds for the path, without a copy. If `resolve` is empty, opens the
-  /// file as open() above does.
+  /// file as open() without `resolve` does.
   [[nodiscard]] static Result<FileBytes> open(
       const std::string& path, const std::function<Result<std::string_view>(const std::string& name)>& resolve);
 

@@ -31,14 +31,15 @@ struct Scaled {
 
 HWY_INLINE Doubles MaxAbs(const Doubles3& v) { return LargerAbs(LargerAbs(v.x, v.y), v.z); }
 
-// Returns the power of two by which a normal number must be multiplied to be in [1, 2).
+// Returns the power of two by which a number that is not subnormal must be multiplied to be in [1, 2).
 HWY_INLINE Doubles ScaleOf(Doubles size) {
   const hn::RebindToUnsigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, size), hn::Set(bits, 0x7FF0000000000000));
   return hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, 0x7FE0000000000000), exponent));
 }
 
-// Reads kDoubleLanes elements, and writes them to the lanes from `at` on.
+// Reads the control normals of kDoubleLanes elements, scales them, and writes them to the lanes of `scaled` from `at`
+// on.
 template <bool kIsPart>
 HWY_INLINE void Load(const double* rows, const Restriction& part, std::size_t at, Scaled& scaled) {
   Doubles column[9];

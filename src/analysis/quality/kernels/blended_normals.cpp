@@ -1,4 +1,5 @@
-// A tile of sums for up to four vectors of poses stays in registers while the loop runs over all terms.
+// A tile of sums, for up to four SIMD vectors with a pose in each lane, stays in registers while the loop runs over all
+// terms.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #undef HWY_TARGET_INCLUDE

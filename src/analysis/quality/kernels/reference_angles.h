@@ -35,7 +35,8 @@ class ReferenceTriangles {
   std::vector<double> edges_;
 };
 
-/// The numbers that take the place of an angle where there is none.
+/// The numbers that stand in place of an angle: kNoExactNormal if the exact normal is zero, kNoNormal if the rendered
+/// normal is zero or not finite.
 inline constexpr double kNoExactNormal = -1, kNoNormal = -2;
 
 /// Writes the angle in radians between each exact normal, which need not be a unit vector, and the rendered normal.

@@ -106,7 +106,7 @@ struct Scaled {
     vector = {v.x / divisor, v.y / divisor, v.z / divisor};
     length = sqrt(dot(vector, vector));
   }
-  // Uses the operations of unit() and length() in core/vec3.h in the same order.
+  // Returns v scaled to length 1, by the operations of unit() and length() in core/vec3.h in the same order.
   [[nodiscard]] HWY_INLINE Real3 unit() const {
     return (Real(1.0) / select(length == Real(0.0), Real(1.0), length)) * vector;
   }

@@ -52,7 +52,8 @@ struct PlanesOf4 {
 void sums_around(const std::vector<TrianglesInMotion::Normal>& normals, std::span<const std::uint32_t> faces,
                  std::span<const std::uint32_t> ends, PlanesOf4& sums);
 
-/// The numbers that take the place of an error where there is none.
+/// The numbers that stand in place of an angle: kNotLit if the rendered normal has no direction, kNotJudged if the
+/// element is not drawn or has no true normal.
 inline constexpr double kNotLit = -1, kNotJudged = -2;
 
 /// The rendered and the true normals of some elements at a sample between two keyframes.

@@ -18,8 +18,9 @@ struct GlanceLimits {
   double square_of_cosine = 0;
 };
 
-/// Returns a number whose bits mark the faces that are not certainly usual. A face is usual if its normal is above the
-/// limit at both ends, if it turns by less than the limit, and if is_far_from_collapse() is true for it.
+/// Returns a number whose bits mark the faces that are not certainly usual. A face is usual if its normal is longer
+/// than the limit at both ends, if the normal turns by less than the limit, and if is_far_from_collapse() is true for
+/// it.
 [[nodiscard]] std::uint32_t unusual_faces(const EdgedTile& tile, const GlanceLimits& limits) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -137,7 +137,7 @@ HWY_INLINE Guess OnlyRoot(const Doubles (&p)[4]) {
     const Doubles value = hn::Add(hn::Mul(hn::Add(hn::Mul(hn::Add(hn::Mul(a3, t), a2), t), a1), t), p[0]);
     slope = hn::IfThenElse(is_done, slope, hn::Add(hn::Mul(hn::Add(hn::Mul(thrice_a3, t), twice_a2), t), a1));
     const Doubles next = hn::Max(zero, hn::Min(one, hn::Sub(t, hn::Div(value, slope))));
-    // The next step would be about the square of this one.
+    // After a step this small, the error is about the square of the step, so the step is the last.
     const auto is_last = hn::Le(hn::Abs(hn::Sub(next, t)), hn::Set(kDoubles, 0x1p-28));
     t = hn::IfThenElse(is_done, t, next);
     is_done = hn::Or(is_done, is_last);

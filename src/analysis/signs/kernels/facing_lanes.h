@@ -1,5 +1,5 @@
-/// The kernels of analysis/signs/facing.cpp: the coefficients of f(t) = n(t) . w(t) of many faces at a time, and the
-/// roots of polynomials that change their sign once.
+/// The kernels of analysis/signs/facing.cpp: the coefficients of f(t) = n(t) . w(t) of many faces at a time, where w is
+/// the vector to the viewer, and the roots of polynomials that change their sign once.
 ///
 /// Every face is computed in its own lane with the same operations, so that its result depends on nothing else.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACING_LANES_H_
@@ -25,8 +25,9 @@ struct alignas(64) FacingWays {
   double at[6][kFacingBlock];
 };
 
-/// The Bernstein coefficients of f, each multiplied by its binomial coefficient. There are three for a viewer
-/// infinitely far away, whose f is a quadratic, and four for an eye at a point, whose f is a cubic.
+/// The Bernstein coefficients of f = n . w (normal and vector to the viewer), each multiplied by its binomial
+/// coefficient. There are three for a viewer infinitely far away, whose f is a quadratic, and four for an eye at a
+/// point, whose f is a cubic.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
   /// The error bounds of the coefficients, if control normals are within 2^-26 of the exact ones.
@@ -37,7 +38,8 @@ struct alignas(64) FacingCoefficients {
   int signs[kFacingBlock];
 };
 
-/// Computes the coefficients of f for a viewer in a direction, and for an eye. Precondition: count <= kFacingBlock.
+/// Compute the coefficients of f = n . w for a viewer in a direction, and for an eye. Precondition: count <=
+/// kFacingBlock.
 void facing_of_direction(const ControlNormals* normals, std::size_t count, const Vec3d& way,
                          FacingCoefficients& result) noexcept;
 void facing_of_eye(const ControlNormals* normals, std::size_t count, const FacingWays& ways,
