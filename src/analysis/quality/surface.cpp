@@ -85,7 +85,7 @@ void survey_edges(const Topology& topology, const Points& points, const std::vec
   }
 }
 
-// Returns true if a face names a point twice. `sorted` is scratch memory.
+// Returns true if `outline`, the points of a face, names a point twice. `sorted` is scratch memory.
 bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t>& sorted) {
   if (outline.size() == 3) return outline[0] == outline[1] || outline[1] == outline[2] || outline[2] == outline[0];
   sorted.assign(outline.begin(), outline.end());
@@ -204,7 +204,8 @@ Surface survey(const Topology& topology, const Points& points) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   Surface surface;
   std::vector<bool> is_copy(topology.face_count());
-  // Faces and edges are surveyed at the same time, since the two functions write different members.
+  // Faces and connected pieces are surveyed at the same time, since the two functions write different members. The
+  // edges come later, because they need the copies among the faces.
   parallel_for(2, [&](std::size_t i) {
     if (i == 0)
       survey_faces(topology, points, is_copy, surface);

@@ -25,9 +25,9 @@ namespace chronormal::inline internal {
 
 class Journal {
  public:
-  /// Opens the journal at `path`. If there is none, begins a journal with the text `run`, which must not contain line
-  /// feeds. An existing journal may belong to another run; run() tells. Errors: kFailed with the path as the place, if
-  /// the file is not a journal, another process has locked it, or the system refuses.
+  /// Opens the journal at `path`. If the file does not exist, begins a journal with the text `run`, which must not
+  /// contain line feeds. An existing journal may belong to another run; run() tells. Errors: kFailed with the path as
+  /// the place, if the file is not a journal, another process has locked it, or the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
   /// Return the text of the run that began the journal, the texts of the records that it had when it was opened, and

@@ -86,8 +86,7 @@ bool begins_with(std::string_view bytes, std::string_view begin) noexcept {
   return bytes.size() >= begin.size() && std::equal(begin.begin(), begin.end(), bytes.begin(), is_like);
 }
 
-// Returns true if text in UTF-16 begins here without a byte order mark: in its first letters, every second byte is
-// zero.
+// Returns true if bytes are text in UTF-16 without a byte order mark: in the first letters, every second byte is zero.
 bool is_plain_utf16(std::string_view bytes) noexcept {
   constexpr std::size_t kLetters = 8;
   if (bytes.size() < 2 * kLetters) return false;

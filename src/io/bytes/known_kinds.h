@@ -13,7 +13,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string_view known_kind(std::string_view bytes) noexcept;
 
 /// Refuses a file of a known kind other than `expected`, which is the name of a format (io/input/formats.h) or "json".
-/// Errors: kInvalidInput with this place: "this is a PNG image, not OBJ".
+/// Errors: kInvalidInput at `place`: "this is a PNG image, not OBJ".
 [[nodiscard]] Status check_kind(std::string_view bytes, const std::string& place, std::string_view expected);
 
 }  // namespace chronormal::inline internal

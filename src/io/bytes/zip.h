@@ -67,7 +67,7 @@ struct Part {
 };
 
 /// Writes a zip file of stored members, dated 1980-01-01. Sizes and offsets of at least `zip64_from` are written to
-/// zip64 fields; tests set it to a small number.
+/// zip64 fields; tests set `zip64_from` to a small number.
 [[nodiscard]] std::string write(std::span<const Part> parts, std::uint64_t zip64_from = 0xFFFFFFFF);
 
 }  // namespace chronormal::inline internal::zip

@@ -24,8 +24,8 @@
 
 namespace chronormal::inline internal {
 
-/// The number of bytes at the beginning of a file from which its layout must be found. If they are too few, the file
-/// counts as one without a layout.
+/// The number of bytes at the beginning of a file from which its layout must be found. If these bytes are too few, the
+/// file counts as one without a layout.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {

@@ -103,7 +103,8 @@ class DescriptionReader {
   MayaCacheDescription description_;
 };
 
-// Removes a word and the integer after it from the beginning of the text. Returns false if they are not there.
+// Removes a word and the integer after it from the beginning of the text. Returns false if the text does not begin with
+// them.
 bool take_number_after(std::string_view& text, std::string_view word, std::int32_t& number) {
   if (!text.starts_with(word)) return false;
   const std::string_view digits = text.substr(word.size());

@@ -34,12 +34,12 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<CacheLayout> find_mdd_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Returns the header of the file for a motion: its counts and times. Errors, without a place: kUsage for blend shapes,
-/// for more than 2^31 - 1 vertices or keyframes, and for times that are equal in float32.
+/// Returns the header of the MDD file for a motion: the counts and the times. Errors, without a place: kUsage for blend
+/// shapes, for more than 2^31 - 1 vertices or keyframes, and for times that are equal in float32.
 [[nodiscard]] Result<std::string> mdd_header(const Motion& motion);
 
-/// Writes the header, and then each position as soon as it is read. Errors: those of the header, the stream and the
-/// file.
+/// Writes an MDD file: the header, and then the positions of each keyframe as soon as they are read. Errors: those of
+/// mdd_header(), the stream and the file.
 [[nodiscard]] Status write_mdd(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

@@ -43,7 +43,7 @@ struct Array {
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// Return the element at index `item`. The array must have the kind that is named behind each function.
   [[nodiscard]] double real(std::size_t item) const noexcept;  ///< for kFloat
-  /// for kinds other than kFloat; 2^64 - 1 if the element is negative
+  /// for kinds other than kFloat: the element as the index of a vertex; 2^64 - 1 if the element is negative
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< for kInteger
 
@@ -52,7 +52,7 @@ struct Array {
 };
 
 /// Reads an array that is a single string of ASCII ("<U7", "|S7"). `bytes` is the whole .npy file. Errors:
-/// kInvalidInput with place.
+/// kInvalidInput at `place`.
 [[nodiscard]] Result<std::string> read_text(std::string_view bytes, const std::string& place);
 
 /// Returns a .npy file with a single string.

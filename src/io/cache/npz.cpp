@@ -113,14 +113,15 @@ Result<PositionCache> read_positions(const Array& array, const std::string& name
   return cache;
 }
 
-// Explains the faces that VTK and PyVista store: the number of corners comes before the corners of each face.
+// The message about faces in the form of VTK and PyVista, in which the number of corners comes before the corners of
+// each face.
 constexpr const char* kPadded =
     "each face begins with its number of corners, as in VTK and PyVista; save the corners alone, for triangles "
     "faces.reshape(-1, 4)[:, 1:]";
 
 // Returns true if each row of `width` numbers begins with width - 1, the number of corners that follow. Rows of plain
-// faces may all begin with this number too, if they are the faces around the vertex that has it. In this case, each
-// face contains the number only once, and no two faces share the edge opposite to this vertex; the function then
+// faces may all begin with this number too, if they are the faces around the vertex with this number. In this case,
+// each face names that vertex only once, and no two faces share the edge opposite to that vertex; the function then
 // returns false.
 bool are_padded(const std::vector<std::uint32_t>& rows, std::size_t width) {
   if (width < 4 || rows.size() < 2 * width) return false;
@@ -229,15 +230,15 @@ class Archive {
   [[nodiscard]] bool has(std::string_view array) const { return find(array) != nullptr; }
   [[nodiscard]] std::string place(std::string_view array) const { return name_ + ", " + std::string(array); }
 
-  // Returns the bytes of the .npy file of a small array. They are valid until the next call.
+  // Returns the bytes of the .npy file of a small array. The bytes are valid until the next call.
   [[nodiscard]] Result<std::string_view> bytes(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);
     return zip::read_member(bytes_, *member, npy::kLongestHeader + 12, storage_, name_);
   }
 
-  // Reads the array of this name into storage_, or finds it in the bytes of the file. The result is valid until the
-  // next call.
+  // Reads the array with the name `array` into storage_, or finds it in the bytes of the file. The result is valid
+  // until the next call.
   [[nodiscard]] Result<Array> read(std::string_view array) {
     const zip::Member* const member = find(array);
     if (member == nullptr) return missing(array);

@@ -38,13 +38,13 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<CacheLayout> find_pc2_layout(std::string_view bytes, std::uint64_t size, const std::string& name,
                                                   const CacheOptions& options);
 
-/// Returns the header of the file for a motion. PC2 has no list of times. The times of the motion must therefore be at
-/// equal steps, to a thousandth of a step. Errors, without a place: kUsage for times at other steps, for blend shapes,
-/// and for more than 2^31 - 1 vertices or keyframes.
+/// Returns the header of the PC2 file for a motion. PC2 has no list of times. The times of the motion must therefore be
+/// at equal steps, to a thousandth of a step. Errors, without a place: kUsage for times at other steps, for blend
+/// shapes, and for more than 2^31 - 1 vertices or keyframes.
 [[nodiscard]] Result<std::string> pc2_header(const Motion& motion, double frames_per_second = 1);
 
-/// Writes the header, with one frame per second, and then each position as soon as it is read. Errors: those of the
-/// header, the stream and the file.
+/// Writes a PC2 file: the header, with one frame per second, and then the positions of each keyframe as soon as they
+/// are read. Errors: those of pc2_header(), the stream and the file.
 [[nodiscard]] Status write_pc2(MotionStream& stream, OutputFile& file);
 
 }  // namespace chronormal::inline internal

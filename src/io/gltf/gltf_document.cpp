@@ -164,7 +164,7 @@ void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
 // Drops the tracks whose numbers cannot be read, with a note for each array at fault. An array without a buffer view is
 // not checked here, but when its keys are read.
 void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
-  // Maps an accessor, and true if it has times, to true if its numbers can be read.
+  // For each accessor that was tried, as times (true) or as other numbers (false): true if the accessor can be read.
   std::map<std::pair<std::size_t, bool>, bool> known;
   const auto can_read = [&](std::size_t accessor, bool has_times) {
     const auto [found, is_new] = known.try_emplace({accessor, has_times}, true);

@@ -12,7 +12,8 @@ struct Row {
 
 double number(std::span<const float> numbers, std::size_t i) { return static_cast<double>(numbers[i]); }
 
-// Returns key k as the file stores it. The tangents are 0 unless the channel is a cubic spline.
+// Returns the value and the tangents of key k as the file stores them. The tangents are 0 unless the channel is a cubic
+// spline.
 Row key_at(const LoneKeys& keys, std::size_t k) {
   if (keys.interpolation != GltfInterpolation::kCubicSpline) return {0, number(keys.values, k), 0};
   return {number(keys.values, 3 * k), number(keys.values, 3 * k + 1), number(keys.values, 3 * k + 2)};
@@ -23,8 +24,8 @@ double slope_after(const LoneKeys& keys, std::size_t k) {
   return (number(keys.values, k + 1) - number(keys.values, k)) / (number(keys.times, k + 1) - number(keys.times, k));
 }
 
-// Returns the row at key k of the channel. is_first and is_last tell whether the key is also the first or last of the
-// track. On a side where the channel is constant, the tangent is 0.
+// Returns the value and the tangents at key k of the channel. is_first and is_last tell whether the key is also the
+// first or last of the track. On a side where the channel is constant, the tangent is 0.
 Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last) {
   Row row = key_at(keys, k);
   const bool begins = k == 0, ends = k + 1 == keys.times.size();
@@ -38,7 +39,7 @@ Row row_at_key(const LoneKeys& keys, std::size_t k, bool is_first, bool is_last)
   return row;
 }
 
-// Returns the row at a time between key k and key k + 1.
+// Returns the value and the tangents of the channel at a time between key k and key k + 1.
 Row row_between(const LoneKeys& keys, std::size_t k, double time) {
   const Row from = key_at(keys, k), to = key_at(keys, k + 1);
   const double begin = number(keys.times, k), duration = number(keys.times, k + 1) - begin;
@@ -66,7 +67,7 @@ Row row_between(const LoneKeys& keys, std::size_t k, double time) {
 
 void write_column(const LoneKeys& keys, std::span<const float> times, bool is_cubic_track, std::size_t target,
                   std::size_t width, std::span<double> values) noexcept {
-  // The first key of the channel that is not before times[i].
+  // The index of the first key of the channel that is not before times[i].
   std::size_t next = 0;
   for (std::size_t i = 0; i < times.size(); ++i) {
     while (next < keys.times.size() && keys.times[next] < times[i]) ++next;

@@ -242,8 +242,8 @@ class Assembly {
   [[nodiscard]] Motion& motion() noexcept { return result_.motion; }
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
-  // Finishes the motion. `beyond` is the number of faces that miss the tolerance behind skins, and key_times has the
-  // ends of the intervals that were cut into pieces; it is empty if no interval was cut.
+  // Finishes the motion. `beyond` is the number of faces whose normals, moved by skins, miss the tolerance, and
+  // key_times has the ends of the intervals that were cut into pieces; it is empty if no interval was cut.
   [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
     if (has_skins()) {
       CutPath& cut = result_.cut.emplace();
@@ -268,8 +268,8 @@ class Assembly {
     std::vector<AffineTransform> pose;
   };
 
-  // Returns the coordinates of some vertices of a part at the given weights. They are in the space of the mesh, in the
-  // world, or where the skin of the part moves the vertices in its current pose.
+  // Returns the coordinates of some vertices of a part at the given weights. The coordinates are in the space of the
+  // mesh, in the world, or where the skin of the part moves the vertices in its current pose.
   [[nodiscard]] LongSums coordinates(std::size_t part, IndexRange some, std::span<const double> weights) const {
     const GltfGeometry& geometry = geometries_[part];
     LongSums sums(some.count);
@@ -500,7 +500,8 @@ class AnimationReader {
   }
 
   // Returns the number of pieces, from `fewest` to `most`, into which an interval between two keys is cut, so that
-  // normals behind skins stay within the tolerance. Also returns the number of faces whose normals do not.
+  // normals behind skins stay within the tolerance. Also returns the number of faces whose normals exceed the
+  // tolerance.
   [[nodiscard]] Pieces pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
     struct OfParts {
       std::vector<GltfSkinPieces> parts;

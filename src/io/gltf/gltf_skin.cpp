@@ -1,5 +1,6 @@
 // Computes a pose from the roots down to the joints. Each bone first gets its transform relative to its parent, in
-// which animated parts come from their curves. The transform of the parent in the world is then applied to it.
+// which animated parts come from their curves. The transform of the parent in the world is then applied to this
+// transform.
 #include "io/gltf/gltf_skin.h"
 
 #include <algorithm>

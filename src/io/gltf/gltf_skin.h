@@ -34,7 +34,7 @@ struct JointShare {
 /// a key. The first three bound the linear part of its matrix in the world. `path_bend` bounds the second derivative of
 /// the offset of this matrix, as the sum of what each bone from the root to this one adds. If the paths from the root
 /// to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how the joint bends relative
-/// to it.
+/// to that bone.
 struct BoneBounds {
   double size = 1, speed = 0, bend = 0;  ///< of its value, and of its first and second derivative in time
   double path_bend = 0;
@@ -49,8 +49,8 @@ class GltfSkin {
                                              std::optional<std::size_t> animation);
 
   /// Appends the joints and shares of all vertices of a primitive to `shares`, and for each vertex the index of its
-  /// first share to `first`. The shares of a vertex add up to 1: other weights are divided by their sum, and a vertex
-  /// without any weight follows its first joint, as in three.js. Joints without a weight are left out. Errors:
+  /// first share to `first`. The shares of a vertex add up to 1: weights with another sum are divided by that sum, and
+  /// a vertex without any weight follows its first joint, as in three.js. Joints without a weight are left out. Errors:
   /// kInvalidInput with the JSON pointer, also for joints that this skin does not have.
   [[nodiscard]] Status read_shares(const GltfDocument& document, std::size_t mesh, std::size_t primitive,
                                    std::vector<std::size_t>& first, std::vector<JointShare>& shares) const;
@@ -70,12 +70,12 @@ class GltfSkin {
   /// Returns true if joints jump in the animation.
   [[nodiscard]] bool jumps() const noexcept;
 
-  /// Returns bounds for all bones between two neighbouring key times, or times between these. They are infinite for a
-  /// cubic rotation that may have no direction. O(bones + curves).
+  /// Returns bounds for all bones between two neighbouring key times, or times between these. The bounds are infinite
+  /// for a cubic rotation that may have no direction. O(bones + curves).
   [[nodiscard]] std::vector<BoneBounds> bounds(double from, double to) const;
 
-  /// Return the bone of a joint; the bone at which the paths of two bones to their roots meet, or nothing; and the
-  /// inverse bind matrix of a joint.
+  /// Return the bone of a joint; the bone at which the paths of two bones to their roots meet, or nothing if the roots
+  /// differ; and the inverse bind matrix of a joint.
   [[nodiscard]] std::size_t bone_of_joint(std::size_t joint) const noexcept { return bone_of_joint_[joint]; }
   [[nodiscard]] std::optional<std::size_t> meeting_bone(std::size_t a, std::size_t b) const noexcept;
   [[nodiscard]] const AffineTransform& inverse_bind(std::size_t joint) const noexcept { return inverse_binds_[joint]; }
@@ -93,8 +93,8 @@ class GltfSkin {
     gltf::WeightCurve curve;
   };
 
-  // Returns the rotation at a time. LINEAR keys are interpolated along the arc between them, as the specification
-  // demands.
+  // Returns the rotation of a joint at a time. LINEAR keys are interpolated along the arc between them, as the
+  // specification demands.
   [[nodiscard]] static std::array<double, 4> rotation_at(const Curve& moving, double time, bool just_before);
   // Collects the joints and all their ancestors as bones.
   void add_bones(const GltfDocument& document);

@@ -63,7 +63,7 @@ struct Interval {
   }
 };
 
-// Returns the angle between two rotations, by the shorter way.
+// Returns the angle in radians between two rotations, by the shorter way.
 double angle_between(const std::array<double, 4>& a, const std::array<double, 4>& b) {
   std::array<double, 4> sum{}, difference{};
   const double from = 1 / length_of(a), to = 1 / length_of(b);

@@ -168,8 +168,8 @@ Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   return Success{};
 }
 
-// Finds the arrays that become unused by the changes, in the buffers for which holds(buffer) is true. These are the
-// buffers whose bytes are in the result.
+// Finds the arrays that become unused by the changes, in the buffers for which holds(buffer) is true. The bytes of such
+// buffers are in the result.
 template <class Holds>
 Status EditLayout::leave_out_unused(const Holds& holds) {
   if (!document_.without_unused) return Success{};

@@ -39,7 +39,7 @@ struct UnusedArrays {
   [[nodiscard]] bool any() const noexcept { return !ranges.empty(); }
   [[nodiscard]] std::size_t bytes_of(std::size_t buffer) const noexcept;
   [[nodiscard]] std::size_t bytes() const noexcept;
-  /// Returns the pieces of a buffer that remain.
+  /// Returns the pieces of a buffer, in order, that remain without the ranges to leave out.
   [[nodiscard]] std::vector<std::string_view> kept(std::size_t buffer, std::string_view bytes) const;
 };
 

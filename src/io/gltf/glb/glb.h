@@ -43,7 +43,7 @@ struct GlbChunks {
 
 /// The headers and the padding around the chunks of a GLB file. A file has a JSON chunk and at most one BIN chunk.
 struct GlbFrame {
-  /// each has the padding of the previous chunk and the header of the next
+  /// the bytes in front of the JSON, behind the JSON, and behind the bytes of BIN: padding and headers of chunks
   std::string before_json, behind_json, behind_bin;
   std::uint64_t size = 0;  ///< size of the file in bytes
 };

@@ -34,7 +34,8 @@ namespace chronormal::inline internal {
 
 class GlbBuilder {
  public:
-  /// Takes the next bytes of a file, in order. `file_size` is the size of the whole file in bytes.
+  /// A function that gets the bytes of a file, piece by piece in order. `file_size` is the size of the whole file in
+  /// bytes.
   using Take = std::function<Status(std::string_view bytes, std::size_t file_size)>;
   /// Returns a Take that appends the bytes to `file`. The text `file` must outlive the Take.
   [[nodiscard]] static Take gather_in(std::string& file);
@@ -76,7 +77,8 @@ class GlbBuilder {
   /// Assembles the file, passes its bytes to `take`, and forgets them. Returns the size of the file in bytes. Errors:
   /// kInvalidInput if the file would be too large (found before `take` is called); those of the spool and of `take`.
   [[nodiscard]] Result<std::size_t> finish(const Take& take);
-  /// Assembles the file in memory and returns its bytes. Errors: as above.
+  /// Assembles the file in memory and returns its bytes. Errors: kInvalidInput if the file would be too large; those of
+  /// the spool.
   [[nodiscard]] Result<std::string> finish();
 
  private:

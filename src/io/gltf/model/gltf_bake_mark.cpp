@@ -29,7 +29,7 @@ std::vector<JsonView> items_of(const JsonView& view, const Json& value, const ch
   return items;
 }
 
-// Returns true if a term is an array with this number of items, and complains otherwise.
+// Returns true if a term is an array with `size` items, and complains otherwise.
 bool is_term(const JsonView& term, const Json& value, std::size_t size, const char* form) {
   if (value.is_array() && value.size() == size) return true;
   term.complain(std::string("a term must be ") + form);

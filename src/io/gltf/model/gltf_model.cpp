@@ -433,8 +433,8 @@ void Parser::connect_nodes() {
   }
 }
 
-// Takes marks also from nodes, because other programs keep the extras of nodes and drop the extras of meshes. Some of
-// these programs also move the mesh to a new child of the node.
+// Takes the marks of bakes also from nodes, because other programs keep the extras of nodes and drop the extras of
+// meshes. Some of these programs also move the mesh to a new child of the node.
 void Parser::read_marks_of_nodes() {
   for (std::size_t i = 0; i < model_.nodes.size(); ++i) {
     const GltfNode& node = model_.nodes[i];

@@ -129,7 +129,7 @@ struct TrackSource {
   std::vector<double> rest = {};
 };
 
-/// A channel that moves a node.
+/// A channel of an animation that moves, turns or scales a node.
 struct NodeChannel {
   enum class Path { kTranslation, kRotation, kScale };
 

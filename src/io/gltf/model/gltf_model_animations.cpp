@@ -181,8 +181,8 @@ void Parser::assemble_track(const JsonView& animation, std::size_t node, const s
       track.interpolation = of_weight.interpolation;
       source = read;
     }
-    // This count is an upper bound, because several channels may have keys at the same times. The true count is known
-    // only when the keys are read.
+    // The count of keys is an upper bound here, because several channels may have keys at the same times. The true
+    // count is known only when the keys are read.
     if (inputs.insert(read.input).second) track.key_count = saturating_sum(track.key_count, of_weight.key_count);
     // A line can be written as a cubic, so linear and cubic channels can share a track. A step cannot be written as a
     // line or a cubic.

@@ -145,7 +145,7 @@ class Parser {
   /// complaint.
   bool parse_sampler(const JsonView& animation, std::size_t channel_index, Use use, std::size_t per_key,
                      GltfTrack& track, TrackSource& source);
-  /// Reads the channels that move nodes.
+  /// Reads the channels of an animation that move, turn or scale nodes.
   void parse_node_channels(const JsonView& animation, std::vector<NodeChannel>& result);
   /// Reads the expressions of a VRM avatar. Malformed expressions are skipped, since no geometry depends on them.
   void parse_expressions(const nlohmann::json& root);
