@@ -135,8 +135,8 @@ CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
 /* Writes the unit normals at many t, each to its own output. The total number of (0, 0, 0) is stored in `zeros`, unless
- * it is NULL. Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of one
- * output. */
+ * `zeros` is NULL. Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of
+ * one output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
 /* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact

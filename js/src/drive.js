@@ -5,7 +5,7 @@
 const VERSION = 2;
 
 /**
- * Returns the formulas of a mark (extras.chronormal of a mesh with this many targets) in arrays that can be evaluated
+ * Returns the formulas of a mark (extras.chronormal of a mesh with `count` targets) in arrays that can be evaluated
  * without allocating. A correction target without a formula is driven only by the animations of the file, and is left
  * out. Correction targets are the last ones of a mesh. If the number of targets has changed since the bake, the result
  * is empty.

@@ -2,8 +2,8 @@
 const HEADER_SIZE_AT = 8, HEADER_AT = 10;
 
 /**
- * Returns the numbers of an array, and the shape of the array. The numbers share the memory of the file if they are
- * aligned there, and are copied otherwise.
+ * Returns the numbers of an array, and the shape of the array. The numbers share the memory of the file if the numbers
+ * are aligned in the file, and are copied otherwise.
  */
 export function readNpy(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength), end = HEADER_AT + view.getUint16(HEADER_SIZE_AT, true);

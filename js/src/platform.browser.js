@@ -7,7 +7,9 @@ export async function read(url) {
   return new Uint8Array(await response.arrayBuffer());
 }
 
-/** Starts worker.js. Its messages are passed to onMessage, and the error that ends it to onError. */
+/**
+ * Starts worker.js. The messages of this worker are passed to onMessage, and an error that ends the worker to onError.
+ */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);

@@ -7,7 +7,10 @@ export const require = createRequire(import.meta.url);
 
 export const read = (url) => readFile(url);
 
-/** Starts worker.node.js. Its messages are passed to onMessage, and the error that ends it to onError. */
+/**
+ * Starts worker.node.js. The messages of this worker are passed to onMessage, and an error that ends the worker to
+ * onError.
+ */
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.node.js', import.meta.url));
   worker.on('message', onMessage);

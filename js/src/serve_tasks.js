@@ -2,7 +2,10 @@
 import { useCompiled } from './run.js';
 import { perform } from './task.js';
 
-/** Serves tasks on a platform. A message is {task, wantsProgress}, with the compiled module if the caller has it. */
+/**
+ * Serves tasks on a platform. A message is {task, wantsProgress}, with the compiled module if the caller has already
+ * compiled the program.
+ */
 export const serveTasks = (platform) => platform.serve(async ({ task, wantsProgress, module }, say) => {
   try {
     if (module) useCompiled(module);

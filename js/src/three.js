@@ -3,7 +3,7 @@
 import { drive as driveBy, formulasOf, markOf } from './drive.js';
 
 // The meshes that are driven. The key of an entry is a mesh, and its value is {formulas, before, now}: `before` is the
-// onBeforeRender() of the mesh before attach(), and `now` the one that attach() has set.
+// own onBeforeRender() of the mesh before attach(), and `now` is the function that attach() has put in its place.
 const attached = new WeakMap();
 
 function formulasOfMesh(mesh) {

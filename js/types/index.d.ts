@@ -33,9 +33,9 @@ export interface CallOptions {
 }
 
 /**
- * The options for reading the input. These options and those below are options of the program, written in camel case:
- * `maxTargets: 112` is `--max-targets 112`. `chronormal help COMMAND` explains them. Options with other names, and
- * values of another type, are refused.
+ * The options for reading the input. All options except those of CallOptions are options of the program, written in
+ * camel case: `maxTargets: 112` is `--max-targets 112`. `chronormal help COMMAND` explains them. Options with other
+ * names, and values of another type, are refused.
  */
 export interface ReadOptions extends CallOptions {
   allowExternal?: boolean;
@@ -69,7 +69,7 @@ export interface AuditOptions extends MotionOptions {
   /** @deprecated the old name of `for` */
   host?: Viewer | 'all' | Array<Viewer | 'all'>;
   samples?: number;
-  /** The poses that are judged besides those of the file: 'random', or a name among `resources`. */
+  /** The poses that are judged besides the poses of the file: 'random', or a name among `resources`. */
   poses?: string;
   /** The two weights between which each target alone is moved. Default: '0:1'. */
   weights?: `${number}:${number}`;
@@ -90,7 +90,7 @@ export interface BakeOptions extends ReadOptions {
   maxBytes?: number;
   maxTargets?: number;
   animationsOnly?: boolean;
-  /** The poses for which the file is baked besides its own: 'random', or a name among `resources`. */
+  /** The poses for which the file is baked besides the poses of the file: 'random', or a name among `resources`. */
   poses?: string;
   /** True to report the size and the errors of each candidate, and to make no file. */
   plan?: boolean;
@@ -115,7 +115,7 @@ export interface CompareOptions extends MotionOptions {
   access?: 'random' | 'sequential';
   certify?: boolean;
   tolerance?: number;
-  /** The face whose normals by each scheme are reported, as its number or as FACE:SEGMENT. */
+  /** The face for which the normals of each scheme are reported: the index of the face, or FACE:SEGMENT. */
   face?: number | string;
   blend?: number;
   active?: number;
@@ -157,7 +157,7 @@ export interface Sampled {
 
 export interface Judged<Report> {
   report: Report;
-  /** Messages of the program besides its result, one line each. */
+  /** The messages that the program writes besides the report, one line each. */
   warnings: string[];
   /** False if the result exceeds the requested tolerance or budget (exit code 4). */
   within: boolean;

@@ -533,7 +533,9 @@ export interface InspectedGltf {
   }>;
 }
 
-/** The report of inspect(). For a glTF file without faces, it has only `input`, `notes`, `gltf` and `trouble`. */
+/**
+ * The report of inspect(). For a glTF file without faces, the report has only `input`, `notes`, `gltf` and `trouble`.
+ */
 export interface InspectReport extends Head<'inspect', 1> {
   input: { name: string; vertices: number; faces: number; keyframes: number; segments: number };
   /** Facts about the numbers in the file names of a sequence. Present if these numbers order the files. */

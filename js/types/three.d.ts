@@ -4,5 +4,8 @@ import type { Mesh, Object3D } from 'three';
 export function attach(root: Object3D): Mesh[];
 /** Stops driving the meshes below an object, and sets the weights of their correction targets to 0. */
 export function detach(root: Object3D): void;
-/** Sets the weights of correction targets once. Call it before InstancedMesh.setMorphAt() takes the weights of a mesh. */
+/**
+ * Sets the weights of correction targets once. Call this function before InstancedMesh.setMorphAt() takes the weights
+ * of a mesh.
+ */
 export function drive(root: Object3D): void;

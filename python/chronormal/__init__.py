@@ -47,7 +47,7 @@ def _vectors(array, place):
         return array
     if array.dtype.kind not in "fiu":
         raise ValueError(f"{place}: the array must hold real numbers, best as float32, but its type is {array.dtype}")
-    # numbers that are too large become infinite, and the library refuses them with their place
+    # numbers that are too large become infinite; the library refuses infinite numbers, and names their place
     with _np.errstate(over="ignore"):
         return _np.ascontiguousarray(array, dtype=_np.float32)
 

@@ -73,7 +73,7 @@ struct Numbers {
 
   bool is_one = false;
   double one = 0;
-  // The array, if an array was given. It is optional, because making an empty array would cost time.
+  // The array, if an array was given. The member is optional, because making an empty array would cost time.
   std::optional<Array<double>> many;
 };
 

@@ -57,8 +57,8 @@ T value_or_raise(Result<T> result) {
   raise(Error{ErrorCode::kUsage, place, message});
 }
 
-// Raises an error if a condition does not hold. If it holds, no string is made, since the whole call may take less than
-// a microsecond.
+// Raises an error if a condition does not hold. If the condition holds, no string is made, since the whole call may
+// take less than a microsecond.
 inline void require(bool condition, const char* place, const char* message) {
   if (!condition) refuse(place, message);
 }
@@ -98,10 +98,10 @@ Motion motion_of(const Array<float>& positions, const Array<std::uint32_t>& offs
                  const Array<std::uint32_t>& corners, const Array<double>& times);
 
 // Returns the array into which normals (rows, size, 3) are written, or (size, 3) if `rows` has no value. The array is
-// `out` itself if it has this shape, or a new array if `out` is None. Raises an error for other values of `out`.
+// `out` itself if `out` has this shape, or a new array if `out` is None. Raises an error for other values of `out`.
 py::array result_array(const py::object& out, std::optional<std::size_t> rows, std::size_t size);
 
-// Returns the array `numbers` itself, or a copy if it shares memory with the array `out`, which is written while
+// Returns the array `numbers` itself, or a copy if `numbers` shares memory with the array `out`, which is written while
 // `numbers` is read.
 inline Array<double> kept_from(Array<double> numbers, const py::object& out) {
   if (!py::isinstance<py::array>(out) || numbers.size() == 0) return numbers;

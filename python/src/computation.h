@@ -11,9 +11,9 @@
 
 namespace chronormal::python {
 
-// Lets one thread at a time compute with an object, which has scratch memory for only one computation. Such a
-// permission is called a turn. A fork waits until no other thread has a turn, and no turn begins meanwhile. Otherwise
-// the turn of another thread would never end in the child, because that thread does not exist there.
+// The turns of threads to compute with an object, which has scratch memory for only one computation. One thread at a
+// time has a turn. A fork waits until no other thread has a turn, and no turn begins meanwhile. Otherwise the turn of
+// another thread would never end in the child, because that thread does not exist there.
 class Turns {
  public:
   // Returns this object. Raises an exception if the calling thread has the turn already. This happens in a signal
@@ -31,9 +31,9 @@ class Turns {
   std::atomic<std::thread::id> owner_;
 };
 
-// A computation that runs without the GIL. If it is made with the Turns of an object, it has a turn of this object. If
-// a signal handler raises an exception, as for Ctrl-C, the computation throws Interrupted, and the exception of Python
-// is set.
+// A computation that runs without the GIL. A computation that is made with the Turns of an object has a turn of this
+// object. If a signal handler raises an exception, as for Ctrl-C, the computation throws Interrupted, and the exception
+// of Python is set.
 class Computation {
  public:
   Computation() = default;
@@ -51,7 +51,8 @@ class Computation {
   Interruption interruption_{has_heard_a_signal};
 };
 
-// Runs long work as a Computation, and returns its result. If the result is an error, raises it while holding the GIL.
+// Runs long work as a Computation, and returns its result. If the result is an error, takes the GIL and raises the
+// error.
 template <class Work>
 auto without_gil(const Work& work) {
   auto result = [&] {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr const char* kBytes = "<bytes>";  // the name of a file that was given as bytes
 
-// Reads the dict that python/chronormal makes from its arguments. Its keys are the names of members of InputOptions.
+// Reads the dict that python/chronormal makes from its arguments. The keys of the dict are the names of members of
+// InputOptions.
 InputOptions options_of(const py::dict& source) {
   InputOptions options;
   options.files = source["files"].cast<std::vector<std::string>>();
@@ -40,7 +41,7 @@ InputOptions options_of(const py::dict& source) {
   return options;
 }
 
-// Opens files. Raises an error if the chosen path of vertices is not possible for these files.
+// Opens the files of an input. Raises an error if the chosen path of vertices is not possible for this input.
 Input open_files(const py::dict& source, bool allow_mesh, KeepShading shading) {
   InputOptions options = options_of(source);
   options.allow_mesh = allow_mesh;
@@ -60,7 +61,8 @@ std::string bytes_of_text(const py::handle& text) {
   return py::reinterpret_steal<py::bytes>(made);
 }
 
-// A motion that was read or made from arrays. It also gives its arrays, and its normals at chosen moments, to Python.
+// A motion that was read or made from arrays. The object also gives the arrays of the motion, and normals at chosen
+// moments, to Python.
 class ReadMotion : public ZeroedObject {
  public:
   explicit ReadMotion(const py::dict& source) : bytes_(source["bytes"]) {
@@ -207,7 +209,7 @@ class ReadMotion : public ZeroedObject {
   std::optional<py::array> positions_;
 };
 
-// Returns the state of a motion for a pickle: everything except the files that it was read from.
+// Returns the state of a motion for a pickle: everything except the files from which the motion was read.
 py::tuple ReadMotion::state() const {
   const Motion& m = motion();
   py::list keyframes;

@@ -43,7 +43,7 @@ def slopes(keys):
 
 
 def on_cubic(keys, velocities, time):
-    """Return the positions at a time on the cubic Hermite spline through the keyframes with these velocities."""
+    """Return the positions at a time on the cubic Hermite spline through the keyframes, with the given velocities."""
     k = min(np.searchsorted(TIMES, time, side="right") - 1, len(TIMES) - 2)
     h = TIMES[k + 1] - TIMES[k]
     t = (time - TIMES[k]) / h

@@ -1,8 +1,8 @@
 #include "core/charconv.h"
 
 #ifndef __cpp_lib_to_chars
-// The next part is for the two files that tools/two_files.py makes. They are built without fmt and format numbers only
-// for messages.
+// The next part is for the two files that tools/two_files.py makes. These files are built without fmt, and format
+// numbers only for messages.
 #ifdef CHRONORMAL_ALONE
 
 #include <cstdio>
@@ -89,8 +89,8 @@ std::to_chars_result shortest(char* first, char* last, Number value) {
   if (before_point <= 0) {
     fixed = "0." + std::string(static_cast<std::size_t>(-before_point), '0') + digits;
   } else if (before_point >= count) {
-    // The number is an integer with more digits than are needed to tell it from other numbers. All of its digits are
-    // printed, and not zeros in place of the last ones.
+    // The number is an integer with more digits than are needed to tell this number from others. All digits are
+    // printed, without zeros in place of the last digits.
     fixed = fmt::format("{:.0f}", value).substr(sign.size());
   } else {
     fixed = digits.substr(0, static_cast<std::size_t>(before_point)) + '.' +

@@ -16,8 +16,8 @@ namespace chronormal::inline internal {
 using std::from_chars;
 using std::to_chars;
 #else
-// Reads an integer by the standard library. The names of that library are not imported, since it may have some of the
-// functions for floating-point numbers.
+// Reads an integer by the standard library. The names of std are not imported, since std may have some of the functions
+// for floating-point numbers.
 template <std::integral T>
 [[nodiscard]] std::from_chars_result from_chars(const char* first, const char* last, T& value, int base = 10) {
   return std::from_chars(first, last, value, base);

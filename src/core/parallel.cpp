@@ -45,7 +45,7 @@ thread_local Interruption* interruption = nullptr;
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
 
-// Lets this thread work for the computation of an Interruption while the object lives. nullptr stands for a computation
+// The scope in which this thread works for the computation of an Interruption. nullptr stands for a computation
 // that nobody can end.
 class InterruptionScope {
  public:
@@ -103,7 +103,7 @@ struct Job {
   std::fenv_t rounding = {};
 
   std::atomic<std::size_t> next = 0;  // index of the next piece that no thread has taken
-  // For an outermost job: number of threads that work on it and on the jobs inside it.
+  // For an outermost job: the number of threads that work on this job and on the jobs inside it.
   std::size_t seated = 1;
   std::size_t helpers = 0;  // number of threads that run pieces of this job, not counting its caller
   std::exception_ptr failure = nullptr;
@@ -249,7 +249,7 @@ class Pool {
         changed_.wait(lock);
       }
       --waiting_;
-      // The interruption may belong to this thread, and only this thread may call its callback.
+      // The interruption may belong to this thread. Its callback may only be called on the thread to which it belongs.
       if (job.asked != nullptr) {
         lock.unlock();
         try {

@@ -31,7 +31,7 @@ inline constexpr double kFloatUnitRoundoff = 0x1p-24;
   return max_abs(v) > error ? v : Vec3d{};
 }
 
-/// Returns v, with zero in place of each component that is not above its own error.
+/// Returns v, with zero in place of each component whose absolute value is at most the same component of `error`.
 [[nodiscard]] inline Vec3d without_rounding(const Vec3d& v, const Vec3d& error) noexcept {
   const auto keep = [](double value, double e) { return std::fabs(value) <= e ? 0.0 : value; };
   return {keep(v.x, error.x), keep(v.y, error.y), keep(v.z, error.z)};

@@ -24,9 +24,9 @@ namespace chronormal::inline internal {
 /// Returns a count with its noun in the right number: "1 face", "1,234 faces".
 [[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
 
-/// Returns a number for messages in the way that people write it: 0.3 for 0.30000000000000004. It has six significant
-/// digits, or as many as are needed to tell it from the numbers `others` in the same message. A number that takes up to
-/// eight characters is not rounded.
+/// Returns a number for messages in the way that people write it: 0.3 for 0.30000000000000004. The text has six
+/// significant digits, or as many as are needed to tell the number from the numbers `others` in the same message. A
+/// number that takes up to eight characters is not rounded.
 [[nodiscard]] std::string rounded_text(double value, std::initializer_list<double> others = {});
 
 /// Format a number. with_decimals() writes a fixed number of digits after the point. with_digits() writes significant

@@ -75,7 +75,7 @@ struct UnitFraction {
   }
 };
 
-/// An integer of up to kMost digits, of which only those that it needs are in use.
+/// An integer of up to kMost digits. Digits above the highest nonzero digit take no time.
 template <std::size_t kMost>
 class WideInteger {
  public:

@@ -73,14 +73,14 @@ struct SampleOptions {
   Weighting weighting = Weighting::kArea;
   NormalLength length = NormalLength::kUnit;  ///< kArea is allowed only for Weighting::kArea
   /// The name of a scheme (schemes/scheme.h) that interpolates between the exact normals at the ends of a segment. If
-  /// it is empty, all normals are exact. A scheme is allowed only for Weighting::kArea and NormalLength::kUnit.
+  /// the name is empty, all normals are exact. A scheme is allowed only for Weighting::kArea and NormalLength::kUnit.
   std::string scheme = {};
   /// If given, the scheme is played step by step, and only the times of step_moments() can be computed.
   std::optional<Stepping> stepping = {};
 };
 
-/// Checks that a motion can have a pose with these weights. Errors: kUsage for a motion that is not blend shapes, for a
-/// number of weights other than the number of targets, and for a weight that is not finite.
+/// Checks that a motion can have a pose with the weights `weights`. Errors: kUsage for a motion that is not blend
+/// shapes, for a number of weights other than the number of targets, and for a weight that is not finite.
 [[nodiscard]] Status check_weights(const Motion& motion, std::span<const double> weights);
 
 /// The moments at which normals are computed, in the order of the output. At most one of the two lists is not empty. If
@@ -94,8 +94,8 @@ struct Moments {
   }
 };
 
-/// The error of playback: the largest angle between normals that a scheme plays step by step and normals that it
-/// computes directly at the same t.
+/// The error of playback: the largest angle between normals that a scheme plays step by step and normals that the
+/// scheme computes directly at the same t.
 struct Drift {
   double largest = 0;      ///< the angle in radians
   std::size_t output = 0;  ///< the first output with this angle
@@ -121,12 +121,13 @@ class NormalSampler {
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
   /// Computes the pose at a time in seconds. Prepares the segment that contains this time, unless the last request was
-  /// for the same segment. Errors: those of find_instant(); kUsage if the sampler plays steps and the time is not one
-  /// of them.
+  /// for the same segment. Errors: those of find_instant(); kUsage if the sampler plays steps and no step is at this
+  /// time.
   [[nodiscard]] Result<Pose> at_time(double time);
 
-  /// Computes the pose for weights. Errors: those of check_weights(); kUsage for weights with which a vertex exceeds
-  /// the range of float32 and, with a scheme, for weights that are not between the base and one target.
+  /// Computes the pose at the weights of blend shapes. Errors: those of check_weights(); kUsage for weights with which
+  /// a vertex exceeds the range of float32 and, with a scheme, for weights that are not between the base and one
+  /// target.
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
   /// Computes the pose of keyframe 0, which is the only pose of a mesh at rest. Precondition: if the motion is read as
@@ -157,7 +158,7 @@ class NormalSampler {
   [[nodiscard]] std::vector<float> normals_anew(const Segment& segment, const LocalTime& t) const;
   // Computes normals with the scheme. `time` is only used to report where the drift is largest.
   [[nodiscard]] Result<std::vector<float>> scheme_normals(const Segment& segment, double t, double time);
-  // Returns the normals as floats, scaled to length 1 if the options demand it.
+  // Returns the normals as floats, scaled to length 1 if the options ask for unit normals.
   [[nodiscard]] std::vector<float> as_asked(std::span<const Vec3d> exact) const;
   [[nodiscard]] bool are_exact_units() const noexcept {
     return options_.weighting == Weighting::kArea && options_.length == NormalLength::kUnit;
@@ -176,9 +177,9 @@ class NormalSampler {
   Drift drift_;
 };
 
-/// Returns the moments of all steps through a motion. For a sequence these are times, and the end of a segment is also
-/// the beginning of the next one. For targets they are weights, from 0 to 1 for each target alone. Errors: kUsage if
-/// the motion has no segment.
+/// Returns the moments of all steps through a motion. The moments of a sequence are times, and the end of a segment is
+/// also the beginning of the next segment. The moments of targets are weights, from 0 to 1 for each target alone.
+/// Errors: kUsage if the motion has no segment.
 [[nodiscard]] Result<Moments> step_moments(const Motion& motion, std::size_t steps);
 
 enum class SampleFormat { kNpy, kNpz, kPly, kObj };

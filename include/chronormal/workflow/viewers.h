@@ -188,8 +188,8 @@ void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<con
 }
 
 /// Return the normal that a viewer renders, computed from the sum at a vertex (first_of_sum() and the weighted deltas).
-/// vector_of_sum() returns a vector in its direction, and shown_of_sum() the unit normal. The result is zero or not
-/// finite if the sum is.
+/// vector_of_sum() returns a vector in the direction of the normal, and shown_of_sum() the unit normal. The result is
+/// zero or not finite if the sum is.
 [[nodiscard]] Vec3f vector_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 [[nodiscard]] Vec3f shown_of_sum(const Viewer& viewer, const Vec3f& kept_normal, const Vec3f& sum) noexcept;
 

@@ -42,8 +42,8 @@ struct NormalPiece {
 /// Returns pi if no smaller bound is known.
 [[nodiscard]] double largest_angle(const CurvePiece& curve, const NormalPiece& normal) noexcept;
 
-/// The angle in the middle of the piece, in radians, and a bound of the change that errors may cause in it. The angle
-/// is pi if a direction is unknown.
+/// The angle in the middle of the piece, in radians, and a bound of the change that errors may cause in this angle. The
+/// angle is pi if a direction is unknown.
 struct MiddleAngle {
   double angle = 0, uncertainty = 0;
 };

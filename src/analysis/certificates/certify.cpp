@@ -21,8 +21,8 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kMostPieces = 256;
-// The smallest width of a piece in t. A piece of this width is not cut further, since it is practically a single
-// instant.
+// The smallest width of a piece in t. A piece of this width is not cut further, since such a piece is practically a
+// single instant.
 constexpr double kNarrowest = 0x1p-40;
 constexpr double kPromisedShare = 0x1p-26;  // relative error of a control normal that face_control_normals() guarantees
 constexpr std::size_t kBlockSize = 1024;
@@ -133,7 +133,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// Certifies the elements of a block. The object has the data that all these elements share.
+// The certifier of the elements of a block, with the data that all these elements share.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme)

@@ -15,7 +15,7 @@ inline constexpr double kViewerRounding = 32 * 0x1p-24;
 
 /// Returns an upper bound of the angle, in radians, between n(t) and the line from `from` (at t = a) to `to` (at t =
 /// b), for all t in [a, b]. `from` and `to` may have any lengths. The bound is only made close enough to tell whether
-/// the angle is at most `enough` radians. It is 0 if n is zero throughout. Pure. Precondition: 0 <= a < b <= 1.
+/// the angle is at most `enough` radians. The bound is 0 if n is zero throughout. Pure. Precondition: 0 <= a < b <= 1.
 [[nodiscard]] double line_error(const ControlNormals& normals, double a, double b, const Vec3d& from, const Vec3d& to,
                                 double enough) noexcept;
 

@@ -94,8 +94,8 @@ CurvePiece SumCurve::over(double a, double b) const noexcept {
   std::array<Vec3d, WeightBasis::kMostDegree + 1> coefficients = p_;
   const std::span<Vec3d> p(coefficients.data(), degree_ + 1);
   restrict_in_place(p, a, b);
-  // The cubic has the same ends and the same slopes at the ends as p. It is raised to the degree of p, so that its
-  // coefficients can be compared with those of p.
+  // The cubic has the same ends and the same slopes at the ends as p. The cubic is raised to the degree of p, so that
+  // the coefficients of both can be compared.
   const double degree = static_cast<double>(degree_), steps = degree / 3;
   const Bernstein<Vec3d, 3> cubic = {p[0], p[0] + steps * (p[1] - p[0]),
                                      p[degree_] + steps * (p[degree_ - 1] - p[degree_]), p[degree_]};

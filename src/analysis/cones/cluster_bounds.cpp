@@ -99,7 +99,7 @@ class Cluster {
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }
     }
-    // The point is moved further back along the axis, by more than rounding can have moved it.
+    // The point is moved further back along the axis, by more than rounding can have moved it forward.
     const double cosine = std::sqrt((1 - double{cone.sine}) * (1 + double{cone.sine}));
     s += 0x1p-22 * (length(center) + s) / cosine + 0x1p-120;
     const Vec3d point = center - s * axis;

@@ -118,8 +118,8 @@ ShutterNormal means_of(const ControlNormals& c, const Bernstein<double, 2>& leng
 
 Bernstein<double, 2> lengths_of(const ControlNormals& c) { return {length(c.n0), length(c.m), length(c.n1)}; }
 
-// Returns the mean normal and the mean unit normal over a part of a segment. `c` are the control normals of the whole
-// segment, `part` those of the part.
+// Returns the mean normal and the mean unit normal over a part of a segment. `c` has the control normals of the whole
+// segment, and `part` has the control normals of the part.
 ShutterNormal means_of_part(const ControlNormals& c, const IntervalNormals& part,
                             const Restriction& restriction) noexcept {
   const Bernstein<double, 2> whole = lengths_of(c);

@@ -60,8 +60,8 @@ EdgeFaults find_edge_faults(const Topology& topology, const Points& points) {
   return faults;
 }
 
-// The triangles of all faces. Each point is represented by its first vertex. A triangle that names a point twice has no
-// area at any time, and is left out.
+// The triangles of all faces. Vertices of one place are one point, which its first vertex represents. A triangle that
+// names a point twice has no area at any time, and is left out.
 struct Triangles {
   std::vector<std::uint32_t> corners;  // three vertices for each triangle
   std::vector<std::uint32_t> faces;
@@ -148,13 +148,13 @@ struct Containment::Mesh {
 
 namespace {
 
-// The passage of one point through a segment, in which it may cross triangles.
+// The passage of one point through a segment, during which the point may cross triangles.
 class Passage {
  public:
   Passage(const MeshInSegment& mesh, const MovingPoint& point) : mesh_(mesh), point_(point) {}
 
-  // Returns the winding number of the point at a time. It is the sum of the signs with which the half-line upwards from
-  // the point crosses triangles.
+  // Returns the winding number of the point at a time. The winding number is the sum of the signs with which the
+  // half-line upwards from the point crosses triangles.
   [[nodiscard]] std::int32_t winding_number(Tick t) const {
     std::int32_t sum = 0;
     const double share = static_cast<double>(t) / static_cast<double>(kTicks);
@@ -265,7 +265,7 @@ class Passage {
   }
 
   // Returns the time of a root. The time is computed in double first. If exact signs on both sides of that time do not
-  // agree with a root there, a bisection with exact signs finds it instead.
+  // agree with a root there, a bisection with exact signs finds the time instead.
   [[nodiscard]] double time_of(const Root& root) const {
     constexpr Tick kMargin = 8;
     const CrossingSigns signs = signs_of(root.triangle);

@@ -74,7 +74,7 @@ void add_cross(const ExactVector& a, const ExactVector& b, ProductVector& sum) n
 }
 
 // The corners of a triangle relative to the point at both ends of a cell, as integers with a common unit. Each
-// coordinate is computed when it is first needed.
+// coordinate is computed at its first use.
 class ExactCell {
  public:
   ExactCell(const std::array<MovingPoint, 3>& corners, const MovingPoint& point, const Cell& cell) noexcept
@@ -207,7 +207,7 @@ class ExactCell {
                       Coordinate& result) const noexcept {
     if (weight.digits[0] == 0 && weight.digits[1] == 0) return;
     WideInteger<kCoordinateDigits> difference;
-    // Most differences are exact in double, and are integers of few bits, so they need no wide integers.
+    // Most differences are exact in double, and are integers of few bits, so these differences need no wide integers.
     constexpr double kMost = 0x1p62;
     const float a = p.value, b = q.value;
     const double rounded = double{a} - double{b}, back = double{a} - rounded;
@@ -239,7 +239,7 @@ class ExactCell {
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// An ExactCell that is made from its arguments when double cannot decide for the first time.
+// An ExactCell, and the arguments from which it is made when double cannot decide for the first time.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;
@@ -249,7 +249,7 @@ struct Integers {
   ExactCell& get() noexcept { return made ? *made : made.emplace(corners, point, cell); }
 };
 
-// Returns the sign that all values have in common; 0 if signs differ or one of them is 0.
+// Returns the sign that all values have in common; 0 if signs differ or some sign is 0.
 template <std::size_t kCount>
 int common_sign(const std::array<int, kCount>& signs) noexcept {
   for (const int sign : signs) {

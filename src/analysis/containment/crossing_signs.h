@@ -74,8 +74,9 @@ class CrossingSigns {
   /// sides are taken.
   [[nodiscard]] Verdict judge(std::size_t axis, const Cell& cell) const noexcept;
 
-  /// Returns the number that the triangle adds to the winding number at a moment. It is 1 if the half-line from the
-  /// point along the axis leaves the mesh through the triangle, -1 if the half-line enters the mesh, and otherwise 0.
+  /// Returns the number that the triangle adds to the winding number at a moment. This number is 1 if the half-line
+  /// from the point along the axis leaves the mesh through the triangle, -1 if the half-line enters the mesh, and
+  /// otherwise 0.
   [[nodiscard]] int crossing_of_ray(std::size_t axis, Tick t) const noexcept;
 
   /// Returns the sign of the volume V at a moment, which tells on which side of the triangle's plane the point is.

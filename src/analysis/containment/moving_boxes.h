@@ -88,8 +88,8 @@ struct MovingBox {
 /// the tree. O(n).
 [[nodiscard]] std::vector<MovingBox> moving_boxes(std::span<const BoxNode> nodes, const Segment& segment);
 
-/// Calls visit(triangle) for the triangles of each leaf whose box passes the test, if the boxes of all nodes above it
-/// pass the test, too.
+/// Calls visit(triangle) for the triangles of each leaf whose box passes the test, if the boxes of all nodes above the
+/// leaf pass the test, too.
 template <class Test, class Visit>
 void visit_boxes(std::span<const BoxNode> nodes, std::span<const MovingBox> boxes, const Test& test,
                  const Visit& visit) {

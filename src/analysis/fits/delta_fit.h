@@ -42,9 +42,9 @@ class DeltaFit {
   /// solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 
-  /// Adds a row to the fit: with these weights, a viewer should render shown_normals(deltas(), weights) + missing.
-  /// O(entries of deltas + targets^2). Preconditions: `weights` has a value for each target, and `missing` a vector for
-  /// each element.
+  /// Adds a row to the fit: with the weights `weights`, a viewer should render shown_normals(deltas(), weights) +
+  /// missing. O(entries of deltas + targets^2). Preconditions: `weights` has a value for each target, and `missing` a
+  /// vector for each element.
   void add(std::span<const double> weights, std::span<const Vec3d> missing);
 
   /// Changes the deltas so that the sum of |missing|^2 over all rows since the last solve() becomes as small as

@@ -99,8 +99,8 @@ struct Peak {
   double w = 0, key = 0;
 };
 
-// Returns the key of the angle between the line and a sample. If the line is zero at the sample, its direction jumps
-// there, and both directions count.
+// Returns the key of the angle between the line and a sample. If the line is zero at the sample, the direction of the
+// line jumps there, and both directions count.
 double line_key(const Vec3d& from, const Vec3d& to, const Sample& sample) noexcept {
   const Vec3d line = (1 - sample.w) * from + sample.w * to;
   if (max_abs(line) > 1e-15 * std::max(max_abs(from), max_abs(to))) return key_between(line, sample.u);
@@ -210,8 +210,8 @@ class ScaleSearch {
     return std::max(w.behind, w.ahead);
   }
 
-  // Narrows [low, high] to the values of log s for which all angles are below 90 degrees. For each w, these values are
-  // an interval. Returns false if there are none.
+  // Narrows [low, high] to the values of log s for which all angles are below 90 degrees. For each w, the values that
+  // keep the angle below 90 degrees are an interval. Returns false if no value remains.
   [[nodiscard]] bool below_right_angle(double& low, double& high) const noexcept {
     for (std::size_t i = 0; i < count_; ++i) {
       const Term& t = terms_[i];
@@ -305,8 +305,8 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   Samples samples(normals);
   const Samples first = samples;
   const auto plain = [&] { return EndDelta{u1 - u0, 1, angle_of_key(highest_peak(first, u0, u1).key)}; };
-  // The sine of the smallest angle between two directions that do not count as equal or antipodal. Below it, rounding
-  // would decide which direction is ahead.
+  // The sine of the smallest angle between two directions that do not count as equal or antipodal. Below this sine,
+  // rounding would decide which direction is ahead.
   constexpr double kSmallestSine = 1e-10;
   if (length(cross(u0, u1)) < kSmallestSine) return plain();
 

@@ -27,8 +27,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns exact base normals. The delta of each target leads from them to the exact normals of this target alone at
-/// weight 1.
+/// Returns exact base normals. The delta of each target leads from the base normals to the exact normals of this target
+/// alone at weight 1.
 [[nodiscard]] DeltaNormals endpoint_deltas(BlendNormals& normals);
 
 /// Returns exact base normals, and the deltas that make sum |N + sum_i w_i D_i - u(w)|^2 over all rows smallest, for

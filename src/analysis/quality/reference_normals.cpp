@@ -15,14 +15,14 @@
 namespace chronormal {
 namespace {
 
-// The size of a sum, relative to the size of its terms, below which the sum is computed in integers. It is about
-// 500,000 rounding errors, so a larger sum has a direction with an error of at most 1e-5 rad.
+// The size of a sum, relative to the size of its terms, below which the sum is computed in integers. This share is
+// about 500,000 rounding errors, so a larger sum has a direction with an error of at most 1e-5 rad.
 constexpr double kDoubtfulShare = 1e-10;
 // The largest angle, in radians, by which rounding t may turn a normal. A normal that turns more has no definite
 // direction at t.
 constexpr double kMostTurned = 1e-5;
 
-// A vector interpolated between two others, and the size of its terms, which bounds its rounding error.
+// A vector interpolated between two others, and the size of the terms of this sum, which bounds the rounding error.
 struct Interpolated {
   Vec3d vector;
   double size;
@@ -54,8 +54,8 @@ ReferenceArea vector_area_at(const Segment& segment, std::span<const std::uint32
   return area;
 }
 
-// The numbers of digits of positions and areas at t as wide integers. They suffice for floats of up to 277 bits and for
-// a time of up to 253 bits.
+// The numbers of digits of positions and areas at t as wide integers. These numbers suffice for floats of up to 277
+// bits and for a time of up to 253 bits.
 constexpr std::size_t kPointDigits = 24, kAreaDigits = 50;
 using Point = std::array<WideInteger<kPointDigits>, 3>;
 

@@ -22,8 +22,8 @@ void for_each_group(Iterator first, Iterator last, Equal equal, WithGroup with_g
   }
 }
 
-// Items sorted into buckets. Bucket b has items[offsets[b]] ... items[offsets[b + 1] - 1], in the order in which they
-// were put there.
+// Items sorted into buckets. Bucket b has items[offsets[b]] ... items[offsets[b + 1] - 1], in the order in which put()
+// added them.
 template <class Item>
 struct Buckets {
   std::vector<std::size_t> offsets;

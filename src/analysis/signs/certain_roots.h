@@ -25,7 +25,7 @@ template <std::size_t M>
 class CertainRoots {
  public:
   /// Finds the roots of all polynomials whose coefficients are within `error` of p. Returns false if two such
-  /// polynomials have, or might have, different numbers of roots. If it returns true, no root is at 0 or 1.
+  /// polynomials have, or might have, different numbers of roots. If the result is true, no root is at 0 or 1.
   [[nodiscard]] static bool find(const std::array<double, M>& p, double error, ExactRoots& found) noexcept {
     double size = 0;
     for (const double b : p) size = std::max(size, std::fabs(b));
@@ -112,8 +112,8 @@ class CertainRoots {
     const double per_width = 1 / width;  // a power of two
     double step = 2 * error_ / slope + 2 * kUnitRoundoff;
     for (int i = 0; i < 4; ++i, step *= 8) {
-      // The bounds may be rounded. But (t - t0) / width is computed exactly, so the signs below are those at the bounds
-      // as they were rounded.
+      // The bounds may be rounded. But (t - t0) / width is computed exactly, so the signs below are the signs at the
+      // rounded bounds.
       const double lower = std::max(t0 + width * std::max(root - step, 0.0), t0);
       const double upper = std::min(t0 + width * std::min(root + step, 1.0), t0 + width);
       const auto sign_at = [&](double t) { return sign_of(evaluate(p, (t - t0) * per_width)); };

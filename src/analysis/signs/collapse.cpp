@@ -51,8 +51,8 @@ bool spans_space(const ControlNormals& c) noexcept {
 // Returns sign * v. Adding the zero vector turns negative zeros into zeros, which are easier to read.
 Vec3d signed_by(int sign, const Vec3d& v) noexcept { return Vec3d{} + static_cast<double>(sign) * v; }
 
-// Returns the unit vector along a vector of integers, or its opposite if sign is -1. The common unit of the integers
-// does not matter.
+// Returns the unit vector along a vector of integers, or the opposite unit vector if sign is -1. The common unit of the
+// integers does not matter.
 template <std::size_t kMost>
 Vec3d direction(const std::array<WideInteger<kMost>, 3>& v, int sign = 1) noexcept {
   std::size_t size = 0;

@@ -94,8 +94,8 @@ struct IntegerPolynomial {
   }
 };
 
-/// Sturm's chain of a polynomial f. It has f, its derivative f' and the remainders, each multiplied by a positive
-/// factor.
+/// Sturm's chain of a polynomial f. The chain has f, the derivative f' and the remainders, each multiplied by a
+/// positive factor.
 template <std::size_t N, std::size_t kDigits>
 class SturmChain {
  public:

@@ -50,7 +50,7 @@ Vec3d eye_at(const View& view, const LocalTime& on_way) noexcept {
 
 bool is_whole_way(const View& view) noexcept { return view.start.t == 0 && view.end.rest == 0; }
 
-// Marks a face as undecided, so that a later stage decides it.
+// Marks face i of a block as undecided, so that a later stage decides its side.
 void leave(std::size_t i, FacingCoefficients& f) noexcept {
   f.signs[i] = 0;
   for (auto& bounds : f.bounds) bounds[i] = std::numeric_limits<double>::infinity();
@@ -75,8 +75,9 @@ void glance(const Segment& segment, IndexRange faces, const ControlNormals* norm
     ways.at[3][i] = at_end.x, ways.at[4][i] = at_end.y, ways.at[5][i] = at_end.z;
   }
   facing_of_eye(normals, faces.count, ways, result);
-  // The position of an eye on a part of its path has an error of 3 u of the size of the path's ends. This is at most 6
-  // u of a vector to the eye whose size is at least half of that. Faces with shorter vectors are left to integers.
+  // The position of an eye on a part of its path has an error of 3 u of the size of the path's ends. This error is at
+  // most 6 u of the vector from a face to the eye, if that vector is at least half as large as the path's ends. Faces
+  // with shorter vectors are left to integers.
   const double shortest = is_whole_way(view) ? 0 : 0.5 * std::max(max_abs(view.from), max_abs(view.to));
   if (fits && shortest == 0) return;
   for (std::size_t i = 0; i < faces.count; ++i) {
@@ -341,7 +342,7 @@ Facing facing_by_roots(const Segment& segment, std::size_t face, const View& vie
 }
 
 // The sum of the control normals of some faces in double. `error` bounds the error of any component of the sum, and
-// `size` is the size of its terms.
+// `size` is the size of the terms of the sum.
 struct SummedNormals {
   ControlNormals normals;
   double error = 0, size = 0;

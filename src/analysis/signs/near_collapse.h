@@ -19,8 +19,8 @@
 
 namespace chronormal::inline internal {
 
-/// The length, relative to the largest control normal, below which a normal nearly vanishes. It is far above the
-/// rounding of float32 positions, and far below any length that an author intends.
+/// The length, relative to the largest control normal, below which a normal nearly vanishes. This share is far above
+/// the rounding of float32 positions, and far below any length that an author intends.
 inline constexpr double kCollapseShare = 1e-6;
 
 /// The distance in t from an end of the segment within which a collapse is not reported. Such a collapse belongs to the
@@ -39,8 +39,8 @@ struct NearCollapses {
 };
 
 /// Returns true if a quick test proves that a normal neither vanishes nor nearly vanishes. The test shows that all
-/// control normals are in one half space. It succeeds for almost every face; if it fails, nothing is known (see
-/// find_collapses()).
+/// control normals are in one half space. The test succeeds for almost every face. If the test fails, nothing is known
+/// (see find_collapses()).
 [[nodiscard]] inline bool is_far_from_collapse(const ControlNormals& c) noexcept {
   const Vec3d w = c.n0 + c.n1;
   const double least = std::min({dot(c.n0, w), dot(c.m, w), dot(c.n1, w)});

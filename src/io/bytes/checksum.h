@@ -21,7 +21,8 @@ namespace chronormal::inline internal {
 /// the second block in bytes.
 [[nodiscard]] std::uint32_t joined_checksum(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
 
-/// A checksum of numbers and texts that are added one after the other. It is the same on machines of either byte order.
+/// A checksum of numbers and texts that are added one after the other. The checksum is the same on machines of either
+/// byte order.
 class NumberChecksum {
  public:
   void add(std::uint64_t number);
@@ -44,8 +45,8 @@ class NumberChecksum {
 /// line feed.
 [[nodiscard]] std::optional<std::string_view> text_of_checked(std::string_view line);
 
-/// Appends a last member, "checksum", to the text of a JSON object. It has the checksum of all bytes before this
-/// member: {"a": 1} becomes {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
+/// Appends a last member, "checksum", to the text of a JSON object. The value of this member is the checksum of all
+/// bytes before it: {"a": 1} becomes {"a": 1,"checksum":"1a2b3c4d"} and a line feed.
 [[nodiscard]] std::string with_checksum(std::string object);
 /// Returns true if a text ends with a checksum, as with_checksum() appends it, that matches the text before it.
 [[nodiscard]] bool has_its_checksum(std::string_view text);

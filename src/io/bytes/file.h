@@ -48,7 +48,7 @@ class FileBytes {
   /// somebody accesses it.
   void release() const noexcept;
 
-  /// Returns all bytes; they are valid until the object is destroyed or moved from.
+  /// Returns all bytes of the file; the bytes are valid until the object is destroyed or moved from.
   [[nodiscard]] std::string_view bytes() const noexcept { return view_.data() != nullptr ? view_ : owned_; }
 
  private:
@@ -60,7 +60,7 @@ class FileBytes {
 };
 
 /// A file whose parts are read in any order. Nothing is mapped, so the file may be larger than memory, and another
-/// program may shorten it while it is read.
+/// program may shorten the file during reading.
 ///
 /// Threads    several threads may call read() at the same time.
 class PositionedFile {
@@ -68,7 +68,7 @@ class PositionedFile {
   /// Opens a regular file. Returns nothing if the path is not a regular file or cannot be opened.
   [[nodiscard]] static std::optional<PositionedFile> open(const std::string& path);
 
-  /// Returns the size of the file in bytes when it was opened.
+  /// Returns the size in bytes that the file had when open() was called.
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
   /// Fills `bytes` with the bytes of the file from `at` on. Errors: kFailed with the path as the place, if the file has

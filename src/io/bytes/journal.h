@@ -30,8 +30,8 @@ class Journal {
   /// the place, if the file is not a journal, another process has locked it, or the system refuses.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
-  /// Return the text of the run that began the journal, the texts of the records that it had when it was opened, and
-  /// its path.
+  /// Return the text of the run that began the journal, the texts of the records that the journal had when it was
+  /// opened, and the path of the journal.
   [[nodiscard]] const std::string& run() const noexcept { return run_; }
   [[nodiscard]] const std::vector<std::string>& records() const noexcept { return records_; }
   [[nodiscard]] const std::string& path() const noexcept { return path_; }

@@ -9,7 +9,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the kind of a file that begins with these bytes ("a PNG image"), or an empty text if the kind is not known.
+/// Returns the kind of a file that begins with `bytes` ("a PNG image"), or an empty text if the kind is not known.
 [[nodiscard]] std::string_view known_kind(std::string_view bytes) noexcept;
 
 /// Refuses a file of a known kind other than `expected`, which is the name of a format (io/input/formats.h) or "json".

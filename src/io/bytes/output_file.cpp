@@ -87,7 +87,8 @@ Result<OutputFile> OutputFile::create(const std::string& path, bool force) {
   state->force = force;
   state->stream = stream_of(path);
   if (state->stream) {
-    // The program may have printed bytes that are still in a buffer. They must come before the bytes of this output.
+    // The program may have printed bytes that are still in a buffer. The buffered bytes must come before the bytes of
+    // this output.
     (void)std::fflush(*state->stream == kStandardError ? stderr : stdout);
     return OutputFile(std::move(state));
   }

@@ -30,7 +30,7 @@ class OutputFile {
   [[nodiscard]] static Result<OutputFile> create(const std::string& path, bool force);
 
   /// Continues a file of which an interrupted run wrote the first `kept` bytes. If `kept` is 0, begins the file. Until
-  /// finish(), the bytes are in the file partial_name(path), and they stay there if the object or the process ends
+  /// finish(), the bytes are in the file partial_name(path), and the bytes stay there if the object or the process ends
   /// early. Errors: those of create(); kUsage for a path that is not a file.
   [[nodiscard]] static Result<OutputFile> go_on(const std::string& path, bool force, std::uint64_t kept);
   [[nodiscard]] static std::string partial_name(const std::string& path);

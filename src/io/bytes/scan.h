@@ -20,8 +20,8 @@ namespace chronormal::inline internal::scan {
 [[nodiscard]] constexpr bool is_digit(char c) noexcept { return c >= '0' && c <= '9'; }
 
 /// Checks that bytes may be text: a text has no 4096 zero bytes in a row. Sparse files have zero bytes wherever nothing
-/// was ever written, and may seem to be a terabyte long, so they must be refused before line ends are searched. Errors:
-/// kInvalidInput with the place "NAME, byte N".
+/// was ever written, and may seem to be a terabyte long, so sparse files must be refused before line ends are searched.
+/// Errors: kInvalidInput with the place "NAME, byte N".
 [[nodiscard]] Status check_text(std::string_view bytes, const std::string& name);
 
 /// An iterator over the lines of a text, without their line ends. Lines are counted from 1.
@@ -69,11 +69,11 @@ enum class NumberFault { kNone, kNotANumber, kNotFinite, kTooLarge };
 /// Reads the whole word as a float32, rounded to nearest. A number that is too small becomes a denormal or 0.
 [[nodiscard]] NumberFault parse_float(std::string_view word, float& value) noexcept;
 
-/// Reads the whole word as a double in the range of float32. `last_digit` gets the value of a 1 in the place of its
-/// last decimal digit: 0.001 for "1.250".
+/// Reads the whole word as a double in the range of float32. `last_digit` gets the value of a 1 in the place of the
+/// word's last decimal digit: 0.001 for "1.250".
 [[nodiscard]] NumberFault parse_double(std::string_view word, double& value, double& last_digit);
 
-/// Takes the next word off a line if it is a decimal number without an exponent, and short enough to be converted
+/// Takes the next word off a line if the word is a decimal number without an exponent, and short enough to be converted
 /// exactly by a division or multiplication of two doubles. The result equals that of parse_float(), but takes less
 /// time. For any other word, returns false and leaves the line unchanged.
 [[nodiscard]] bool take_plain_float(std::string_view& line, float& value) noexcept;

@@ -42,7 +42,7 @@ class Spool {
   /// Adds bytes behind all others. If the file cannot be written, status() returns the error from then on, and later
   /// calls add nothing.
   void add(std::string bytes);
-  /// Adds bytes that the caller still owns. They are copied only if the spool is in memory.
+  /// Adds bytes that the caller still owns. The bytes are copied only if the spool is in memory.
   void append(std::string_view bytes);
   /// Forgets all bytes in the spool.
   void clear();
@@ -57,8 +57,8 @@ class Spool {
   /// space of that part becomes free again. The caller must not read these bytes again.
   [[nodiscard]] Status give_away(std::uint64_t at, std::uint64_t size, const Take& take);
 
-  /// Returns true if the bytes in the spool from `at` on equal `bytes`. If they cannot be read, status() has the error
-  /// from then on.
+  /// Returns true if the bytes in the spool from `at` on equal `bytes`. If the spool cannot be read, status() has the
+  /// error from then on.
   [[nodiscard]] bool has(std::uint64_t at, std::string_view bytes);
 
  private:

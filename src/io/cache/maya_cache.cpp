@@ -104,7 +104,7 @@ class DescriptionReader {
 };
 
 // Removes a word and the integer after it from the beginning of the text. Returns false if the text does not begin with
-// them.
+// the word and an integer.
 bool take_number_after(std::string_view& text, std::string_view word, std::int32_t& number) {
   if (!text.starts_with(word)) return false;
   const std::string_view digits = text.substr(word.size());

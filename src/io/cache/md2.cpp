@@ -137,7 +137,7 @@ class Md2Reader {
       frame += k == 0 || begins ? 0 : 1;
       motion.keyframes[k].time = frame / frames_per_second;
     }
-    // Several clips of one frame each are not an animation, because no segment would remain. They are read as one
+    // Several clips of one frame each are not an animation, because no segment would remain. Such clips are read as one
     // sequence.
     const bool are_clips = clips > 1 && frame > 0;
     for (std::size_t k = 0; k < motion.keyframes.size() && !are_clips; ++k)
@@ -155,7 +155,7 @@ class Md2Reader {
     const std::size_t at = digits_at(name), at_before = digits_at(before);
     if (at == name.size() || at_before == before.size()) return false;
     if (name.compare(0, at, before, 0, at_before) != 0) return true;
-    // Names in MD2 have 16 characters, so these digits fit into 64 bits.
+    // Names in MD2 have 16 characters, so their last digits fit into 64 bits.
     constexpr std::size_t kMostDigits = 15;
     if (name.size() - at > kMostDigits || before.size() - at_before > kMostDigits) return false;
     const unsigned long long number = std::stoull(name.substr(at)), last = std::stoull(before.substr(at_before));

@@ -43,7 +43,7 @@ struct Array {
   [[nodiscard]] std::uint64_t data_end() const noexcept { return data_begin + element_count() * item_size; }
   /// Return the element at index `item`. The array must have the kind that is named behind each function.
   [[nodiscard]] double real(std::size_t item) const noexcept;  ///< for kFloat
-  /// for kinds other than kFloat: the element as the index of a vertex; 2^64 - 1 if the element is negative
+  /// Returns an element of a kind other than kFloat as the index of a vertex; 2^64 - 1 stands for a negative element.
   [[nodiscard]] std::uint64_t vertex(std::size_t item) const noexcept;
   [[nodiscard]] std::int64_t integer(std::size_t item) const noexcept;  ///< for kInteger
 

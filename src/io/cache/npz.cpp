@@ -306,7 +306,7 @@ class Archive {
     asked_ += 2 * std::min(member.size, kMost) + kBytesPerRow * std::min(rows, kMost);
     return expansion_.check(asked_, place(member.name.substr(0, member.name.find('.'))));
   }
-  // A cap for any size in bytes. It is larger than any real size, and the sum of a few such sizes cannot overflow.
+  // A cap for any size in bytes. The cap is larger than any real size, and the sum of a few such sizes cannot overflow.
   static constexpr std::uint64_t kMost = std::uint64_t{1} << 48;
 
   std::string_view bytes_;

@@ -50,9 +50,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<Motion> read_npz(std::string_view bytes, const std::string& name, double frames_per_second = 1,
                                       std::size_t max_expansion = Expansion::kUsual);
 
-/// Reads a motion, but leaves positions in the file if they are stored uncompressed and in C order. In this case,
-/// `layout` gets their place, the keyframes have no positions, and the checksum of the positions is not verified.
-/// Otherwise the positions are read, and `layout` has no value. Errors: as for read_npz().
+/// Reads a motion, but leaves positions in the file if the positions are stored uncompressed and in C order. In this
+/// case, `layout` gets the place of the positions, the keyframes have no positions, and the checksum of the positions
+/// is not verified. Otherwise the positions are read, and `layout` has no value. Errors: as for read_npz().
 [[nodiscard]] Result<Motion> read_npz_outline(std::string_view bytes, const std::string& name, double frames_per_second,
                                               std::size_t max_expansion, std::optional<CacheLayout>& layout);
 
@@ -86,7 +86,7 @@ class NpyBytes {
 
   void append(std::span<const float> values);
 
-  /// Returns the bytes of the .npy file. Call it when all elements of the shape have been written.
+  /// Returns the bytes of the .npy file. Call this function when all elements of the shape have been appended.
   [[nodiscard]] const std::string& bytes() const& noexcept { return bytes_; }
   [[nodiscard]] std::string bytes() && noexcept { return std::move(bytes_); }
 
@@ -122,12 +122,13 @@ class NpzOutput {
 
   /// Adds an array whose elements are all given.
   void add(const NpzMember& member);
-  /// Adds an array in C order, of float32 or float64, whose elements are appended later. Returns its number for
-  /// append().
+  /// Adds an array in C order, of float32 or float64, whose elements are appended later. Returns the index of the array
+  /// for append().
   [[nodiscard]] std::size_t add_growing(std::string_view name, const std::vector<std::uint64_t>& shape,
                                         bool is_double = false);
 
-  /// Writes the headers of all arrays, and the elements of the whole arrays. Call it once all arrays are added.
+  /// Writes the headers of all arrays, and the elements of the whole arrays. Call begin() once, after all arrays were
+  /// added.
   [[nodiscard]] Status begin();
   /// Writes the next bytes of a growing array, in little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
@@ -142,7 +143,7 @@ class NpzOutput {
   [[nodiscard]] std::uint32_t checksum(std::size_t array) const noexcept { return members_[array].checksum; }
   void add_checksum(std::size_t array, std::uint32_t checksum, std::uint64_t bytes);
 
-  /// Ends the file. Call it once the growing arrays have all bytes of their shapes.
+  /// Ends the .npz file. Call finish() when the growing arrays have all bytes of their shapes.
   [[nodiscard]] Status finish();
 
  private:

@@ -37,7 +37,7 @@ struct PositionCache {
   Origin origin = {};  ///< the point from which positions are measured
 };
 
-/// The facts that a cache reader may need. Most formats need only some of them.
+/// The facts that a cache reader may need. Most formats need only some of these facts.
 struct CacheOptions {
   double frames_per_second = 1;  ///< finite and > 0; for formats whose times are in frames (PC2, npy)
   std::size_t vertex_count = 0;  ///< vertices of the mesh, to choose among the channels of a Maya cache; 0 if unknown

@@ -147,7 +147,7 @@ Result<GltfKeys> assembled_keys(gltf::Bytes& bytes, const gltf::TrackSource& sou
 }
 
 // Counts the keys of tracks that are assembled from channels with different times. If the times cannot be read, the
-// count stays as it is, and reading the keys reports the error later.
+// count does not change, and the error is reported later, when the keys are read.
 void count_keys(gltf::Bytes& bytes, gltf::Model& model) {
   for (std::size_t a = 0; a < model.animations.size(); ++a) {
     for (std::size_t t = 0; t < model.animations[a].tracks.size(); ++t) {
@@ -188,7 +188,7 @@ void drop_unreadable(gltf::Bytes& bytes, gltf::Model& model) {
     for (std::size_t t = 0; t < tracks.size(); ++t) {
       if (!can_read_all(sources[t])) continue;
       now[t] = kept;
-      // The earlier track with the same keys reads the same arrays, so it was kept as well.
+      // The earlier track with the same keys reads the same arrays, so the earlier track was kept as well.
       tracks[t].same_keys_as = now[tracks[t].same_keys_as];
       if (kept != t) {
         tracks[kept] = std::move(tracks[t]);

@@ -49,7 +49,8 @@ bool is_same_folder(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(path_of(a.empty() ? "." : a), path_of(b.empty() ? "." : b), error);
 }
 
-// Returns the reason why a text cannot become a JSON value at this level of nesting, or an empty text if it can.
+// Returns the reason why a text cannot become a JSON value at this level of nesting, or an empty text if the text is
+// such a value.
 std::string value_fault(const std::string& json, std::size_t level) {
   constexpr const char* kNone = "the new value is not valid JSON: ";
   // The parser would take a zero byte for the end of the text, and would skip a byte order mark.

@@ -243,7 +243,7 @@ class Assembly {
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
   // Finishes the motion. `beyond` is the number of faces whose normals, moved by skins, miss the tolerance, and
-  // key_times has the ends of the intervals that were cut into pieces; it is empty if no interval was cut.
+  // key_times has the ends of the intervals that were cut into pieces; key_times is empty if no interval was cut.
   [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
     if (has_skins()) {
       CutPath& cut = result_.cut.emplace();

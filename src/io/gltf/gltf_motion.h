@@ -54,8 +54,8 @@ struct GltfMotionOptions {
 struct GltfMotion {
   Motion motion;
   std::vector<GltfPart> parts;
-  /// A bound of the distance between the cut cubic splines and the true ones, in units of the file. It is 0 without
-  /// cubic splines.
+  /// A bound of the distance between the cut cubic splines and the true ones, in units of the file. The bound is 0
+  /// without cubic splines.
   double curve_error = 0;
   /// The times of the keys of an animation, ascending, without the times at which cubic splines were cut.
   std::vector<double> key_times = {};

@@ -23,7 +23,7 @@ using Quaternion = std::array<double, 4>;
 
 constexpr std::uint32_t kNoBone = ~std::uint32_t{0};
 
-// Scales a quaternion to length 1, and returns the identity if it has no direction.
+// Scales a quaternion to length 1, and returns the identity for a quaternion of length 0.
 Quaternion as_rotation(const Quaternion& q) {
   const double length = std::sqrt(q[0] * q[0] + q[1] * q[1] + (q[2] * q[2] + q[3] * q[3]));
   if (!(length > 0)) return {0, 0, 0, 1};
@@ -125,7 +125,8 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
       !status)
     return status;
   std::vector<std::vector<float>> joints(sets.size()), weights(sets.size());
-  // One compressed mesh may contain several sets of joints and weights. They are decoded together.
+  // One compressed mesh may contain several sets of joints and weights. All sets in a compressed mesh are decoded
+  // together.
   std::vector<gltf::AttributeSource> compressed;
   std::vector<std::pair<std::string, std::vector<float>*>> of_compressed;
   for (std::size_t n = 0; n < sets.size(); ++n) {

@@ -70,7 +70,7 @@ class GltfSkin {
   /// Returns true if joints jump in the animation.
   [[nodiscard]] bool jumps() const noexcept;
 
-  /// Returns bounds for all bones between two neighbouring key times, or times between these. The bounds are infinite
+  /// Returns bounds for all bones between two times that have no key time between them. The bounds are infinite
   /// for a cubic rotation that may have no direction. O(bones + curves).
   [[nodiscard]] std::vector<BoneBounds> bounds(double from, double to) const;
 

@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal::gltf {
 
-/// The weights of a node with N targets as functions of time. They are constant before the first key and after the
-/// last, and follow appendix C of the glTF specification between keys.
+/// The weights of a node with N targets as functions of time. The weights are constant before the first key and after
+/// the last, and follow appendix C of the glTF specification between keys.
 class WeightCurve {
  public:
   /// Takes the keys that GltfDocument::keys() returned.

@@ -9,7 +9,7 @@
 
 namespace chronormal::inline internal {
 
-/// A matrix in memory that the caller owns. Its element (row, column) is data[row * row_stride + column *
+/// A matrix in memory that the caller owns. Element (row, column) is data[row * row_stride + column *
 /// column_stride].
 struct StridedMatrix {
   const float* data = nullptr;

@@ -47,7 +47,7 @@ void AddWeighted(const Vec3f& base, std::span<const WeightedVector> terms, float
 }
 
 // Compares the normals of one vector of lanes, which has a pose in each lane. Writes angles and errors, and raises
-// `largest` to the largest squared length of these errors. NaN does not count.
+// `largest` to the largest squared length of an error. An error of NaN does not count.
 HWY_INLINE void CompareLanes(const Lanes3& rendered, const Lanes3& right, float* degrees,
                              const std::array<float*, 3>& errors, Floats& largest) {
   const Floats zero = hn::Zero(kFloats), one = hn::Set(kFloats, 1.0F);

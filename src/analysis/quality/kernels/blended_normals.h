@@ -42,8 +42,8 @@ void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, floa
                                     const std::array<float*, 3>& errors) noexcept;
 
 /// Returns the largest openness of pairs of vectors, which are given as planes. Openness is a number that grows with
-/// the angle between two vectors. It is the squared sine up to a right angle, 2 minus the squared sine beyond, and 0 if
-/// one of the vectors is zero. All planes have a multiple of kPosePadding finite floats.
+/// the angle between two vectors. Openness is the squared sine up to a right angle, 2 minus the squared sine beyond,
+/// and 0 if one of the vectors is zero. All planes have a multiple of kPosePadding finite floats.
 [[nodiscard]] float largest_openness(const std::array<const float*, 3>& a, const std::array<const float*, 3>& b,
                                      std::size_t count) noexcept;
 

@@ -27,8 +27,8 @@ namespace {
 // Triangles are stored in groups of eight, which is the number of doubles in the widest vector. Value k of triangle i
 // of a group is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
-// The share of the size of its terms below which a normal is doubtful, so that reference_normals() computes it. Equal
-// to the constant kDoubtfulShare in reference_normals.cpp.
+// A normal whose size is below this share of the size of its terms is doubtful, so reference_normals() computes that
+// normal. The share equals kDoubtfulShare in reference_normals.cpp.
 constexpr double kZeroShare = 1e-10;
 
 }  // namespace

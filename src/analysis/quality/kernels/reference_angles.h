@@ -16,12 +16,12 @@
 
 namespace chronormal::inline internal {
 
-/// Computes the reference normals of some triangles of a segment. Positions are gathered once, so that each t costs one
-/// pass over contiguous memory.
+/// Some triangles of a segment, whose reference normals are computed at any t. Positions are gathered once, so that
+/// each t costs one pass over contiguous memory.
 class ReferenceTriangles {
  public:
   /// Takes faces of a segment, which must all be triangles. The arrays of the segment must outlive the object, since
-  /// they are read again where double is not accurate enough.
+  /// the arrays are read again where double is not accurate enough.
   ReferenceTriangles(const Segment& segment, IndexRange faces);
 
   /// Writes n(t) of each face divided by its largest component, or (0, 0, 0) where reference_normals() writes (0, 0,

@@ -18,7 +18,7 @@
 namespace chronormal::inline internal {
 
 /// Some triangles between two keyframes. Their positions are gathered once, so that each t costs one pass over
-/// contiguous memory. An object can gather other triangles later, and then reuses its memory.
+/// contiguous memory. An object can later gather other triangles in the same memory.
 class TrianglesInMotion {
  public:
   /// Gathers triangles. `corners` has three vertices for each triangle.

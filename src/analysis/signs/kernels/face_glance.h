@@ -20,7 +20,7 @@ struct GlanceLimits {
 
 /// Returns a number whose bits mark the faces that are not certainly usual. A face is usual if its normal is longer
 /// than the limit at both ends, if the normal turns by less than the limit, and if is_far_from_collapse() is true for
-/// it.
+/// the face.
 [[nodiscard]] std::uint32_t unusual_faces(const EdgedTile& tile, const GlanceLimits& limits) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -15,9 +15,9 @@ namespace chronormal::inline internal {
 /// The largest number of faces in a block, which one call computes.
 inline constexpr std::size_t kFacingBlock = 32;
 
-/// A bound of the error of a dot product with a control normal. It is relative to the sum of the absolute components of
-/// the control normal times the largest component of the other vector. It has sqrt(3) 2^-26 for the control normal, and
-/// a few roundings.
+/// A bound of the error of a dot product with a control normal. The bound is relative to the sum of the absolute
+/// components of the control normal times the largest component of the other vector. The bound covers sqrt(3) 2^-26 for
+/// the control normal, and a few roundings.
 inline constexpr double kDotShare = 0x1p-25;
 
 /// The vector from each face to the eye: x, y, z at t = 0, and then x, y, z at t = 1.
@@ -34,7 +34,7 @@ struct alignas(64) FacingCoefficients {
   double bounds[4][kFacingBlock];
   /// The sum of the absolute components of the vector to the viewer, at that end of the segment where it is larger.
   double reach[kFacingBlock];
-  /// The sign of all coefficients if they exceed their bounds and have one sign; otherwise 0.
+  /// The sign of all coefficients if every coefficient exceeds its error bound and all have one sign; otherwise 0.
   int signs[kFacingBlock];
 };
 

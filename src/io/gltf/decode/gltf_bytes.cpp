@@ -127,7 +127,7 @@ const Expansion& Bytes::expansion() {
   for (std::size_t i = 0; i < model_.buffers.size(); ++i) {
     const std::optional<std::string>& uri = model_.buffers[i].uri;
     if (!uri || is_data_uri(*uri) || !seen.insert(*uri).second) continue;
-    // A buffer that cannot be read does not count here. Its error is reported when its data are needed.
+    // A buffer that cannot be read does not count here. The error is reported when the data of that buffer are needed.
     if (const Result<std::string_view> bytes = buffer(i)) found.add_read(bytes.value().size());
   }
   expansion_ = found;
@@ -237,8 +237,8 @@ Status Bytes::for_each_sparse(std::size_t index, const Put& put) {
   return Success{};
 }
 
-// Opens the buffer of an accessor, if it has one. Callers do this before they take memory, since an accessor may
-// declare more numbers than its buffer has.
+// Opens the buffer of an accessor that has a buffer view. Callers open the buffer before they take memory, since an
+// accessor may declare more numbers than its buffer has.
 Status Bytes::open_buffer_of(const Accessor& accessor) {
   if (!accessor.view) return Success{};
   const Result<View> found = view(*accessor.view);

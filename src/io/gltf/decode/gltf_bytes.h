@@ -33,7 +33,7 @@ struct View {
 /// The largest total size of decompressed views that are kept for later use.
 inline constexpr std::size_t kMostKeptBytes = std::size_t{64} << 20;
 
-/// The place of a glTF asset, by which its files are found.
+/// The place of a glTF asset, from which the files of the asset are found.
 struct Origin {
   std::string name;                     ///< name of the asset for messages
   std::optional<std::string> folder;    ///< folder of the asset's files; no value for standard input
@@ -50,7 +50,7 @@ struct Origin {
 
 class Bytes {
  public:
-  /// Creates a reader of an asset's bytes. The model and the BIN chunk must outlive it.
+  /// Creates a reader of an asset's bytes. The model and the BIN chunk must outlive the reader.
   Bytes(const Model& model, Origin origin) : model_(model), origin_(std::move(origin)) {}
 
   /// Returns the bytes of a buffer, at least as many as the buffer declares. Errors: the buffer has no bytes or too
@@ -71,12 +71,12 @@ class Bytes {
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.
   [[nodiscard]] Result<std::vector<std::uint32_t>> indices(std::size_t accessor, std::size_t vertex_count);
 
-  /// Returns the limit of the memory that the asset may ask for. The limit grows with the bytes that are read: each
-  /// file of a buffer counts once, if it can be opened.
+  /// Returns the limit of the memory that the asset may ask for. The limit grows with the bytes that are read: the file
+  /// of a buffer counts once, if this file can be opened.
   [[nodiscard]] const Expansion& expansion();
 
-  /// Releases memory that holds parts of buffers in separate files. The system reads these parts again when they are
-  /// needed.
+  /// Releases memory that holds parts of buffers in separate files. The system reads such parts again at the next
+  /// access.
   void release() const noexcept;
 
   [[nodiscard]] std::string place(std::string_view pointer) const;

@@ -42,8 +42,8 @@ draco::DataType data_type(Component component) {
   return draco::DT_INVALID;
 }
 
-// Copies the values of an attribute to floats. The conversion of the library is not used, because it believes flags in
-// the file without a check.
+// Copies the values of an attribute to floats. The conversion of the library is not used, because the library believes
+// flags in the file without a check.
 Status read_attribute(const draco::Mesh& mesh, std::size_t id, const Accessor& accessor, const std::string& place,
                       std::vector<float>& result) {
   const draco::PointAttribute* const attribute = mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(id));

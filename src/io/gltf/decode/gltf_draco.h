@@ -26,8 +26,8 @@ namespace chronormal::inline internal::gltf {
                                                 const Expansion& expansion, const std::string& place);
 
 /// Decodes some attributes of a compressed mesh with vertex_count vertices. Each attribute is named by its id in the
-/// mesh. The vertices have the same order as in the result of decode_draco(). Errors: those of decode_draco(); errors
-/// of attribute n have the place place_of(n).
+/// compressed mesh. The vertices have the same order as in the result of decode_draco(). Errors: those of
+/// decode_draco(); errors of attribute n have the place place_of(n).
 [[nodiscard]] Result<std::vector<std::vector<float>>> decode_draco_attributes(
     std::string_view bytes, const Model& model, std::size_t vertex_count, std::span<const AttributeSource> attributes,
     const Expansion& expansion, const std::string& place, const std::function<std::string(std::size_t n)>& place_of);

@@ -49,7 +49,7 @@ void append_base64(std::string& text, const std::vector<std::string_view>& piece
   text.append((3 - size % 3) % 3, '=');
 }
 
-// Adds all members of an object except those named in `without`.
+// Adds `members` to an object, except the members whose names are in `without`.
 void add_other_members(const std::vector<JsonMember>& members, std::initializer_list<std::string_view> without,
                        JsonObject& object) {
   for (const JsonMember& member : members) {
@@ -63,8 +63,8 @@ const JsonMember* find_last(const std::vector<JsonMember>& members, std::string_
 }
 
 // Returns the value of a member that is a whole number, also if it is written as 4.0. Returns nothing if the member is
-// missing or is not such a number. This happens in extensions that the reader does not know; it has checked all other
-// members.
+// missing or is not such a number. Such members occur only in extensions that the reader does not know, because the
+// reader has checked all other members.
 std::optional<std::size_t> to_count(const JsonMember* member) {
   constexpr double kMost = 9007199254740992;  // 2^53
   if (member == nullptr) return std::nullopt;

@@ -42,7 +42,7 @@ struct LayoutTarget {
 
 class EditLayout {
  public:
-  /// Prepares a layout. `changed` is the JSON of the document with its changes; run() edits it further.
+  /// Prepares a layout. `changed` is the JSON of the document with its changes; run() edits this JSON further.
   EditLayout(const EditedDocument& document, LayoutTarget target, JsonText changed)
       : document_(document), target_(std::move(target)), json_(std::move(changed)) {}
   EditLayout(EditLayout&&) noexcept = default;

@@ -56,7 +56,7 @@ const Json& at(const Json& value, const char* key) {
   return value.is_object() && found != value.end() ? *found : kNull;
 }
 
-// Finds the accessors that a document refers to.
+// The accessors to which a document refers.
 class References {
  public:
   References(const Json& root, std::size_t accessors) : referred_(accessors, false) {

@@ -44,8 +44,8 @@ struct UnusedArrays {
 };
 
 /// Finds the unused arrays of `model`, which was parsed from `before`, the JSON of the source. `after` is the JSON of
-/// the edited document. For each buffer that may become shorter, `sizes` has its number of bytes; for other buffers it
-/// has no value. O(size of the JSON).
+/// the edited document. For each buffer that may become shorter, `sizes` has the number of bytes of the buffer, and for
+/// other buffers no value. O(size of the JSON).
 [[nodiscard]] UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optional<std::size_t>> sizes,
                                               std::string_view before, std::string_view after);
 

@@ -48,9 +48,9 @@ struct GlbFrame {
   std::uint64_t size = 0;  ///< size of the file in bytes
 };
 
-/// Makes the frame for chunks of these sizes in bytes. Pass no bin_size for a file without a BIN chunk. rest_size is
-/// the size of further chunks with their headers. Errors: kInvalidInput with `name` as the place, for a file of 4 GiB
-/// or more.
+/// Makes the frame for chunks of the given sizes in bytes. Pass no bin_size for a file without a BIN chunk. rest_size
+/// is the size of further chunks with their headers. Errors: kInvalidInput with `name` as the place, for a file of 4
+/// GiB or more.
 [[nodiscard]] Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t> bin_size,
                                          std::uint64_t rest_size, const std::string& name);
 

@@ -18,7 +18,7 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
-// The number of characters by which the JSON of a sparse accessor is longer than that of a dense one. It is an
+// The number of characters by which the JSON of a sparse accessor is longer than that of a dense one. The number is an
 // estimate.
 constexpr std::size_t kSparseJson = 130;
 

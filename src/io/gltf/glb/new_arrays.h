@@ -61,8 +61,8 @@ class NewArrays {
   /// memory.
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
-  /// The JSON of buffer views and accessors, in the order of their indices. json() makes it for bytes that begin at
-  /// `offset` of a buffer, with buffer views numbered from first_view.
+  /// The JSON of buffer views and accessors, in the order of their indices. json() makes this JSON for bytes that begin
+  /// at `offset` of a buffer, with buffer views numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;
   };

@@ -139,7 +139,7 @@ struct NodeChannel {
   std::size_t input = 0, output = 0;  ///< indices of accessors
 };
 
-/// The channels of one animation that move nodes. They are read only in files that have skins.
+/// The channels of one animation that move nodes. Such channels are read only in files that have skins.
 struct NodeChannels {
   std::vector<NodeChannel> channels;
   std::optional<Error> fault;  ///< reason why the channels cannot be read

@@ -79,7 +79,7 @@ class Parser {
 
   void parse_asset(const JsonView& root);
   /// Looks for extensions that the file requires but that are unknown. Complains about such an extension, or adds a
-  /// note if it does not change the data that are read.
+  /// note if the extension does not change the data that are read.
   void check_required(const JsonView& root);
   /// Adds notes on the faults of buffer views and accessors that are not used.
   void note_faults();
