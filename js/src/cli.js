@@ -21,7 +21,7 @@ function mount(FS, NODEFS) {
       if (!FS.analyzePath(folder).exists) FS.mkdir(folder);
       FS.mount(NODEFS, { root: isWindows ? `${name}\\` : folder }, folder);
     } catch {
-      // The entry is not a folder, but a file or a dangling link.
+      // The root cannot be mounted, because it is not a folder, but a file or a dangling link.
     }
   }
   // The program looks for share/chronormal/report.html beside its own file, which it finds through this link.
@@ -57,7 +57,7 @@ function standardInput(args) {
   return new Uint8Array(Buffer.concat(pieces));
 }
 
-/** Runs the program with these arguments, and returns its exit code. */
+/** Runs the program with the arguments `args`, and returns the exit code of the program. */
 export async function main(args) {
   const { stdout, stderr, env } = process;
   const columns = stdout.columns ?? stderr.columns;

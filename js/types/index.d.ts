@@ -165,7 +165,7 @@ export interface Judged<Report> {
 
 export interface Baked extends Judged<BakeReport> {
   bytes: Uint8Array;
-  /** The files that belong to a .gltf, by their names. */
+  /** The other files of a baked .gltf, by their names. */
   files: Record<string, Uint8Array>;
 }
 

@@ -36,8 +36,8 @@ class CubicCurve {
   explicit CubicCurve(ElementCoefficients c) noexcept;
   /// Takes a line between two vectors, each of which may be anywhere in a ball of the given radius.
   CubicCurve(const Vec3d& from, double from_radius, const Vec3d& to, double to_radius) noexcept;
-  /// Takes a quadratic that is rendered with an error of up to `angle` radians. The quadratic itself may also have an
-  /// error.
+  /// Takes a quadratic that is rendered with an error of up to `angle` radians. The length of a further error of the
+  /// quadratic itself is at most `error`.
   CubicCurve(const Bernstein<Vec3d, 2>& n, double angle, const Bernstein<double, 2>& error = {}) noexcept;
 
   [[nodiscard]] CurvePiece over(double a, double b) const noexcept;

@@ -172,8 +172,8 @@ class Cluster {
   std::vector<IntervalNormals> normals_;
 };
 
-// Rounds the axis and the cutoff to 8 bits each. n.v >= 0 holds for all n of the cone if v.axis_s8 / 127 is at least
-// the sine of the cone plus the error that rounding the axis can make in v.axis.
+// Rounds the axis and the cutoff of the culling test to 8 bits each. n.v >= 0 holds for all n of the cone if v.axis_s8
+// / 127 is at least the sine of the cone plus the error that rounding the axis can make in v.axis.
 void set_8_bits(const NormalCone& cone, ClusterBounds& bounds) {
   const Vec3d axis = unit(to_double(cone.axis));
   const auto rounded = [](double x) { return std::nearbyint(kSteps * x); };

@@ -25,7 +25,7 @@ struct IntervalNormals {
 /// Computes the control normals over [t0, t1] of a face, or of the sum of several faces, from integers.
 [[nodiscard]] IntervalNormals exact_part_of(const ExactCurve& exact, double t0, double t1) noexcept;
 
-/// Returns the cone around the control normals that are not zero.
+/// Returns the smallest cone around the control normals of `part` that are not zero.
 [[nodiscard]] NormalCone cone_around(IntervalNormals part) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -39,7 +39,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
 /// Measures the angles between the rendered and the exact normals, over all rows. Elements count in a row if their
-/// rendered or exact normal differs from that of the base. In max_at, `segment` is the number of the row.
+/// rendered or exact normal differs from that of the base. In Quality::max_at, `segment` is the index of the row.
 /// Preconditions: `weights` is (rows, targets), and `deltas` has the elements and targets of `normals`.
 [[nodiscard]] Quality delta_quality(const DeltaNormals& deltas, BlendNormals& normals, std::span<const double> weights);
 
@@ -52,8 +52,8 @@ struct BlendWeightOptions {
   std::uint64_t seed = 1;
 };
 
-/// Returns rows of random weights. In each row, `active` random targets have weights that are uniform between low and
-/// high. Pure: the result is the same on every system.
+/// Returns rows of random weights. In each row, `active` random targets have weights that are uniform between `low` and
+/// `high`. Pure: the result is the same on every system.
 [[nodiscard]] std::vector<double> random_blend_weights(const BlendWeightOptions& options);
 
 }  // namespace chronormal::inline internal

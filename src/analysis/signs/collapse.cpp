@@ -30,8 +30,8 @@ using Vectors = std::array<ExactCurve::CoefficientVector, 3>;  // the coefficien
 constexpr std::size_t kDigits = ExactCurve::kDigits;
 using Product = WideInteger<2 * kDigits + 1>;
 
-// The error of a rounded dot product of an exact vector c and a rounded vector w is at most 2^-25 |c| |w|; the rest of
-// this share is a margin.
+// A bound of the error of a rounded dot product of an exact vector c and a rounded vector w, relative to |c| |w|. The
+// error is at most 2^-25; the rest is a margin.
 constexpr double kShare = 0x1p-24;
 
 bool is_in_half_space(const ControlNormals& c) noexcept {

@@ -140,7 +140,7 @@ double rounding_of(const Segment& segment, std::size_t face) noexcept {
   return *std::max_element(polygon.errors.begin(), polygon.errors.end());
 }
 
-// Writes the polynomial of face i of a block to a lane.
+// Writes the polynomial f = n . w of face i of a block, and the bound of its error, to a lane of `roots`.
 template <std::size_t M>
 void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, std::size_t i, std::size_t lane,
          SingleRoots& roots) noexcept {

@@ -257,7 +257,7 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     }
   }
 
-  // A compressed mesh may contain all attributes of a primitive or only some.
+  // A compressed mesh may contain only some attributes of a primitive. The others are read from their accessors.
   if (Status status =
           state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
       !status)

@@ -42,7 +42,7 @@ struct GltfMotionOptions {
   std::string animation;  ///< name or index of the animation; empty for the targets
   bool world = false;     ///< true for positions in the world, where each node that carries a mesh adds a copy of it
   bool skins = false;     ///< true if skins move vertices
-  /// The largest number of pieces into which an interval between two keys is cut for skins.
+  /// The largest number of straight pieces into which the curves of vertices that skins move are cut between two keys.
   std::size_t most_pieces = chronormal::kMostPieces;
   /// The largest allowed distance between a cut cubic spline and the true one, relative to the diagonal of the bounding
   /// box.

@@ -70,7 +70,7 @@ double GltfSkinPieces::bend_of_edge(std::span<const BoneBounds> bones, std::span
       }
     }
   };
-  // The bone at which the paths to the root meet, of all joints that have different shares in p and q.
+  // The bone at which the paths to the root of all joints with different shares in p and q meet.
   std::optional<std::size_t> meeting;
   bool is_first = true;
   each_joint([&](std::uint32_t joint, double of_p, double of_q) {

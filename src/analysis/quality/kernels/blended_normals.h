@@ -29,8 +29,8 @@ struct WeightedVector {
 /// multiple of kPosePadding, and each list of weights has `stride` floats.
 void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, float* sums, std::size_t stride) noexcept;
 
-/// Compares rendered normals of any length with the true unit normals in as many poses as `degrees` has. Both are
-/// planes, and a true normal is (0, 0, 0) where none is known. Writes
+/// Compares rendered normals of any length with the true unit normals in as many poses as `degrees` has. Both are given
+/// as planes of x, y and z, and a true normal is (0, 0, 0) where none is known. Writes
 ///
 ///     degrees   the angles; 180 for a normal that cannot be lit, -1 where no true normal is known
 ///     errors    as planes, the rendered minus the true unit normal; minus twice the true one if the rendered normal

@@ -57,7 +57,7 @@ class Bytes {
   /// few; its file cannot be read.
   [[nodiscard]] Result<std::string_view> buffer(std::size_t index);
 
-  /// Returns the bytes of a view, decompressed if necessary.
+  /// Returns the bytes of a buffer view, decompressed if necessary.
   [[nodiscard]] Result<View> view(std::size_t index);
 
   /// Returns the numbers of an accessor that parse_model() has checked: count elements of `components` numbers each.
@@ -65,7 +65,8 @@ class Bytes {
   /// their value. Errors: those of buffer(); numbers that are not finite; sparse indices that do not ascend.
   [[nodiscard]] Result<std::vector<float>> floats(std::size_t accessor);
 
-  /// Returns the numbers of an accessor as times of keys, which must ascend from 0 or more.
+  /// Returns the numbers of an accessor as times of keys in seconds. Errors: also times that do not ascend, or begin
+  /// below 0.
   [[nodiscard]] Result<std::vector<float>> times(std::size_t accessor);
 
   /// Returns the numbers of an accessor as indices, each of which must be below vertex_count.

@@ -156,7 +156,8 @@ Status EditLayout::find_images() {
   return Success{};
 }
 
-// Adds the accessors of new arrays. The bytes of the arrays begin at `offset` of the buffer.
+// Adds the accessors of new arrays. The bytes of the arrays begin at byte `offset` of the buffer with the index
+// `buffer`.
 Status EditLayout::add_arrays(std::size_t buffer, std::size_t offset) {
   NewArrays::Json json = document_.arrays.json(buffer, offset, document_.model.views.size());
   for (std::string& view : json.views) {

@@ -132,7 +132,7 @@ class Parser {
   };
   /// Returns the weights to which a pointer of KHR_animation_pointer refers.
   Driven pointed_to(const JsonView& target);
-  /// A channel of a single weight, with the index of its target.
+  /// A channel that drives a single weight: the index of the channel, and of the target whose weight it is.
   struct LoneWeight {
     std::size_t channel = 0, target = 0;
   };
