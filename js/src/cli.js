@@ -24,7 +24,8 @@ function mount(FS, NODEFS) {
       // The root cannot be mounted, because it is not a folder, but a file or a dangling link.
     }
   }
-  // The program looks for share/chronormal/report.html beside its own file, which it finds through this link.
+  // The program looks for share/chronormal/report.html beside its own file, whose path it reads from the link
+  // /proc/self/exe.
   FS.symlink(inside(fileURLToPath(new URL('../bin/chronormal.js', import.meta.url))), '/proc/self/exe');
   FS.chdir(inside(process.cwd()));
 }

@@ -10,7 +10,7 @@ Node.js 18, or later, on a processor that has vectors';
 
 let compiled; // promise of the compiled module, which all runs share
 
-/** Uses a module that another thread has compiled. */
+/** Lets all runs in this thread use a module that another thread has compiled. */
 export function useCompiled(module) {
   compiled ??= Promise.resolve(module);
 }

@@ -42,8 +42,8 @@ export function detach(root) {
     if (!attached.has(mesh)) return;
     const { formulas, before, now } = attached.get(mesh);
     attached.delete(mesh);
-    // If other code has wrapped this function since attach(), the wrapper stays, and the wrapped function does nothing
-    // any more.
+    // If other code has wrapped the function `now` since attach(), the wrapper stays, and the wrapped function does
+    // nothing any more.
     if (mesh.onBeforeRender === now) {
       if (before) mesh.onBeforeRender = before;
       else delete mesh.onBeforeRender;

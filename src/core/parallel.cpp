@@ -223,8 +223,8 @@ class Pool {
     if (--job.helpers == 0 && waiting_ > 0) changed_.notify_all();
   }
 
-  // Removes the job from the list, and waits until no other thread works on it. Meanwhile helps with the jobs inside
-  // it.
+  // Removes the job from the pool's list, and waits until no other thread works on it. Meanwhile helps with the jobs
+  // inside it.
   void finish(Job& job) noexcept {
     std::unique_lock lock(mutex_);
     Job** place = &jobs_;

@@ -71,8 +71,8 @@ struct Viewer {
   /// kClamped: of the integer that stores a component, including its sign.
   int bits = 32;
   /// For kUnit, true if u is the third axis of the rotation of a stored quaternion. The quaternion stands for the frame
-  /// that Frisvad's rule makes from the vector. The rule is for unit vectors, and is applied to a vector of any length
-  /// without change. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
+  /// that Frisvad's rule makes from the vector N or N + D. The rule is for unit vectors, and is applied to a vector of
+  /// any length without change. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
   bool by_frame = false;
   bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;

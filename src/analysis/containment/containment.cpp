@@ -244,8 +244,8 @@ class Passage {
     return signs.volume_at(t);
   }
 
-  // Adds crossings of the open triangles within a moment. Their number is the change of the winding number that the
-  // certain roots do not explain.
+  // Adds crossings of the open triangles within a moment. The number of crossings is the change of the winding number
+  // that the certain roots do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {

@@ -153,7 +153,8 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// The angles at all samples as functions of s, and the search for the s whose largest angle is smallest.
+// The angles at all samples as functions of s, the factor of u1, and the search for the s whose largest angle is
+// smallest.
 class ScaleSearch {
  public:
   ScaleSearch(const Vec3d& u0, const Vec3d& u1) noexcept : u0_(u0), u1_(u1), pole_(unit(cross(u0, u1))) {}

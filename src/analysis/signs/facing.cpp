@@ -175,7 +175,8 @@ unsigned lowest_shift(std::span<const Vec3d> vectors) noexcept {
   return lowest;
 }
 
-// The position of a corner at an end of the segment, as the sum of two vectors.
+// The position of a corner at an end of the segment, as the sum of a position in float32 and the residual of its
+// rounding.
 struct Place {
   Vec3d position, residual;
 

@@ -67,8 +67,8 @@ bool read_end64(std::string_view file, std::size_t end, Directory& directory) {
   return true;
 }
 
-// Replaces the numbers of the entry that say "see the zip64 field" by 64-bit numbers from that field, in their fixed
-// order. Returns false if a number is missing.
+// Replaces the numbers of a directory entry that say "see the zip64 field" by 64-bit numbers from that field, in their
+// fixed order. Returns false if a number is missing.
 bool read_zip64_field(std::string_view extra, Member& member) {
   const bool needs_any = member.size == kSaturated || member.packed_size == kSaturated || member.header == kSaturated;
   if (!needs_any) return true;

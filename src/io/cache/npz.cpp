@@ -54,9 +54,9 @@ CacheLayout layout_of(const Array& array, std::uint64_t begin, const std::string
   return layout;
 }
 
-// Finds the origin from which positions are measured. The first sample decides the origin, but it is (0, 0, 0) if no
-// sample has more digits than float32 holds. If the array is too large to examine, only the first, the middle and the
-// last sample are examined.
+// Finds the origin from which positions are measured. The first sample decides the origin, but the origin is (0, 0, 0)
+// if no sample has more digits than float32 holds. If the array is too large to examine, only the first, the middle and
+// the last sample are examined.
 Origin origin_of(const Array& array) {
   // number of coordinates above which an array is too large to examine
   constexpr std::uint64_t kMostLooked = std::uint64_t{1} << 22;

@@ -41,9 +41,9 @@ namespace chronormal::inline internal {
 ///
 /// The place of an error begins with the name, followed by the byte of the zip file, or by the array and its element
 /// ("walk.npz, positions[3, 17, 0]"). Errors: kInvalidInput for a damaged zip file or array (its checksum is verified),
-/// shapes and types other than the ones above, coordinates that are not finite or too large for float32, indices
-/// without a vertex, velocities of another shape than the positions, times that do not ascend, and an unknown kind.
-/// Sizes that disagree between directory, member and array header are refused before memory is taken. Memory: in
+/// shapes and types other than those at the top of this file, coordinates that are not finite or too large for float32,
+/// indices without a vertex, velocities of another shape than the positions, times that do not ascend, and an unknown
+/// kind. Sizes that disagree between directory, member and array header are refused before memory is taken. Memory: in
 /// proportion to the arrays, which deflate may have compressed by a factor of a thousand. The limit of expansion is
 /// therefore checked first, for the bytes and numbers of all deflated arrays, and for the memory that a keyframe takes
 /// in addition to its positions.
@@ -103,7 +103,7 @@ struct NpzMember {
   std::string_view npy;   ///< the bytes of its .npy file
 };
 
-/// Returns a .npz file of arrays, which are not compressed.
+/// Returns the bytes of a .npz file with the given arrays, which are not compressed.
 [[nodiscard]] std::string write_npz(std::span<const NpzMember> members);
 
 /// Returns the bytes of positions (V, 3) as float64, with the origin added.

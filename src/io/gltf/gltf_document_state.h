@@ -27,8 +27,8 @@ struct GltfDocument::State {
   // already have values are skipped.
   [[nodiscard]] Status read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,
                             std::vector<float>& normals, std::vector<float>& tangents);
-  // Releases the memory that holds pages of mapped files, if many vertices were read. Call it after reading the arrays
-  // of `vertices` vertices.
+  // Releases the memory that holds pages of mapped files, if many vertices were read. Call this function after reading
+  // the arrays of `vertices` vertices.
   void release(std::size_t vertices) const noexcept;
 
   std::optional<FileBytes> file;  // the file, if the document keeps it

@@ -96,7 +96,8 @@ class Assembly {
     return std::any_of(skinned_parts_.begin(), skinned_parts_.end(), [](const auto& part) { return part.has_value(); });
   }
 
-  // Moves the joints of all skins to their pose at a time. Returns true if any joint is not where it was before.
+  // Moves the joints of all skins to their pose at a time, or just before a jump at this time if just_before is true.
+  // Returns true if any joint is not where it was before.
   bool pose(double time, bool just_before) {
     bool has_moved = false;
     for (auto& [node, posed] : skins_) {
@@ -641,7 +642,7 @@ class AnimationReader {
   const GltfMotionOptions& options_;
   Assembly assembly_;
   std::vector<WeightCurve> curves_;
-  // Maps the same_keys_as of a track to an index in curves_.
+  // Maps GltfTrack::same_keys_as, which tracks with equal keys share, to the index of their curve in curves_.
   std::map<std::size_t, std::size_t> curve_of_track_;
   std::vector<std::size_t> curve_of_part_;
   std::size_t weight_bytes_ = 0, beyond_ = 0;

@@ -47,8 +47,8 @@ class GlbBuilder {
   /// in the spool until finish(), because the JSON with their places comes first in the file.
   explicit GlbBuilder(std::optional<std::size_t> most_bytes = {}, Spool spool = {});
 
-  /// Sets the corners of the triangles, and returns their accessor. Indices have 16 bits if that is enough for
-  /// vertex_count vertices, and 32 bits otherwise.
+  /// Sets the corners of the triangles, and returns the index of their accessor. Indices have 16 bits if that is enough
+  /// for vertex_count vertices, and 32 bits otherwise.
   std::size_t set_triangles(std::span<const std::uint32_t> corners, std::size_t vertex_count);
   /// Adds an accessor of float32 VEC3 (n, 3), or of SCALAR (n), and returns its index. Equal arrays are stored only
   /// once. The preconditions are those of GltfEdit.

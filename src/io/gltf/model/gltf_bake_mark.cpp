@@ -13,8 +13,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-// The versions of the mark. Version 1 had two factors for each correction target. Each factor was the index of a
-// target, or "base", which is 1 minus the sum of the weights of all other targets.
+// The versions of the mark of a bake: the present version, and the version that had factors. Version 1 had two factors
+// for each correction target. Each factor was the index of a target, or "base", which is 1 minus the sum of the weights
+// of all other targets.
 constexpr std::size_t kVersion = 2, kVersionOfFactors = 1;
 
 // Returns the items of the array that is the member `key`. Returns no items if the array is missing or empty. Complains
@@ -51,7 +52,8 @@ void read_terms(const JsonView& item, const Json& value, std::size_t target_coun
   }
 }
 
-// Reads terms that are products of two factors. `own` are the targets that are not correction targets.
+// Reads the two factors that a mark of version 1 has for a correction target. `own` are the targets that are not
+// correction targets.
 void read_factors(const JsonView& item, const Json& value, std::size_t target_count,
                   const std::vector<std::size_t>& own, GltfExtraTarget& extra) {
   const std::optional<JsonView> factors = item.array("factors");

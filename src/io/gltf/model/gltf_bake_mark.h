@@ -15,7 +15,7 @@ namespace chronormal::inline internal::gltf {
 void read_bake_mark(const nlohmann::json& document, const std::string& pointer, const std::string& name,
                     GltfMesh& mesh);
 
-/// Returns a mark as JSON in version 2.
+/// Returns the mark of a bake as JSON, in version 2 of the mark.
 [[nodiscard]] nlohmann::ordered_json bake_mark_json(const GltfBakeMark& mark);
 
 }  // namespace chronormal::inline internal::gltf
