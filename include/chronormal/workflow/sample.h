@@ -75,7 +75,7 @@ struct SampleOptions {
   /// The name of a scheme (schemes/scheme.h) that interpolates between the exact normals at the ends of a segment. If
   /// the name is empty, all normals are exact. A scheme is allowed only for Weighting::kArea and NormalLength::kUnit.
   std::string scheme = {};
-  /// If given, the scheme is played step by step, and only the times of step_moments() can be computed.
+  /// The steps by which the scheme is played. If they are given, only the times of step_moments() can be computed.
   std::optional<Stepping> stepping = {};
 };
 
@@ -112,9 +112,9 @@ class NormalSampler {
  public:
   /// Makes a sampler of a motion, which must be valid or a mesh at rest, and must outlive the sampler. Errors: those of
   /// make_groups() and make_scheme(). kUsage for faces with a weighting other than area, and for the length kArea with
-  /// another weighting. kUsage for a scheme with another weighting, with the length kArea, with elements that it does
-  /// not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that cannot be played
-  /// step by step.
+  /// another weighting. kUsage for a scheme with another weighting, with the length kArea, with elements that the
+  /// scheme does not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that cannot
+  /// be played step by step.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
   /// Makes a sampler of a stream. A pose at a time reads the two keyframes around the time, and a pose of weights reads
   /// all keyframes. Errors: those of make() for a motion, and those of the stream, here and for each pose.

@@ -154,7 +154,8 @@ NormalCone enclosing_cone(std::span<const NormalCone> cones) noexcept {
     axis = unit(axis + (1 / static_cast<double>(i + 2)) * (point - axis));
   }
 
-  // The axis of the result is rounded to float32. So the sine must be that of the cone around the rounded axis.
+  // The axis of the result is rounded to float32. The sine must therefore be the sine of the cone around the rounded
+  // axis.
   const Vec3f rounded = to_float(best);
   const Farthest far = farthest_of(cones, unit(to_double(rounded)), exact_split);
   const double sine = far.sine + kSineRounding;

@@ -55,8 +55,8 @@ class DeltaFit {
 
  private:
   DeltaNormals deltas_;
-  // The normal equations of all elements. Each element uses a part of the one matrix; each entry of a delta has a
-  // right-hand side.
+  // The normal equations of all elements. matrix_ has a row and a column for each target, and each element uses the
+  // part for its own targets. right_ has a right-hand side for each delta.
   std::vector<double> matrix_;
   std::vector<std::vector<Vec3d>> right_;
 };

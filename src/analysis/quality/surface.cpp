@@ -50,8 +50,9 @@ struct EdgeUse {
   bool is_forward = false;
 };
 
-// Counts the edges of each kind. is_copy tells for each face whether a face with a lower number has the same vertices
-// and winding. An edge that belongs only to two such copies counts as open, and not as turned.
+// Counts the open, non-manifold, turned and seam edges of a mesh (analysis/surface.h). is_copy tells for each face
+// whether a face with a lower index has the same outline and winding. An edge that only a face and its copy have is not
+// counted as turned, although both faces pass it in the same direction.
 void survey_edges(const Topology& topology, const Points& points, const std::vector<bool>& is_copy, Surface& surface) {
   Buckets<EdgeUse> uses(points.count, [&](auto put) {
     for (std::size_t f = 0; f < topology.face_count(); ++f) {

@@ -20,7 +20,7 @@ struct GltfDocument::State {
   State(GlbChunks found, gltf::Model parsed, gltf::Origin asset, std::size_t most)
       : chunks(found), model(std::move(parsed)), name(asset.name), bytes(model, std::move(asset)), most_bytes(most) {}
 
-  // Checks that memory for the arrays of a primitive with this many targets may be taken. Errors: the arrays would
+  // Checks that memory for the arrays of a primitive with `targets` targets may be taken. Errors: the arrays would
   // exceed the limit of expansion.
   [[nodiscard]] Status check_size(std::size_t mesh, std::size_t primitive, std::size_t targets, bool shading);
   // Reads the arrays that `attributes` names: positions and, if `shading` is true, normals and tangents. Arrays that

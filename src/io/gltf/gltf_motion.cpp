@@ -131,8 +131,8 @@ class Assembly {
   [[nodiscard]] bool empty() const noexcept { return result_.parts.empty(); }
   [[nodiscard]] const std::vector<GltfPart>& parts() const noexcept { return result_.parts; }
 
-  // Checks that this number of keyframes fits into most_bytes, together with the data from which the keyframes are
-  // computed: targets, corners, and other_bytes for weights.
+  // Checks that the given number of keyframes fits into most_bytes bytes of memory, together with the data from which
+  // the keyframes are computed: targets, corners, and other_bytes for weights.
   [[nodiscard]] Status check_memory(std::size_t keyframes, std::size_t most_bytes, std::size_t other_bytes = 0) const {
     constexpr std::size_t kBytesPerVertex = 3 * sizeof(float), kWithResiduals = 3 * (sizeof(float) + sizeof(double));
     const bool all_skinned = std::all_of(parts().begin(), parts().end(), [&](const GltfPart& part) {
@@ -170,7 +170,7 @@ class Assembly {
   // Reads the geometry and the faces of all parts.
   [[nodiscard]] Status read(bool with_targets) {
     std::vector<std::uint32_t> corners;
-    // The number of the current body; each mesh of each node is a body.
+    // The index of the current body; each mesh of each node is a body.
     std::uint32_t body = 0;
     for (std::size_t p = 0; p < parts().size(); ++p) {
       GltfPart& part = result_.parts[p];

@@ -93,8 +93,8 @@ Bound rotation_bound(const Interval<4>& q) {
   return {1, turn, turn * turn + 2 * (all.bend / shortest + 2 * speed * speed)};
 }
 
-// Returns a bound of the length of the linear part of a matrix, which is exact for a rotation with the same scale on
-// all axes.
+// Returns a bound of the length of the linear part of a matrix. The bound is exact for a rotation with the same scale
+// on all axes.
 double length_of(const AffineTransform& matrix) {
   double largest = 0;
   for (const Vec3d& a : matrix.columns) {

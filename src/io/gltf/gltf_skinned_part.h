@@ -68,8 +68,8 @@ class GltfSkinPieces {
   GltfSkinPieces(const GltfSkinnedPart& part, const Topology& topology, const GltfPart& range, GltfUnskinned before,
                  double sine);
 
-  /// Returns those of `faces` that belong to the part and for which this number of pieces is not enough, in their
-  /// order. `faces` must ascend; nullptr stands for all faces of the topology.
+  /// Returns those of `faces` that belong to the part and for which `pieces` pieces are not enough, in their order.
+  /// `faces` must ascend; nullptr stands for all faces of the topology.
   [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
                                                       std::size_t pieces) const;
 
