@@ -194,7 +194,7 @@ class ForkTest(unittest.TestCase):
                 thread.join()
 
     def test_a_child_may_end_as_programs_do(self):
-        # This audit starts threads if there are several cores, so the process below forks while it has threads.
+        # The next audit starts threads if there are several cores, so the process below forks while it has threads.
         self.assertEqual(cn.audit(sample="twist")["command"], "audit")
         child = multiprocessing.get_context("fork").Process(target=cn.audit, kwargs={"sample": "twist"})
         child.start()

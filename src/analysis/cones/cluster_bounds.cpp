@@ -75,8 +75,8 @@ class Cluster {
     return enclosing_cone(cones);
   }
 
-  // Returns the point center - s axis with the smallest s >= 0 that is behind all faces, or no value if float32 has no
-  // such point. The point is behind a face if
+  // Returns the point center - s axis, with the smallest s >= 0 for which the point is behind all faces, or no value if
+  // float32 has no such point. The point is behind a face if
   //     s n(t).axis >= n(t).(center - p(t))
   // Both sides are cubics in t, so the inequality holds if it holds for each pair of Bernstein coefficients.
   [[nodiscard]] std::optional<Vec3f> apex(const Vec3d& center, const NormalCone& cone) const {

@@ -82,7 +82,7 @@ NumberFault parse_double(std::string_view word, double& value, double& last_digi
   const NumberFault fault = parse_float(word, rounded);
   if (fault != NumberFault::kNone) return fault;
   word = without_plus(word);
-  // This value stays if from_chars() finds the number too small for a double.
+  // The float32 value stays if from_chars() finds the number too small for a double.
   value = double{rounded};
   double wide = 0;
   if (from_chars(word.data(), word.data() + word.size(), wide).ec == std::errc{}) value = wide;

@@ -38,7 +38,7 @@ void WeightCurve::at(double time, bool just_before, std::span<double> weights) c
     }
     const double leaving = duration * tangent(key, true, i), arriving = duration * tangent(next, false, i);
     const double s = 1 - t;
-    // This is the cubic Hermite spline, written in the Bernstein basis.
+    // Evaluates the cubic Hermite spline in the Bernstein basis.
     weights[i] =
         s * s * s * from + 3 * s * s * t * (from + leaving / 3) + 3 * s * t * t * (to - arriving / 3) + t * t * t * to;
   }

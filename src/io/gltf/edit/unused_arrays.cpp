@@ -49,7 +49,7 @@ bool has_known_extensions_only(const Json& value) {
   return !value.is_structured() || std::all_of(value.begin(), value.end(), has_known_extensions_only);
 }
 
-// Returns a member of an object or an item of an array, or null if there is none.
+// Returns the member `key` of a JSON object, or null if the value has no such member.
 const Json& at(const Json& value, const char* key) {
   static const Json kNull;
   const auto found = value.is_object() ? value.find(key) : value.end();

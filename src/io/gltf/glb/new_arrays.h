@@ -62,7 +62,7 @@ class NewArrays {
   [[nodiscard]] std::vector<std::string_view> pieces() const;
 
   /// The JSON of buffer views and accessors, in the order of their indices. json() makes this JSON for bytes that begin
-  /// at `offset` of a buffer, with buffer views numbered from first_view.
+  /// at byte `offset` of a buffer, with buffer views numbered from first_view.
   struct Json {
     std::vector<std::string> views, accessors;
   };

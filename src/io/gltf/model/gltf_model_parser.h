@@ -107,7 +107,7 @@ class Parser {
   void parse_targets(const JsonView& item, GltfPrimitive& primitive, PrimitiveSource& source);
   /// Adds targets that move nothing to primitives that have fewer targets than other primitives of their mesh.
   void fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vector<PrimitiveSource>& sources);
-  /// Reads joints and weights of vertices: JOINTS_n and WEIGHTS_n.
+  /// Reads the attributes JOINTS_n and WEIGHTS_n of a primitive: joints and weights of vertices.
   void parse_influences(const JsonView& item, PrimitiveSource& source);
   void parse_skins();
   void parse_skin(const JsonView& item, SkinSource& skin);
