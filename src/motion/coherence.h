@@ -1,5 +1,5 @@
-/// Measures how well the order of vertices and faces suits the caches. Looks only at evenly spaced samples of the faces
-/// of a mesh.
+/// Measures how well the order of vertices and faces in memory suits the caches of the processor. Looks only at evenly
+/// spaced samples of the faces of a mesh.
 #ifndef CHRONORMAL_MOTION_COHERENCE_H_
 #define CHRONORMAL_MOTION_COHERENCE_H_
 
@@ -43,8 +43,8 @@ inline constexpr std::size_t kNearBytes = std::size_t{1} << 20;
 inline constexpr double kMostLinesPerFace = 1;
 
 /// Returns the number of cache lines of packed positions that a face reads and that the faces before it did not read,
-/// on average. It is about 0.2 on a mesh in grid order, and 3 if vertices are in random order. The result is a pure
-/// function of the topology. Cost: less than 0.02 ms.
+/// on average. The number is about 0.2 on a mesh in grid order, and 3 if vertices are in random order. The result is a
+/// pure function of the topology. Cost: less than 0.02 ms.
 [[nodiscard]] inline double lines_per_face(const Topology& topology) {
   constexpr std::size_t kSamples = 16, kRun = 64, kVerticesOfLine = 5;
   const std::size_t count = topology.face_count();

@@ -84,7 +84,7 @@ LocalTime LocalTime::between(double start, double time, double end) noexcept {
   const Twofold done = Twofold::sum(scale * time, -scale * start), left = Twofold::sum(scale * end, -scale * time),
                 whole = Twofold::sum(scale * end, -scale * start);
   LocalTime result(quotient(done, whole));
-  // The size of a dividend below which the remainder of the division may be smaller than any double.
+  // The size of a dividend below which the remainder of the division may be too small for a double.
   constexpr double kSmallest = 0x1p-900;
   const bool is_exact =
       done.low == 0 && whole.low == 0 && done.high >= kSmallest && std::fma(result.t, whole.high, -done.high) == 0;

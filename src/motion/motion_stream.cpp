@@ -28,8 +28,8 @@ class ReadAhead {
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
-  // Starts to read a keyframe. `read` is called with the number of the keyframe and with memory for its positions, and
-  // must live until finish().
+  // Starts to read a keyframe. `read` is called with the number of the keyframe and with memory for its positions.
+  // `read` must live until finish() returns.
   template <class Read>
   void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);

@@ -10,7 +10,7 @@
 
 namespace chronormal::inline internal {
 
-/// Checks everything that validate() checks, except positions.
+/// Checks everything in a motion that validate() checks, except positions.
 [[nodiscard]] Status validate_outline(const Motion& motion);
 
 /// Checks positions that are to become those of keyframe k.

@@ -60,8 +60,9 @@ std::vector<const Motion::Keyframe*> pointers_to(const std::vector<Motion::Keyfr
   return keys;
 }
 
-// Holds the keyframes that determine the cubics of a segment. They are its two ends and one more keyframe on each side.
-// At the first and the last segment only one side has more keyframes, and two of these are held.
+// Makes a stream hold the keyframes that determine the cubics of a segment: both ends of the segment and one more
+// keyframe on each side. In the first and the last segment, only one side has more keyframes, and two keyframes of this
+// side are held.
 Status hold_cubics(MotionStream& stream, std::size_t segment) {
   const std::size_t end = stream.motion().keyframes.size() - 1;
   const std::size_t before = segment - std::min<std::size_t>(segment, 1);
@@ -73,8 +74,8 @@ struct BendSums {
   double bent = 0, way = 0;
 };
 
-// Adds the contribution of one keyframe to the two sums that bend_of() divides. Precondition: the keyframe and its
-// neighbours are held.
+// Adds the contribution of keyframe `at` to the two sums that bend_of() divides. Its neighbours are the keyframes
+// `every` before and after it. Precondition: the stream holds all three.
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
@@ -89,14 +90,15 @@ void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums&
   }
 }
 
-// The bounds by which faces of a segment tell whether a number of pieces is sufficient.
+// The bounds that tell, for each face of a segment on cubics, whether a number of straight pieces is enough to keep the
+// normal within an angle, given by its sine.
 class PieceBounds {
  public:
   PieceBounds(const Topology& topology, const CubicSegment& cubics, double sine)
       : topology_(topology), cubics_(cubics), sine_(sine) {}
 
-  // Returns the faces for which a number of pieces is not enough, in their order. If `faces` is nullptr, all faces are
-  // tried.
+  // Returns the faces for which `pieces` straight pieces are not enough, in their order. If `faces` is nullptr, all
+  // faces are tried.
   [[nodiscard]] std::vector<std::uint32_t> not_within(const std::vector<std::uint32_t>* faces,
                                                       std::size_t pieces) const {
     const std::size_t count = faces != nullptr ? faces->size() : topology_.face_count();
@@ -148,7 +150,8 @@ class PieceBounds {
   double sine_;
 };
 
-// Computes the keyframes of pieces. Reads the keyframes of the original stream when they are needed.
+// A source of the keyframes at the ends of straight pieces. It computes them from the keyframes of the original stream,
+// which it reads when they are needed.
 struct Cutter {
   MotionStream source;
   PathKind kind;
@@ -179,8 +182,8 @@ struct Cutter {
   }
 };
 
-// Appends the keyframes of a segment except the last, without positions. Takes fewer pieces than `count` if the times
-// of the keyframes would not ascend.
+// Appends the keyframes at which a segment is cut into `count` pieces, without positions and without the last keyframe.
+// Takes fewer pieces than `count` if the times of the keyframes would not ascend.
 std::size_t append_pieces(const Motion::Keyframe& from, const Motion::Keyframe& to, std::size_t count, Motion& result) {
   const auto time = [&](std::size_t i) {
     const double t = static_cast<double>(i) / static_cast<double>(count);
@@ -248,8 +251,8 @@ std::vector<float> VelocityShares::velocities(std::span<const std::span<const fl
   return result;
 }
 
-// Returns the weights of the positions in the derivative, at a key, of the polynomial through this key and its
-// neighbours, in Lagrange form.
+// Returns the weights of the keyframes' positions in the velocity at key `at`. The velocity is the derivative, at this
+// key, of the polynomial in Lagrange form through this key and its neighbours.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());

@@ -39,8 +39,9 @@ struct Ends {
   Vec3d from, to;
 };
 
-/// The edge from the first corner of a face, over a piece: its chord, p for the curve, and two bounds: of the length of
-/// a further part of p, and of the rounding error of either end.
+/// An edge of a face from its first corner, over a piece. `chord` is the edge between the chords, `beside` is p: the
+/// edge between the curves is chord + s (1 - s) p. `farther` bounds the length of a further part of p, and `rounding`
+/// the rounding error of the edge at either end.
 struct PieceEdge {
   Ends chord, beside;
   double farther = 0, rounding = 0;
@@ -96,12 +97,12 @@ struct Pieces {
 };
 
 /// Returns the smallest number of pieces that is enough for every face, but at most `most`. Faces for which no number
-/// of pieces is enough do not matter. bounds.not_within(faces, pieces) returns those of the faces for which so many
+/// of pieces is enough do not matter. bounds.not_within(faces, pieces) returns those of `faces` for which `pieces`
 /// pieces are not enough, in their order; nullptr stands for all faces.
 template <class Bounds>
 [[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most) {
   const std::size_t tried = std::max(most, kMostPieces);
-  // For each rung, the number of pieces, and the number of faces for which these are not enough.
+  // The numbers of pieces that are tried, ascending, and for each number the count of faces for which it is not enough.
   std::vector<std::size_t> ladder, left;
   for (std::size_t n = 1; n <= tried; n *= 2) {
     ladder.push_back(n);

@@ -83,7 +83,7 @@ class SegmentEnd {
   return segment.from_residuals.count > 0 || segment.to_residuals.count > 0;
 }
 
-/// Returns true if lanes can process the faces of a segment, which they can if all faces are triangles and all
+/// Returns true if SIMD lanes can process the faces of a segment, which they can if all faces are triangles and all
 /// positions are float32 without residuals.
 [[nodiscard]] inline bool fits_lanes(const Segment& segment) noexcept {
   return segment.topology->all_triangles() && !has_residuals(segment);

@@ -156,8 +156,8 @@ Motion soup() {
   return connected(Topology::triangles(3 * kFaces, std::move(corners)).value(), std::move(keyframes));
 }
 
-// Makes an egg with ripples, and targets that move parts of its front. Neighbouring targets overlap, as those of a face
-// do.
+// Makes an egg with ripples, and targets that move parts of its front. Neighbouring targets overlap, as the targets of
+// a human face do.
 Motion bumps() {
   constexpr std::size_t kTargets = 12;
   const Grid grid{64, 48, true};

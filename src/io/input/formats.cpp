@@ -42,7 +42,7 @@ bool is_obj(std::string_view first_bytes) {
     if (keyword.empty() || keyword.starts_with('#')) continue;
     return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
   }
-  // A text that has only comments so far may be an OBJ file.
+  // The first bytes may contain only comments. The file may then be an OBJ file.
   return has_comment;
 }
 
@@ -62,7 +62,7 @@ std::string write_plain_obj(const Topology& topology, VectorView<const float> po
   return write_obj(topology, positions, origin);
 }
 
-// Reads an MD2 file. No count in MD2 can be larger than the file, so the limit of expansion is not needed.
+// Reads an MD2 file. No count in MD2 can be larger than the file, so max_expansion is not needed.
 Result<Motion> read_whole_md2(std::string_view bytes, const std::string& name, double frames_per_second,
                               std::size_t /*max_expansion*/) {
   return read_md2(bytes, name, frames_per_second);
@@ -142,7 +142,7 @@ std::string unknown_format(std::string_view bytes, std::string_view what) {
 
 std::string way_in(std::string_view file_name, std::string_view bytes) {
   struct Foreign {
-    // A text that known_kind() returns.
+    // The kind of the file in the words that known_kind() returns, such as "an FBX file".
     std::string_view kind;
     std::array<std::string_view, 4> extensions;
     std::string_view way;

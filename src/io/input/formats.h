@@ -39,10 +39,10 @@ struct Format {
   /// a format that is recognised only by its extension.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
 
-  // The reader for the kind of data that the format holds; the other readers are nullptr. All readers are nullptr for
-  // glTF, targets and descriptions of Maya caches, which cannot be read from one block of bytes alone. `name` is for
-  // messages. The reader subtracts the origin from positions (io/mesh/far_origin.h). Errors: kInvalidInput, always with
-  // a place.
+  // read_mesh, read_motion or read_cache, whichever reads the kind of data that the format holds; the other two are
+  // nullptr. All three are nullptr for glTF, targets and descriptions of Maya caches, which cannot be read from one
+  // block of bytes alone. `name` is for messages. A reader of meshes subtracts the origin from positions
+  // (io/mesh/far_origin.h). Errors: kInvalidInput, always with a place.
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
   /// Reads a mesh with its smoothing groups and normals; nullptr if the reader of the format ignores them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,
@@ -69,7 +69,8 @@ struct Format {
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;
 };
 
-/// Returns all formats, in the order in which `recognises` is called.
+/// Returns all formats. The format of a file without a known extension is the first one whose `recognises` returns
+/// true.
 [[nodiscard]] std::span<const Format> formats() noexcept;
 
 /// Returns the format that has the extension of the file name, in upper or lower case, or nullptr if no format has it.

@@ -282,7 +282,8 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    // Adding kBeside rounds of the loop keeps the index from being negative.
+    // The first keyframe needed is kBeside before the loop begins. Adding kBeside rounds of the loop keeps its index
+    // from being negative.
     const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);

@@ -26,7 +26,7 @@ struct ReadMotion {
   std::vector<std::uint32_t> group_of_face;
   std::string shaded_by;  ///< the same as in class Input
   /// The files of a sequence that are examined for coordinates with more digits than float32 holds, if the first file
-  /// has none.
+  /// has no such coordinates.
   std::vector<std::string> other_files = {};
   std::uint64_t bytes_read = 0;           ///< total size of the files in bytes
   std::vector<std::string> notes = {};    ///< the same as in class Input
@@ -55,8 +55,8 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// Returns the last part of a path, or "<stdin>" for the path "-".
 [[nodiscard]] std::string file_name_of(const std::string& path);
 
-/// Reads the mesh of the next keyframe of `read` from its file. Adds the shading of the mesh to `read` if the options
-/// keep it. The place of every error is `place`, or begins with it.
+/// Reads the mesh of the next keyframe of `read` from the file `path`. Adds the shading of the mesh to `read` if the
+/// options keep it. The place of every error is `place`, or begins with it.
 [[nodiscard]] Result<MeshFrame> read_mesh_file(const InputOptions& options, const std::string& path,
                                                const std::string& place, ReadMotion& read);
 /// Reads the mesh of the next keyframe like read_mesh_file(), from bytes that are in memory.

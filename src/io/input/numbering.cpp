@@ -52,7 +52,8 @@ struct Place {
 };
 
 struct Cut {
-  // the texts between the numbers: one more than numbers, and the last one is the extension in lower case
+  // The texts before, between and after the numbers of a name, one more than there are numbers. The last text is the
+  // extension in lower case.
   std::vector<std::string> texts;
   std::vector<Place> places;
 

@@ -169,8 +169,9 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
   return std::move(found.times);
 }
 
-// Selects the files that are examined for coordinates with more digits than float32 holds, if the first file has none.
-// These are the last file, whose mesh has most likely moved, and others evenly in between.
+// Selects the files that are examined for coordinates with more digits than float32 holds, if the first file has no
+// such coordinates. Selects the last file, whose mesh has most likely moved, and other files at even distances before
+// it.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;
@@ -227,7 +228,8 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();
   std::optional<ObjFaces> faces;
-  // The texts can be compared only if positions are used exactly as they are in the file.
+  // The text of the faces can be compared, and need not be parsed, only if positions are used exactly as they are in
+  // the file.
   if (!keeps_normals && motion.origin == Origin{})
     faces = faces_of(file_of(0), first_file.value().bytes(), motion.keyframes[0].positions);
   while (motion.keyframes.size() < total) {

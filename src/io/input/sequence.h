@@ -10,9 +10,10 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the files that the options name, and all meshes of a folder that they name, without opening the files.
-/// `notes` gets a sentence if files were sorted that the user had listed. Errors: those of find_input_files() and
-/// sort_as_sequence() (io/input/numbering.h); kInvalidInput for a folder without meshes, or with files of two formats.
+/// Returns the paths of the files that the options name, and of all meshes in a folder that the options name. Opens no
+/// file. `notes` gets a sentence if the files that the user listed were put into another order. Errors: those of
+/// find_input_files() and sort_as_sequence() (io/input/numbering.h); kInvalidInput for a folder without meshes, or with
+/// files of two formats.
 [[nodiscard]] Result<std::vector<std::string>> find_frames(const InputOptions& options,
                                                            std::vector<std::string>* notes = nullptr);
 

@@ -9,8 +9,8 @@
 namespace chronormal {
 namespace {
 
-// Adds the names that the meshes of a document give to target k, each name once. Meshes without faces are skipped,
-// because they take no part in the motion.
+// Adds to names[k] the names that the meshes of a glTF document give to target k, each name once. Meshes without faces
+// are skipped, because they take no part in the motion.
 void add_names_of_meshes(const Input& input, TargetNames& names) {
   for (const GltfPart& part : input.parts()) {
     const std::vector<std::string>& of_mesh = input.document()->meshes()[part.mesh].target_names;

@@ -74,8 +74,9 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that the limit of expansion allows the positions of another keyframe beside the keyframes that were read, with
-// their residuals. Even a target file of a single line needs memory for all vertices, so a small file can ask for much.
+// Checks that the limit of memory (options.max_expansion) allows one more keyframe beside the keyframes and residuals
+// that were read. Even a target file of a single line needs memory for all vertices, so a small file can ask for much
+// memory.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {
   const std::uint64_t keyframes = read.motion.keyframes.size() + 1, vertices = read.motion.topology.vertex_count();
   const Expansion expansion(options.max_expansion, read.bytes_read);
@@ -133,8 +134,8 @@ Result<ReadMotion> read_targets(const InputOptions& options) {
   if (files.empty())
     return invalid_input(place_of(base), "there is no target, only the base itself; name the files of the targets");
 
-  // Normals are read only from the base. Viewers compute the normals of targets from positions, so the stored ones
-  // would not be used.
+  // Normals are read only from the base. Viewers compute the normals of targets from positions, so the stored normals
+  // of targets would not be used.
   InputOptions of_base = options;
   if (of_base.shading != KeepShading::kNone) of_base.shading = KeepShading::kFirst;
   const std::size_t total = 1 + files.size();

@@ -65,18 +65,18 @@ class JsonView {
   JsonView(const nlohmann::json& value, std::string pointer, JsonComplaint& complaint)
       : value_(&value), pointer_(std::move(pointer)), complaint_(&complaint) {}
 
-  /// Returns true if the object has this member, and false if the value is not an object.
+  /// Returns true if the value is an object that has the member `key`.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing.
-  /// Complain and return nothing if it is empty or of another kind.
+  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing. Complain
+  /// and return nothing if the member is empty or of another kind.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
   /// Returns the number of items of an array, or of members of an object.
   [[nodiscard]] std::size_t size() const noexcept { return value_->size(); }
   [[nodiscard]] JsonView item(std::size_t i) const { return {(*value_)[i], pointer(i), *complaint_}; }
-  /// Complains unless the value itself is an object.
+  /// Returns true if the value of this view is an object. Otherwise complains and returns false.
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] std::vector<std::string> keys() const;
 

@@ -34,7 +34,8 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 /// quotation marks: "\u00e9".
 [[nodiscard]] std::string decode_json_string(std::string_view quoted);
 
-/// Returns the names in a pointer, or nothing if it is not a valid pointer.
+/// Returns the names and indices in a JSON pointer as text, without escapes. Returns nothing if the pointer is not
+/// valid.
 [[nodiscard]] std::optional<std::vector<std::string>> split_json_pointer(std::string_view pointer);
 
 /// Returns the JSON pointer to the member `name` of the value at `pointer`.
@@ -60,7 +61,8 @@ class JsonText {
   JsonText& operator=(const JsonText&) = delete;
   ~JsonText();
 
-  /// Returns the text of a value, or nothing if there is no such value. Must be called before any change.
+  /// Returns the text of the value at a pointer, or nothing if there is no such value. Must be called before any
+  /// change.
   [[nodiscard]] std::optional<std::string_view> find(std::string_view pointer);
   /// Returns the members of an object or the items of an array, in their order. Returns none for other values, or if
   /// the pointer leads to no value. Must be called before any change.

@@ -1,4 +1,5 @@
-// Compares the text of the faces with that of the first file, and parses only the positions before the faces.
+// Compares the text of the faces of an OBJ file with that of the first file of a sequence. If both are equal, parses
+// only the positions before the faces.
 #include "io/mesh/obj_faces.h"
 
 #include <algorithm>

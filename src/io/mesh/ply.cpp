@@ -153,7 +153,7 @@ class BinarySource {
     if (!std::isfinite(value)) return fail("the coordinate is NaN or infinite", type);
     if (std::fabs(value) > std::numeric_limits<float>::max())
       return fail("the coordinate is too large for float32", type);
-    // Any rounding to float32 then counts as a loss of digits.
+    // A binary number has no decimal digits. 0 means that any rounding to float32 counts as a loss of digits.
     last_digit = 0;
     return true;
   }
@@ -259,7 +259,7 @@ class BodyReader {
 
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
-    // Such an element takes no bytes, however large its count is.
+    // An element without properties takes no bytes, however large its count is.
     if (element.properties.empty()) return Success{};
     // The counts have been checked against the size of the file, so a small file cannot ask for much memory here.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));
@@ -458,7 +458,7 @@ std::string write_ply(const Topology& topology, VectorView<const float> position
   std::size_t most_corners = 0;
   for (std::size_t f = 0; f < topology.face_count(); ++f)
     most_corners = std::max(most_corners, topology.face(f).size());
-  // Lengths of lists fit into uchar, the usual type.
+  // The number of corners of each face is stored as uchar, the usual type, if no face has more than 255 corners.
   const bool is_short = most_corners <= 255;
   const char* const index_type = positions.count <= 0x80000000U ? "int" : "uint";
   const char* const encoding_name = encoding == PlyEncoding::kAscii                ? "ascii"

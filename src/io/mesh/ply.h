@@ -72,7 +72,7 @@ struct PlyProperties {
   std::span<const float> quality_of_vertices, quality_of_faces;  ///< one number for each vertex or face
 };
 
-/// Writes a PLY file with positions, faces, and these properties.
+/// Writes a PLY file with positions, faces, and the data in `properties`.
 [[nodiscard]] std::string write_ply(const Topology& topology, VectorView<const float> positions,
                                     const PlyProperties& properties, PlyEncoding encoding, const Origin& origin = {});
 

@@ -23,7 +23,8 @@ enum class Scalar { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, k
   return type != Scalar::kFloat32 && type != Scalar::kFloat64;
 }
 
-/// The meaning that a property has for the reader.
+/// The meaning of a property of an element: a coordinate of a position or of a velocity, the vertices of a face, or
+/// other data, which are skipped.
 enum class Role { kX, kY, kZ, kVelocityX, kVelocityY, kVelocityZ, kIndices, kOther };
 
 struct Property {
@@ -51,8 +52,8 @@ struct Header {
 };
 
 /// Reads and checks the header. If there is no error, the file has one element vertex with the scalars x, y, z, and one
-/// element face with the list vertex_indices of an integer type, both with a count above 0. Views in the result point
-/// into `bytes`. Errors: those of read_ply(), with the place "NAME, line N".
+/// element face with the list vertex_indices of an integer type, both with a count above 0. The names in the result are
+/// views of `bytes`. Errors: those of read_ply(), with the place "NAME, line N".
 [[nodiscard]] Result<Header> read_header(std::string_view bytes, const std::string& name);
 
 /// Finds the properties that are velocities, and sets their roles. Returns true if there are velocities. Errors: those

@@ -102,8 +102,8 @@ void never_wait(int descriptor) noexcept;
 [[nodiscard]] bool write_at(int descriptor, std::uint64_t at, std::string_view bytes);
 /// Makes a file `size` bytes long. The next call of write_bytes() then appends to the file.
 [[nodiscard]] bool set_end(int descriptor, std::uint64_t size);
-/// Tells the system that nobody will read these bytes again. If the system supports it, their space on the disk becomes
-/// free.
+/// Tells the system that nobody will read the `size` bytes of a file from byte `at` on again. If the system supports
+/// it, their space on the disk becomes free.
 void forget_bytes(int descriptor, std::uint64_t at, std::uint64_t size) noexcept;
 /// Returns the number of bytes of a file that were ever written; the other bytes are holes. Stops counting at `enough`.
 /// If the system cannot find holes, every byte counts.
@@ -143,8 +143,8 @@ void release_mapping(const char* bytes, std::size_t size) noexcept;
 /// after a backslash stands for itself. On Windows, a backslash always separates folders.
 [[nodiscard]] std::vector<std::string> match_pattern(const std::string& pattern, bool has_escapes);
 
-/// Returns the file that a program writes to when it writes to `path`. This is the end of a chain of symbolic links,
-/// and need not exist.
+/// Returns the file that a program writes to when it writes to `path`. If `path` is a symbolic link, this is the file
+/// at the end of the chain of links, which need not exist.
 [[nodiscard]] std::string follow_links(const std::string& path);
 
 /// An identity of a file that does not depend on the spelling of its path: "s.npz" and "./s.npz" have the same key, and

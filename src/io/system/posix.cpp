@@ -329,7 +329,7 @@ extern "C" void end_by_abort(int /*signal*/) { watched.by_abort(); }
 void install(int signal, void (*handler)(int), unsigned flags = SA_RESETHAND) {
   struct sigaction action {};
   action.sa_handler = handler;
-  // SA_RESETHAND has no meaning for SIG_IGN.
+  // A set SA_RESETHAND in `flags` has no effect if the action is SIG_IGN.
   action.sa_flags = static_cast<int>(flags);
   (void)sigfillset(&action.sa_mask);  // without ::, because it is a macro on macOS
   (void)::sigaction(signal, &action, nullptr);
@@ -342,8 +342,8 @@ bool is_ignored(int signal) {
 
 }  // namespace
 
-// The system assigns the lowest free numbers first, so each closed stream gets its own number. It is opened in the
-// direction that the program does not use.
+// Opens /dev/null for each closed standard stream, in the direction that the program does not use. The system assigns
+// the lowest free number, so the new descriptor has the number of the closed stream.
 void prepare_standard_streams() noexcept {
   for (int stream = kStandardInput; stream <= kStandardError; ++stream) {
     if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;

@@ -25,8 +25,8 @@ struct Endings {
   void (*by_abort)();
 };
 
-/// Installs the functions from now on. Signals that the process ignored before stay ignored. Writing beyond the size
-/// limit of a file becomes an ordinary error.
+/// Installs the functions, which are called from now on. Signals that the process ignored before stay ignored. Writing
+/// a file beyond the size limit of the process then fails with an ordinary error.
 void watch_endings(const Endings& endings) noexcept;
 
 /// Gives freed memory back to the system, if the C library supports that.

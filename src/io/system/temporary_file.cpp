@@ -15,7 +15,8 @@
 namespace chronormal {
 namespace {
 
-// The number of places in the list. It is large, because the files for all frames of a sequence exist at the same time.
+// The number of places in the list of temporary files. The number is large, because the files for all frames of a
+// sequence exist at the same time.
 constexpr std::size_t kMostFiles = std::size_t{1} << 16U;
 
 std::array<std::atomic<char*>, kMostFiles> names{};
@@ -75,7 +76,8 @@ Error TemporaryFile::not_opened(const std::string& place) {
   return error;
 }
 
-// The descriptor is moved out first. The destructor of `file` then removes the name, but does not close the descriptor.
+// Moves the descriptor out of `file` before the destructor of `file` runs, which then removes the name but does not
+// close the descriptor.
 Descriptor TemporaryFile::nameless(const std::string& target) {
   TemporaryFile file;
   file.open(name_beside(target), {.reads = true, .writes = true, .makes = Opening::Makes::kNew, .is_private = true});

@@ -128,7 +128,7 @@ std::optional<FileStatus> status_from(HANDLE handle) {
   }
   BY_HANDLE_FILE_INFORMATION found{};
   if (::GetFileInformationByHandle(handle, &found) == 0) {
-    // Under Wine, only these two calls work for a file that is the standard input.
+    // Under Wine, only GetFileSizeEx() and GetFileTime() work for a file that is the standard input.
     LARGE_INTEGER size{};
     if (::GetFileSizeEx(handle, &size) == 0 || ::GetFileTime(handle, nullptr, nullptr, &found.ftLastWriteTime) == 0) {
       (void)fail();

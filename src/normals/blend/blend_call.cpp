@@ -31,8 +31,9 @@ constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLarges
 // |n(w)|, that is, 14 roundings. The rounding of the result is then added.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-// The costs of the model, in nanoseconds. They were fitted to a grid of 15,000 vertices with up to 100 targets, on one
-// core of the machine epyc-zen3-2cores in docs/benchmarks.md. Only their ratios matter.
+// The costs of the steps of an evaluation, in nanoseconds, by which the path is chosen. They were fitted to a grid of
+// 15,000 vertices with up to 100 targets, on one core of the machine epyc-zen3-2cores in docs/benchmarks.md. Only their
+// ratios matter.
 constexpr double kCopiedElement = 0.35;   // copying the base normal of an element
 constexpr double kTargetElement = 3;      // adding the terms of a target to an element
 constexpr double kPairElement = 1.4;      // adding the term of a pair of targets to an element
@@ -139,7 +140,8 @@ class Call {
  public:
   Call(const BlendInput& source, const BlendPose& pose) : source_(source), pose_(pose) {}
 
-  // Writes the normals of a range of elements to `result`. The first element must be the first of a word of bits.
+  // Writes the normals of a range of elements to `result`. The index of the first element must be a multiple of
+  // kBitsOfWord.
   BlendEvaluation run(IndexRange elements, VectorView<float> result) {
     if (pose_.choice.path == BlendPath::kWhole && source_.in_float32) {
       const IndexRange slices{elements.first / kRingLanes, (elements.count + kRingLanes - 1) / kRingLanes};
@@ -170,8 +172,8 @@ class Call {
       return Edge{edge, sum_abs(edge)};
     };
     // The loop below also bounds the error of the sum over the fan. The errors of the edges and of both products in a
-    // component come to at most 10 u times the absolute products. Each triangle adds a rounding, and points have an
-    // error of their own.
+    // component come to at most 10 u times the absolute products, where u = 2^-53. Each triangle adds a rounding, and
+    // points have an error of their own.
     BlendedFace result;
     double products = 0, edges = edge_to(1).size;
     for_fan(face.size(), edge_to, [&](const Edge& e, const Edge& g) {
@@ -337,8 +339,8 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition has an error of at most u times the sum of the absolute normals. This sum is at most twice the
-    // products that make_face() has counted 13 times.
+    // Each addition has an error of at most u = 2^-53 times the sum of the absolute normals. This sum is at most twice
+    // the products that make_face() has counted 13 times.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {
@@ -400,7 +402,7 @@ BlendChoice choose_path(const BlendInput& source, std::span<const double> weight
   const Rings& rings = source.storage.rings();
   const std::size_t elements = source.storage.terms().size();
   const double whole = kPathPoint * of(kRingLanes * rings.row_count()) + kWrittenElement * of(elements);
-  // Average cost of an element that is computed from points.
+  // Average cost in nanoseconds of computing an element from points.
   const double anew = elements > 0 ? whole / of(elements) : 0;
   const double copied = kCopiedElement * of(elements), moved = kMovedVertex * of(moved_vertices);
   choice.terms_ns = copied + kTargetElement * of(target_elements) + kPairElement * of(pair_elements) +

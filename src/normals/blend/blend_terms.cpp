@@ -34,7 +34,7 @@ void make_set(Indices& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-// Finds the faces around vertices.
+// A finder of the faces around vertices.
 class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
@@ -90,7 +90,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// Counts the elements that two targets have in common. For this it has a list of the targets that move each face.
+// A counter of the elements that two targets have in common. It has a list of the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)
@@ -174,8 +174,8 @@ void BlendTerms::for_faces_of(std::uint32_t element, const Body& body) const {
 
 Indices BlendTerms::elements_of(std::span<const std::uint32_t> faces) const {
   Indices elements;
-  // Elements are found by marking a bit for each element of the mesh, or by sorting, which takes 32 bits for each
-  // corner of the faces. The method that needs less memory is used.
+  // Elements are found by marking a bit for each element of the mesh, or by sorting a list of elements, which takes 32
+  // bits for each corner of the faces. The method that needs less memory is used.
   if (faces.size() > size() / 64) {
     std::vector<bool> is_one(size());
     std::size_t count = 0;

@@ -27,7 +27,7 @@
 
 namespace chronormal::inline internal {
 
-/// The elements whose coefficient is not zero, in ascending order, and their coefficients.
+/// A term of n(w): the elements whose coefficient is not zero, in ascending order, and their coefficients.
 struct BlendTerm {
   std::vector<std::uint32_t> elements;
   std::vector<Vec3d> values;
@@ -77,9 +77,9 @@ class BlendTerms {
   /// Returns true if there is a face that both targets move.
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const noexcept;
 
-  /// The number of another target that moves a face in common with a target, and the largest number of elements that
-  /// their pair() may have. pair_elements(i) returns these for target i, in ascending order of the other target. It
-  /// computes no term: O(targets on each of the faces of target i).
+  /// Another target that moves a face which target i also moves, and an upper bound of the number of elements of
+  /// pair(i, other). pair_elements(i) returns these targets in ascending order. It computes no term: O(targets on each
+  /// of the faces of target i).
   struct PairCount {
     std::uint32_t other = 0;
     std::uint32_t elements = 0;
@@ -134,7 +134,7 @@ class BlendTerms::Term {
     Vec3d value;
     double noise = 0;
   };
-  // Finds the delta of a target for a vertex, by a table.
+  // A table that finds the delta of a target for a vertex.
   struct Places {
     explicit Places(const BlendTarget& listed);
     [[nodiscard]] const float* find(std::uint32_t vertex) const noexcept;
@@ -163,7 +163,7 @@ class BlendTerms::Term {
   std::optional<Places> second_;
   bool is_linear_;
   // The faces with more than kSmallFace corners in ascending order, and their contributions. It would take too long to
-  // compute these again for each element that touches such a face.
+  // compute a contribution again for each element that touches such a face.
   std::vector<std::uint32_t> large_faces_;
   std::vector<Rounded> of_large_faces_;
   std::vector<Rounded> of_all_faces_;       // empty if contributions are not kept

@@ -18,7 +18,7 @@ inline constexpr std::size_t kBitsOfWord = 64;
   return (count + kBitsOfWord - 1) / kBitsOfWord;
 }
 
-/// The words of a set that are not zero, and their places.
+/// A sparse set of indices: the 64-bit words of its bits that are not zero, and the numbers of these words.
 struct SparseBits {
   std::vector<std::uint32_t> places;  ///< numbers of the words, ascending
   std::vector<std::uint64_t> masks;

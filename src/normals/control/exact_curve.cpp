@@ -31,7 +31,7 @@ struct PlaceParts {
   }
 };
 
-// Returns the smaller one of `lowest` and the smallest shift (FloatParts) of a nonzero coordinate.
+// Returns the smaller one of `lowest` and the smallest shift (FloatParts) of a nonzero coordinate of p.
 unsigned lowest_shift(const Vec3f& p, unsigned lowest) noexcept {
   for (const float x : {p.x, p.y, p.z}) {
     const FloatParts parts = FloatParts::of(x);

@@ -56,8 +56,8 @@ struct TimeFraction {
 
 class ExactCurve {
  public:
-  // The number of digits of a coefficient. Products have up to 23 digits; the other digits are for sums of up to 2^40
-  // products.
+  // The number of digits (WideInteger) of a coefficient. Products have up to 23 digits; the other digits are for sums
+  // of up to 2^40 products.
   static constexpr std::size_t kDigits = 26;
   using Coefficient = WideInteger<kDigits>;
   using CoefficientVector = std::array<Coefficient, 3>;
@@ -71,8 +71,8 @@ class ExactCurve {
 
   /// Makes a curve from the numbers that append_to() has written.
   [[nodiscard]] static ExactCurve of_kept(const std::int32_t* kept) noexcept;
-  /// Appends the numbers of this curve to a list, as few as possible. There are about 40 if all coordinates are of
-  /// similar size.
+  /// Appends the numbers of this curve to a list, as few as possible. A curve has about 40 numbers if all coordinates
+  /// are of similar size.
   void append_to(std::vector<std::int32_t>& kept) const;
 
   /// Returns the control normals. Each component is rounded once or twice.

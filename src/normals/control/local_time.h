@@ -1,4 +1,4 @@
-/// The only functions that turn the t of a call into a local t of a segment.
+/// Moves the t that a caller passes into the range [0, 1] of a segment. No other functions do this.
 #ifndef CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 #define CHRONORMAL_NORMALS_CONTROL_LOCAL_TIME_H_
 
@@ -12,8 +12,8 @@ namespace chronormal::inline internal {
 /// the smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
-/// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end. NaN stays NaN, and callers then write (0, 0,
-/// 0).
+/// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end. NaN stays NaN, and callers then write the
+/// normal (0, 0, 0).
 [[nodiscard]] inline double local_time(double t) noexcept {
   if (std::isnan(t)) return t;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;

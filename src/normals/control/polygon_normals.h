@@ -1,4 +1,4 @@
-/// Computes the control normals of one polygon without lanes, for cases that the kernels leave to it.
+/// Computes the control normals of one polygon without SIMD lanes, for cases that the kernels leave to this function.
 #ifndef CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 #define CHRONORMAL_NORMALS_CONTROL_POLYGON_NORMALS_H_
 
@@ -12,8 +12,8 @@
 
 namespace chronormal::inline internal {
 
-/// The size of a coefficient, relative to the largest control normal, below which it counts as zero in degree().
-/// Leaving it out changes the direction by about 2^-28 rad, far below the errors of an evaluation in float32.
+/// The size of a coefficient of n(t), relative to the largest control normal, below which it counts as zero in
+/// degree(). Leaving it out changes the direction by about 2^-28 rad, far below the errors of an evaluation in float32.
 inline constexpr double kDegreeTolerance = 0x1p-28;
 
 /// The largest rounding error of a control normal in double, relative to its length. A control normal whose error may

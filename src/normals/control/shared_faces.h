@@ -23,8 +23,8 @@
 
 namespace chronormal::inline internal {
 
-/// Stores values of faces with many corners. Several threads may ask for values at once. If there is no memory for a
-/// value, it is not stored.
+/// A store of values of faces with many corners. Several threads may ask for values at once. If there is no memory for
+/// a value, it is not stored.
 template <class Value>
 class LargeFaceValues {
  public:

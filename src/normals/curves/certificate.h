@@ -46,14 +46,14 @@ template <std::size_t M>
 /// underflows.
 [[nodiscard]] inline double scaled_length(const Vec3d& v) { return std::sqrt(dot(v, v)); }
 
-/// The size of a mesh below which the scale would be outside of the range of double.
+/// The smallest size of the control normals of an element for which 1 / size serves as a scale. Smaller elements, which
+/// only tiny meshes have, are computed in double.
 inline constexpr double kSmallestMesh = 0x1p-900;
 /// The number that is added to the length of a control normal if each control normal has its own exponent, since such
 /// exponents have a lower limit.
 inline constexpr double kSmallestScale = 0x1p-30;
 
-/// Returns the lowest precision that keeps this element within the tolerance at every t, or no value if double is
-/// needed.
+/// Returns the lowest precision that keeps an element within the tolerance at every t, or no value if double is needed.
 [[nodiscard]] inline std::optional<Precision> precision_for(const ControlNormals& normals,
                                                             const PrecisionLimits& limits) {
   const double largest = largest_component(normals);
@@ -76,8 +76,8 @@ inline constexpr double kSmallestScale = 0x1p-30;
 inline constexpr double kLargestShare = 0x1p-30;
 
 /// Returns the smallest size of n(t) in double for which n(t) has a direction, relative to sum w_k max_abs(c_k). Above
-/// it, the errors of the control normals, which are at most `share`, and ten roundings of 2^-53 turn n(t) by less than
-/// 6e-7 rad.
+/// this size, the errors of the control normals, which are at most `share`, and ten roundings of 2^-53 turn n(t) by
+/// less than 6e-7 rad.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
 inline constexpr double kDeterminantRounding = 0x1p-44;

@@ -30,8 +30,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] CurveData build_curves(const Segment& segment, const NormalGroups& groups, const CurveOptions& options,
                                      Threads threads, CurveData* reuse);
 
-/// Builds curves with the same bits on one thread in slices, for MeshNormals::prepare(). The segment and the groups
-/// must outlive the object.
+/// A builder that makes the same curves as build_curves(), on one thread and in slices, for MeshNormals::prepare(). The
+/// segment and the groups must outlive the object.
 class CurveSlices {
  public:
   CurveSlices(const Segment& segment, const NormalGroups* groups, const CurveOptions& options, CurveData* reuse);

@@ -15,7 +15,8 @@ namespace {
 
 static_assert(kCountedTogether == kChunk);
 
-// Writes the tiles of the faces of a segment, and keeps the control normals in double that are computed on the way.
+// A source that writes the tiles of the faces of a segment, and keeps the control normals in double from which it makes
+// the tiles.
 class KeptFaces : public FaceNormals {
  public:
   KeptFaces(const Segment& segment, IndexRange faces, std::span<EdgedTile> kept)

@@ -26,13 +26,13 @@ struct CurveCount {
 
   [[nodiscard]] static CurveCount of(const CurveData& curves) noexcept;
 
-  /// Adds the counts of the elements that follow these.
+  /// Adds the counts `next` of the elements that follow the elements of this object.
   void add(const CurveCount& next) noexcept;
   /// Returns the number of bytes that the curves of `size` elements take, as NormalCurves::bytes() counts them.
   [[nodiscard]] std::size_t bytes(std::size_t size) const noexcept;
 };
 
-/// The number of faces that are counted together. Each counted range must begin at a multiple of it.
+/// The number of faces that are counted together. Each counted range must begin at a multiple of this number.
 inline constexpr std::size_t kCountedTogether = 512;
 
 /// Counts the sizes of exact curves of some faces. Also writes the control normals of these faces and their longest

@@ -42,7 +42,7 @@ struct CurveData {
   /// Block b has the control normals of its elements times 2^-exponents[b]. The list is empty if all exponents are 0.
   std::vector<std::int16_t> exponents;
   FlaggedElements flagged;  ///< the elements that are evaluated in double
-  /// A flagged element for which double does not suffice at every t. The list of these is in ascending order of
+  /// A flagged element for which double does not suffice at every t. The list `exact` is in ascending order of
   /// `element`. `digits` is the place in exact_digits at which the ExactCurve of the element begins.
   struct ExactElement {
     std::size_t element = 0;

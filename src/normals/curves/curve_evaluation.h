@@ -40,7 +40,7 @@ inline std::size_t run_from(const std::vector<std::size_t>& flagged, std::size_t
 
 /// Computes the normals of the flagged elements of a range in double at t, and calls write(element, xyz, count) for
 /// each run of neighbouring elements. Then calls settle(index, element) for each element for which double does not
-/// suffice; `index` is its place among the flagged elements.
+/// suffice; `index` is the place of this element among the flagged elements.
 template <class Write, class Settle>
 void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, const Write& write,
                  const Settle& settle) {

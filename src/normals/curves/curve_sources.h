@@ -35,7 +35,7 @@ void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> 
     put(bounded[i / kTile], i % kTile, source.in_double(elements.first + std::min(i, elements.count - 1)));
 }
 
-/// Takes control normals that the caller has computed.
+/// A source of control normals that the caller has computed.
 class GivenNormals {
  public:
   explicit GivenNormals(std::span<const ControlNormals> normals) : normals_(normals) {}
@@ -61,7 +61,7 @@ class GivenNormals {
   std::span<const ControlNormals> normals_;
 };
 
-/// Computes the control normals of the faces of a segment.
+/// A source that computes the control normals of the faces of a segment.
 class FaceNormals {
  public:
   explicit FaceNormals(const Segment& segment) : segment_(segment) {}
@@ -91,7 +91,7 @@ class FaceNormals {
   const Segment& segment_;
 };
 
-/// Computes the control normals of the elements of groups.
+/// A source that computes the control normals of the elements of groups.
 class GroupNormals {
  public:
   GroupNormals(const Segment& segment, const NormalGroups& groups, bool fetch)

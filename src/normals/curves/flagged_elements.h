@@ -23,7 +23,8 @@ struct FlaggedElements {
 
   [[nodiscard]] std::size_t size() const noexcept { return numbers.size(); }
 
-  /// Returns the control normals of an element as its tile has them, scaled by a power of two.
+  /// Returns the control normals of the flagged element at place `index`, multiplied by a power of two as its tile
+  /// stores them.
   [[nodiscard]] ControlNormals scaled_normals(std::size_t index) const noexcept {
     return element_of(tiles[index / kTile].normals, index % kTile);
   }

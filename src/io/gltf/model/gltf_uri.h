@@ -15,7 +15,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns true if the URI contains the bytes itself.
+/// Returns true if a URI contains the bytes of its buffer itself (data:...).
 [[nodiscard]] bool is_data_uri(std::string_view uri) noexcept;
 
 /// Decodes a data URI that must have at least `least` bytes. Errors: kInvalidInput at `place` for text that is not
@@ -24,9 +24,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, const std::string& place);
 
 /// Returns the path of the file to which a relative URI refers. `folder` is the folder of the asset, or has no value
-/// for the standard input. Errors: kInvalidInput at `place` for a URI that names no file or a device, and for a broken
-/// percent code. Unless allow_external is true, also for an absolute path, another scheme, and everything outside the
-/// folder.
+/// for the standard input. Errors: kInvalidInput at `place` for a URI that does not name a file or that names a device,
+/// and for a malformed percent code. Unless allow_external is true, also for an absolute path, another scheme, and
+/// everything outside the folder.
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 

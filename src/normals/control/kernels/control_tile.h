@@ -29,7 +29,7 @@ struct alignas(64) ControlTile {
   std::int32_t degree[kTile];
 };
 
-/// Writes an element, rounded to float32, into a lane of a tile.
+/// Writes the control normals of an element, rounded to float32, into a lane of a tile.
 inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) noexcept {
   std::size_t plane = 0;
   for (const Vec3d* const v : {&c.n0, &c.m, &c.n1}) {
@@ -37,7 +37,7 @@ inline void put(ControlTile& tile, std::size_t lane, const ControlNormals& c) no
   }
 }
 
-/// Returns the element in a lane of nine planes of doubles.
+/// Returns the control normals of the element in a lane of nine planes of doubles.
 [[nodiscard]] inline ControlNormals element_of(const double (&planes)[9][kTile], std::size_t lane) noexcept {
   const auto vector = [&planes, lane](std::size_t k) {
     return Vec3d{planes[k][lane], planes[k + 1][lane], planes[k + 2][lane]};

@@ -11,8 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// The control normals of sixteen faces in double. They are planes as in ControlTile, with the bits of
-/// face_control_normals().
+/// The control normals of sixteen faces in double, in planes as in ControlTile. They have the same bits as those that
+/// face_control_normals() computes.
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
@@ -31,24 +31,26 @@ struct EdgedTile : ExactTile {
   float longest[kTile];
 };
 
-/// Writes an element into a lane of a tile.
+/// Writes the control normals of an element into a lane of a tile.
 void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept;
 
-/// A relative error, compared with the magnitude of a triangle, that is more than twice the triangle's rounding error.
+/// More than twice the rounding error of a control normal of a triangle in double, relative to the magnitude of the
+/// triangle.
 inline constexpr double kErrorAbove = 0x1p-47;
 
-/// Returns a float that is not less than a magnitude. It is 0 for 0.
+/// Returns a float that is not less than a magnitude, and 0 for the magnitude 0.
 [[nodiscard]] float magnitude_above(double magnitude) noexcept;
 
-/// Writes one face, with any number of corners, into one lane.
+/// Writes the control normals of one face, with any number of corners, into one lane of a tile.
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept;
 
-/// The size of a control normal, relative to the magnitude of its triangle, above which rounding hardly changes the
-/// control normal (kLargestRounding).
+/// The size of a control normal, relative to the magnitude of its triangle, above which the rounding error of the
+/// control normal is certainly at most kLargestRounding.
 inline constexpr double kCertainAbove = 0x1p-22;
 
-/// Writes one triangle into one lane. Components that are only rounding error become zero, and integers compute a
-/// control normal if double is not precise enough. A magnitude that is finite does not change.
+/// Writes the control normals of one triangle into one lane of a tile. Components that are only rounding error become
+/// zero, and integers compute a control normal if double is not precise enough. A magnitude that is finite does not
+/// change.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

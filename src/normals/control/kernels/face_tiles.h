@@ -18,13 +18,14 @@ namespace chronormal::inline internal {
 /// ceil(faces.count / 16) elements; faces.count > 0.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// Writes tiles, and for each tile its values before rounding, which have the bits of face_control_normals(), and its
-/// longest edges. Precondition: exact has as many elements as tiles.
+/// Writes the tiles of a range of faces. For each tile, also writes its values before they are rounded to float32,
+/// which have the bits of face_control_normals(), and the longest edges of its faces. Precondition: `exact` has as many
+/// elements as `tiles`.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<EdgedTile> exact) noexcept;
 
-/// Writes the tiles of triangles, and for each tile its values before rounding and bounds of their errors.
-/// Precondition: `exact` has as many elements as `tiles`.
+/// Writes the tiles of a range of triangles. For each tile, also writes its values before they are rounded to float32,
+/// and bounds of their errors. Precondition: `exact` has as many elements as `tiles`.
 void face_control_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles,
                         std::span<BoundedTile> exact) noexcept;
 

@@ -56,7 +56,7 @@ constexpr std::size_t kEndsStride = kScatteredBytes / sizeof(float);
 
 constexpr bool LoadsRows(PointAccess access) { return access < PointAccess::kLastRow; }
 
-// Returns the access that works for all points of a segment, except perhaps for the last point.
+// Returns the way of loading that works for all points of a segment, except perhaps for the last point.
 HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   const auto is_rows = [](const VectorView<const float>& points) {
     return points.stride >= 3 && points.y == points.x + 1 && points.z == points.x + 2;
@@ -145,7 +145,7 @@ HWY_INLINE Floats MagnitudeAbove(const TriangleLanes& p) {
   return hn::Add(hn::Mul(hn::Set(kFloats, 2.0f + 0x1p-19f), hn::Mul(e, f)), tiny);
 }
 
-// Returns an upper bound of the components of the edges from the first corner, at both ends of the segment.
+// Returns an upper bound of the absolute components of the edges from the first corner, at both ends of the segment.
 HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   const Floats e = MaxAbs(p.b0 - p.a0, p.b1 - p.a1), f = MaxAbs(p.c0 - p.a0, p.c1 - p.a1);
   return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the factor covers the rounding of the differences
@@ -163,8 +163,8 @@ HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   return {above(e0, f0), hn::Add(above(e0, f1), above(e1, f0)), above(e1, f1)};
 }
 
-// Writes half of the lanes into a tile. Returns true if a component may be zero or only rounding error, or if a vector
-// is hardly larger than its rounding error.
+// Writes the control normals of half of the triangles in the lanes into a tile. Returns true if a component may be zero
+// or only rounding error, or if a control normal is hardly larger than its rounding error.
 template <int kHalf>
 HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::size_t lane, ExactTile& tile) {
   const Doubles3 a0 = ToDouble<kHalf>(p.a0), a1 = ToDouble<kHalf>(p.a1);
@@ -260,8 +260,8 @@ HWY_INLINE void PrefetchPoints(const Segment& segment, const std::uint32_t* vert
 template <PointAccess kAccess>
 using AccessConstant = std::integral_constant<PointAccess, kAccess>;
 
-// Calls body(access) with the fastest access that works for sixteen triangles, as a constant. `corners` are their 48
-// vertices. Returns true if these vertices are far from each other in memory.
+// Calls body(access) with the fastest way of loading points that works for sixteen triangles, as a constant. `corners`
+// are their 48 vertices. Returns true if these vertices are far from each other in memory.
 template <class Body>
 HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std::uint32_t* corners, const Body& body) {
   if (access == PointAccess::kAny) {
@@ -289,9 +289,10 @@ HWY_INLINE bool WithAccess(const Segment& segment, PointAccess access, const std
   return !hn::AllTrue(tag, hn::Eq(far_bits, hn::Zero(tag)));
 }
 
-// Calls body(access, corners) for the triangles first ... first + 15. `access` is the fastest access that works for
-// them, as a constant, and `corners` are their 48 vertices. From `end` on, the last triangle is repeated. If the
-// vertices are far from each other in memory, those of later triangles are prefetched. Precondition: first < end.
+// Calls body(access, corners) for the triangles first ... first + 15. `access` is the fastest way of loading points
+// that works for them, as a constant, and `corners` are their 48 vertices. From `end` on, the last triangle is
+// repeated. If the vertices are far from each other in memory, those of later triangles are prefetched. Precondition:
+// first < end.
 template <class Body>
 HWY_INLINE void WithTriangles(const Segment& segment, PointAccess access, std::size_t first, std::size_t end,
                               const Body& body) {

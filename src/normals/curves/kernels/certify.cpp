@@ -101,8 +101,8 @@ inline constexpr Instant kInstants[] = {
     {{9.0 / 16, 6.0 / 16, 1.0 / 16}, {81.0 / 256, 108.0 / 256, 54.0 / 256, 12.0 / 256, 1.0 / 256}},
     {{1.0 / 16, 6.0 / 16, 9.0 / 16}, {1.0 / 256, 12.0 / 256, 54.0 / 256, 108.0 / 256, 81.0 / 256}}};
 
-// Compares |n(t)| with its limits at a few instants, which costs far less than a proof. If n(t) is too short at one of
-// these instants, no proof can succeed.
+// A comparison of |n(t)| with its limits at a few instants, which costs far less than a proof. If n(t) is too short at
+// one of these instants, no proof can succeed.
 class Glance {
  public:
   HWY_INLINE Glance(const Quartic& n_square, const Doubles (&length_square)[3]) {
@@ -117,7 +117,7 @@ class Glance {
     }
   }
 
-  // Returns the lanes in which ratio |n(t)| >= 1 holds at these instants, so that it may hold at every t.
+  // Returns the lanes in which ratio |n(t)| >= 1 holds at the instants kInstants, so that it may hold at every t.
   HWY_INLINE DoubleMask MayStayAboveOne(double ratio) const {
     Doubles smallest = square_[0];
     for (std::size_t i = 1; i < kCount; ++i) smallest = hn::Min(smallest, square_[i]);
@@ -145,7 +145,8 @@ HWY_INLINE Numbers LengthsOf(const Vectors& n, const Quartic& n_square) {
   return {hn::Sqrt(n_square.at[0]), ScaledLength(n.m), hn::Sqrt(n_square.at[4])};
 }
 
-// Does what stays_certain() does, for control normals that are scaled to a size of 1.
+// Returns the lanes among `open` in which it is proven, as by stays_certain(), that n(t) stays above the relative size
+// `certain` at every t. The control normals `n` are scaled to a size of 1.
 HWY_INLINE DoubleMask StaysCertain(const Vectors& n, const Quartic& n_square, Doubles certain, DoubleMask open) {
   const Doubles share = hn::Mul(AllOf(4), certain);
   const Doubles height = hn::Abs(Dot(n.n0, Cross(n.m, n.n1)));
@@ -233,8 +234,8 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const std::uint32_t flagged = BitsOf(kDoubles, open) & asked;
   if (flagged == 0) return;
   const Doubles certain = hn::Max(AllOf(0x1p-26), hn::Mul(AllOf(0x1p22), share));
-  // Elements are scaled by a power of two, which is the inverse of their largest component up to a factor of 2. Both
-  // are normal numbers here.
+  // Elements are scaled by a power of two, which is the inverse of their largest component up to a factor of 2. The
+  // power of two and the largest component are normal numbers here.
   const hn::RebindToSigned<DoubleTag> bits;
   const auto exponent = hn::And(hn::BitCast(bits, largest), hn::Set(bits, std::int64_t{0x7FF} << 52));
   const Doubles power = hn::BitCast(kDoubles, hn::Sub(hn::Set(bits, std::int64_t{0x7FE} << 52), exponent));
