@@ -35,8 +35,8 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     const double middle_angle = angle_along(arc, middle);
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
-  // If the turn is too small for float32, nothing is lost, so the case does not count as a fallback. Every other case
-  // without a circle does.
+  // If the turn is too small for float32, nothing is lost without a circle, so such a turn does not count as a
+  // fallback. Every other case without a circle does.
   constexpr double kInvisibleTurn = 1e-7;
   if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);

@@ -153,7 +153,7 @@ concept Playable = requires(const Policy& policy) {
   policy.state_planes();
 };
 
-/// Plays the coefficients of a CurveScheme step by step.
+/// The playback of the coefficients of a CurveScheme, step by step.
 template <Playable Policy>
 class CurvePlayback final : public SchemePlayback {
  public:

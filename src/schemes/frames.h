@@ -37,10 +37,11 @@ struct Rotation {
   Vec3d axis;        ///< unit vector, or zero if the angle is zero
   double angle = 0;  ///< the angle of the rotation in radians
 };
-/// Returns the rotation that takes F0 to F1 by at most half a turn.
+/// Returns the rotation that takes the frame at the start (F0) to the frame at the end (F1) by at most half a turn.
 [[nodiscard]] Rotation shorter_rotation(const FramePair& frames);
 
-/// Returns the path of the normal when quaternion slerp turns F0 to F1 on the shorter arc (eq. 7).
+/// Returns the path of the normal when quaternion slerp turns the frame at the start (F0) to the frame at the end (F1)
+/// on the shorter arc (eq. 7).
 [[nodiscard]] Arc shorter_arc(const FramePair& frames);
 
 }  // namespace chronormal::inline internal

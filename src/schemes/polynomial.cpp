@@ -15,10 +15,10 @@ namespace chronormal::inline internal {
 namespace {
 
 // The largest factor by which a normal may shrink if its element is to be played in float32. The error of the state
-// does not shrink with it (docs/theory.md, section 4.9).
+// does not shrink with the normal (docs/theory.md, section 4.9).
 constexpr double kMaxShrinkage = 4;
-// The bounds of the size of control normals. Between them, squares of normals and of their differences are normal (not
-// subnormal) numbers of float32.
+// The bounds of the size of the control normals of an element that is played. Between the bounds, squares of normals
+// and of their differences are normal (not subnormal) numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
 // Returns true if the drift of an element stays within the stated bound when it is played.

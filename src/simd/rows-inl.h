@@ -52,8 +52,8 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
-// Rounds both halves of the lanes to float and joins them. Their values must be in the range of float. If there is a
-// single lane, it is the one of `lower`.
+// Rounds both halves of the lanes to float and joins them. Their values must be in the range of float. If a vector of
+// floats has a single lane, only `lower` is rounded.
 HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
 #if HWY_TARGET == HWY_SCALAR
   return hn::DemoteTo(kFloats, lower);

@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 /// Returns the instruction set on which the kernels run now.
 [[nodiscard]] std::int64_t current_target();
 
-/// Runs all kernels on one instruction set while the object lives. Other threads must not run kernels meanwhile.
+/// A scope in which all kernels run on one instruction set. Other threads must not run kernels meanwhile.
 class ScopedTarget {
  public:
   explicit ScopedTarget(std::int64_t target);

@@ -41,8 +41,8 @@ float clamped_to_float(double value) {
 
 Vec3f clamped_to_float(const Vec3d& v) { return {clamped_to_float(v.x), clamped_to_float(v.y), clamped_to_float(v.z)}; }
 
-// Returns true if double is certain of the direction of n(t), or of n(t) having none. Control normals are taken as
-// exact.
+// Returns true if double is certain of the direction of n(t), or certain that n(t) has no direction. Control normals
+// are taken as exact.
 bool has_certain_direction(const ControlNormals& c, double t) {
   const double s = 1 - t;
   const double size = s * s * max_abs(c.n0) + 2 * t * s * max_abs(c.m) + t * t * max_abs(c.n1);

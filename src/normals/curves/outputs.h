@@ -18,8 +18,8 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] inline bool is_packed(const VectorView<float>& view) { return view.is_packed(); }
 
-/// Returns the access of a pass whose results go to these arrays. Results bypass the caches only if each array begins
-/// at a cache line.
+/// Returns the way in which a pass uses memory if its results go to `arrays`. Results bypass the caches only if each
+/// array begins at a cache line.
 template <class... Pointer>
 [[nodiscard]] MemoryAccess access_to(MemoryAccess of_pass, Pointer... arrays) {
   const bool aligned = ((reinterpret_cast<std::uintptr_t>(arrays) % 64 == 0) && ...);
@@ -108,7 +108,7 @@ struct AnyOutput {
 template <class Set>
 AnyOutput(WorkingSet, Set) -> AnyOutput<Set>;
 
-/// Writes the normals of the elements from `first` on; xyz has three numbers for each.
+/// Writes the normals of the elements from `first` on; xyz has three numbers for each element.
 template <class Output>
 void set_run(const Output& output, std::size_t first, const float* xyz, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) output.set(first + i, Vec3f{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
@@ -122,7 +122,7 @@ inline void set_run(const PackedOutput& output, std::size_t first, const float* 
     std::copy_n(xyz, 3 * count, to);
 }
 
-/// Calls body(output) with the form that suits the layout of a view, and returns the result of body.
+/// Calls body(output) with the form of output that suits the layout of a view, and returns the result of body.
 template <class Body>
 auto with_output(const VectorView<float>& result, MemoryAccess of_pass, Body body) {
   if (is_packed(result)) return body(PackedOutput(result, of_pass));

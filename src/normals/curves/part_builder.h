@@ -170,8 +170,8 @@ concept WritesInFloat = requires(const Source& source, std::span<ControlTile> ti
   source.write_in_float(IndexRange{}, tiles);
 };
 
-// Decides whether the next tiles are tried in float32. After a failed try, float32 is not tried for a while. After
-// another failure, the pause is twice as long.
+// A rule that decides whether the next tiles are tried in float32. After a failed try, float32 is not tried for a
+// while. After another failure, the pause is twice as long.
 class FloatTrials {
  public:
   [[nodiscard]] bool is_tried() {
@@ -259,8 +259,8 @@ class PartBuilder {
     }
   }
 
-  // Writes a few tiles and summarizes them. It tries float32 first if that may suffice, and uses double for the tiles
-  // for which float32 does not suffice.
+  // Writes a few tiles and their summaries. Tries float32 first if that may suffice, and uses double for the tiles for
+  // which float32 does not suffice.
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {

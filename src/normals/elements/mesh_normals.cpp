@@ -104,7 +104,7 @@ struct Words {
   };
 };
 
-// The type of memory for normals in a form of results.
+// The type of the memory on the stack that holds normals for a form of output.
 template <class Output>
 struct ValuesOf {
   using type = Vectors;
@@ -158,14 +158,14 @@ struct AtTime {
 
   [[nodiscard]] std::size_t size() const noexcept { return curves.size; }
 
-  // Writes elements to their places in the memory for all elements. The first element must be the first of a tile.
-  // Returns the number of elements that have no direction.
+  // Writes the normals of a range of elements to their places in the memory for all elements. The first element must be
+  // the first of a tile. Returns the number of elements that have no direction.
   template <class Output>
   std::size_t write(IndexRange elements, const Output& output) const noexcept {
     return evaluate_range(curves, elements, t, weights, output);
   }
-  // Writes elements to memory that begins with the first of them. Returns a number whose bits mark the elements that
-  // have no direction.
+  // Writes the normals of a range of elements to memory that begins with the first element of the range. Returns a
+  // number whose bits mark the elements that have no direction.
   template <class View>
   std::uint64_t write_tile(IndexRange elements, const View& view) const noexcept {
     const std::size_t zeros = evaluate_range(curves, elements, t, weights, Shifted{form_of(view), elements.first});
@@ -232,7 +232,8 @@ IndexRange tile_of(const Source& source, std::size_t tile) {
   return {first, std::min(Source::kTileElements, source.size() - first)};
 }
 
-// Writes outputs if output i is element i. Memory on the stack is only used for a range that begins within a tile.
+// Writes the normals of a range of outputs if output i is always element i. Memory on the stack is only used for a
+// range that begins within a tile.
 template <class Source, class Output>
 std::size_t write_elements(const Source& source, IndexRange outputs, const Output& output) noexcept {
   constexpr std::size_t kElements = Source::kTileElements;
@@ -251,7 +252,7 @@ std::size_t write_elements(const Source& source, IndexRange outputs, const Outpu
   return zeros;
 }
 
-// Writes outputs that share elements.
+// Writes the normals of a range of outputs that share elements.
 template <class Source, class Output>
 std::size_t write_shared(const Source& source, std::span<const std::uint32_t> element_of_output, IndexRange outputs,
                          const Output& output) noexcept {

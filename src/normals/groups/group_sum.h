@@ -76,8 +76,8 @@ class ControlNormalsSum {
   return result;
 }
 
-/// Writes group_control_normals() of normal_groups.h for a range of elements. It is for callers that ask for one range
-/// after the other, since SharedFaces keeps the results for large faces.
+/// Writes the results of group_control_normals() of normal_groups.h for a range of elements. This function is for
+/// callers that ask for one range after the other, since SharedFaces keeps the results for large faces.
 void group_control_normals(const SharedFaces& faces, const NormalGroups& groups,
                            std::span<const ControlNormals> of_faces, IndexRange elements,
                            std::span<ControlNormals> result) noexcept;

@@ -48,14 +48,14 @@ std::vector<Vec3d> unit_face_normals(const Segment& still) {
   return normals;
 }
 
-// An edge from a point to another point, as one corner has it.
+// An edge of corner `corner`, from the point of this corner to the point `to`.
 struct Spoke {
   std::uint32_t to, corner;
 
   friend bool operator<(const Spoke& a, const Spoke& b) { return a.to != b.to ? a.to < b.to : a.corner < b.corner; }
 };
 
-// A direction that a file stores around a point, and a corner that has this direction.
+// The direction of a normal that a file stores at a point, and a corner that has this direction.
 struct StoredNormal {
   Vec3d direction;
   std::uint32_t corner;

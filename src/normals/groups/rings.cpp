@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostSearched = 64;
 using Path = std::vector<std::uint32_t>;  // first the centre, and then the points of the path
 
-// Makes the paths around elements, one after the other.
+// A maker of the paths around elements, one after the other.
 class PathMaker {
  public:
   PathMaker(const Topology& topology, const NormalGroups& groups, std::size_t most_points)
@@ -118,7 +118,7 @@ class PathMaker {
     pieces_.push_back({first, points_.size() - 1});
   }
 
-  // Adds a piece to the path. If it does not adjoin the last piece, the path goes through the centre in between.
+  // Adds a piece to the path. If the piece does not adjoin the last piece, the path goes through the centre in between.
   void append(const Piece& piece) {
     std::size_t from = piece.first;
     if (path_.size() > 1 && path_.back() == points_[from]) {
@@ -129,7 +129,7 @@ class PathMaker {
     for (; from <= piece.last; ++from) path_.push_back(points_[from]);
   }
 
-  // Returns a piece that adjoins the last piece of the path. If there is none, returns a piece to which no other piece
+  // Returns a piece that adjoins the last piece of the path. If no piece does, returns a piece to which no other piece
   // leads, or else any piece.
   [[nodiscard]] std::size_t next_piece() const {
     const auto start = [this](std::size_t piece) { return points_[pieces_[piece].first]; };

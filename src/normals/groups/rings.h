@@ -58,7 +58,7 @@ class Rings {
   [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
   [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }
   [[nodiscard]] std::size_t row_count() const noexcept { return first_row_.back(); }
-  /// Returns the elements with more points than the limit, in ascending order. Their paths add nothing.
+  /// Returns the elements with more points than most_points, in ascending order. Their paths add nothing.
   [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (indices_.capacity() + left_out_.capacity()) * sizeof(std::uint32_t) +
@@ -84,7 +84,7 @@ struct RingsOfGroups {
 inline constexpr std::size_t kMostPathPoints = 64;
 
 /// Returns the paths of up to kMostPathPoints points around the elements of groups. The groups and their copies keep
-/// the paths. These take 4 bytes for each point of the longest of sixteen paths, which is 33 bytes per vertex of a
+/// the paths. The paths take 4 bytes for each point of the longest of sixteen paths, which is 33 bytes per vertex of a
 /// grid. Any number of threads may call this at the same time. Throws std::bad_alloc.
 [[nodiscard]] const Rings& rings_around(const Topology& topology, const NormalGroups& groups);
 

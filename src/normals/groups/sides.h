@@ -58,7 +58,7 @@ struct SideEdge {
                                                      std::span<const std::pair<std::uint32_t, std::uint32_t>> apart);
 
 /// Splits points at which vertices of both sides of a sheet were welded. A vertex that belongs to both sides is not
-/// split. O(F), and O(F log F) if sheets may have two sides.
+/// split. O(F) for F faces, and O(F log F) if sheets may have two sides.
 void keep_sides_apart(const Topology& topology, Points& points);
 
 /// Splits sets of corners that have corners of both sides of a sheet. A set is named by any of its corners. After the

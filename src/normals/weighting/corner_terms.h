@@ -28,8 +28,8 @@ struct CornerVertices {
   return {face[i], face[i + 1 == face.size() ? 0 : i + 1], face[i == 0 ? face.size() - 1 : i - 1]};
 }
 
-/// An edge between two vertices at t, and the size of the terms from which it is computed. Its error is a few units
-/// roundoff of that size.
+/// An edge between two vertices at t, and the size of the terms from which it is computed. The error of the edge is a
+/// few times kUnitRoundoff of that size.
 struct MovingEdge {
   Vec3d vector;
   double size;

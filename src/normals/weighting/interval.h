@@ -62,15 +62,16 @@ struct Interval {
   return Interval::outwards(std::sqrt(a.low), std::sqrt(a.high));
 }
 
-/// Returns an interval that contains x^2 for all x in a. It has no negative numbers.
+/// Returns an interval that contains x^2 for all x in a. The interval has no negative numbers.
 [[nodiscard]] inline Interval square(const Interval& a) noexcept {
   const Interval product = a * a;
   return {std::max(product.low, 0.0), product.high};
 }
 
 /// Returns an interval that contains the angles, in radians, of all vectors whose components are in the intervals x and
-/// y, and whose y is not negative. It lies around the angle of the point in the middle, with the largest possible
-/// difference on both sides. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the true value.
+/// y, and whose y is not negative. The interval lies around the angle of the point in the middle, with the largest
+/// possible difference on both sides. The arc tangent of core/portable_math.h is assumed to be within 16 eps of the
+/// true value.
 [[nodiscard]] inline Interval angle_of(const Interval& y, const Interval& x) noexcept {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);

@@ -18,7 +18,7 @@ namespace chronormal::inline internal {
 /// term is the remainder.
 inline constexpr std::size_t kTerms = 6, kDegree = kTerms - 2;
 
-/// Returns an upper bound of the length of all vectors whose components are in these intervals.
+/// Returns an upper bound of the length of all vectors whose components are in the intervals x, y and z.
 [[nodiscard]] inline double largest_length(const Interval& x, const Interval& y, const Interval& z) noexcept {
   return (1 + 0x1p-50) * length(Vec3d{x.magnitude(), y.magnitude(), z.magnitude()});
 }

@@ -12,8 +12,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes weighted_normals_at() of weighting.h for a range of elements. It is for callers that ask for one range after
-/// the other, since SharedFaces keeps the results for large faces.
+/// Writes the results of weighted_normals_at() of weighting.h for a range of elements. This function is for callers
+/// that ask for one range after the other, since SharedFaces keeps the results for large faces.
 void weighted_normals_at(const SharedFaces& shared, const NormalGroups& groups, Weighting weighting, const LocalTime& t,
                          std::span<const Vec3d> of_faces, IndexRange elements, std::span<Vec3d> result) noexcept;
 

@@ -138,8 +138,8 @@ struct CoarseAngle {
   double middle, radius;
 };
 
-// Returns the angle between two edges over all of centre + around, for pieces in which it is not smooth. Near 0 and
-// near pi the angle is computed from its tangent.
+// Returns the angle between two edges over all of centre + around, for pieces of time in which the angle is not smooth.
+// Near 0 and near pi the angle is computed from its tangent.
 CoarseAngle coarse_angle(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = shifted(cross_product<3>(e, f), around);
   const Interval x = shifted(dot_product<3>(e, f), around)[0];

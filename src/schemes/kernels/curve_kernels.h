@@ -69,8 +69,8 @@ void evaluate_curves(Formula formula, const CoefficientBlocks& curves, const Sha
 /// blocks like the coefficients. Precondition: the formula is a sum of 2, 3 or 4 vectors, or an arc at uniform speed.
 void advance_curves(Formula formula, const CoefficientBlocks& curves, float* state, VectorView<float> result) noexcept;
 
-/// Return the number of operations for one element with these coefficients. They run the same code as an evaluation,
-/// with a scalar that counts.
+/// Return the number of operations for one element with the given coefficients. The functions run the same code as an
+/// evaluation, with a scalar that counts.
 [[nodiscard]] OperationCounts count_evaluation(Formula formula, std::span<const float> coefficients,
                                                const SharedValues& shared);
 [[nodiscard]] OperationCounts count_advance(Formula formula, std::span<const float> coefficients,

@@ -56,7 +56,7 @@ HWY_INLINE Real angle_of_chord(Real square) {
   return Real(2.0) * sqrt(z) * series;
 }
 
-// A search with one element in each lane.
+// The search for the best arc of each element, with one element in each lane.
 struct Search {
   Real3 u0, pole, bisector;
   Real cosine, tangent;  // the cosine and the tangent of half the angle between the ends

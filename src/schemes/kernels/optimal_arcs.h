@@ -18,9 +18,9 @@
 
 namespace chronormal::inline internal {
 
-/// Writes phi of eq. 6 for each element, and NaN for elements that are left to the other search. The mean error of the
-/// arc, as ExactSamples (mean_error.h) defines it, is within 0.01 percent of the least. Results have the same bits on
-/// every instruction set. Precondition: normals and phis have the same size.
+/// Writes phi of eq. 6 for each element, and NaN for elements that are left to the slower search over the whole family
+/// of arcs. The mean error of the arc, as ExactSamples (mean_error.h) defines it, is within 0.01 percent of the least.
+/// Results have the same bits on every instruction set. Precondition: normals and phis have the same size.
 void find_optimal_arcs(std::span<const ControlNormals> normals, std::span<double> phis) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -48,7 +48,7 @@ struct Lanes {
   friend HWY_INLINE Lanes sqrt(const Lanes& a) { return {hn::Sqrt(a.low), hn::Sqrt(a.high)}; }
 };
 
-// The elements for which a condition holds. For Counting, a bool takes its place.
+// The elements for which a condition holds. For the scalar Counting, a bool takes the place of this mask.
 struct LanesMask {
   hn::Mask<FloatTag> low, high;
 };
@@ -70,7 +70,7 @@ HWY_INLINE Lanes select(const LanesMask& mask, const Lanes& a, const Lanes& b) {
 HWY_INLINE bool any(const LanesMask& mask) { return !hn::AllFalse(kFloats, hn::Or(mask.low, mask.high)); }
 HWY_INLINE bool any(bool mask) { return mask; }
 
-// The functions below are those that simd/trigonometry-inl.h needs, and it documents what they must do.
+// The functions of Lanes that simd/trigonometry-inl.h needs. That file documents what they must do.
 HWY_INLINE Lanes absolute(const Lanes& a) { return {hn::Abs(a.low), hn::Abs(a.high)}; }
 HWY_INLINE Lanes larger_of(const Lanes& a, const Lanes& b) { return {hn::Max(a.low, b.low), hn::Max(a.high, b.high)}; }
 HWY_INLINE Lanes smaller_of(const Lanes& a, const Lanes& b) { return {hn::Min(a.low, b.low), hn::Min(a.high, b.high)}; }
@@ -124,7 +124,7 @@ HWY_INLINE Triple<Lanes> select(const LanesMask& mask, const Triple<Lanes>& a, c
   return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
-// Reads the coefficients of the current elements, one value per plane.
+// A reader of the coefficients of the current elements, one value per plane.
 template <class S>
 struct Coefficients {
   const S* first;
@@ -133,7 +133,7 @@ struct Coefficients {
   HWY_INLINE S operator[](std::size_t plane) const { return first[plane]; }
 };
 
-// Reads and writes the values that change from step to step while a curve is played, one value per plane.
+// A reader and writer of the values that change from step to step while a curve is played, one value per plane.
 template <class S>
 struct State {
   S* first;

@@ -31,8 +31,8 @@
 #define CHRONORMAL_NORMALS_KERNELS_GROUP_TILES_ONCE
 namespace chronormal::inline internal {
 
-// A relative error, compared with the magnitude of a sum over a path of up to kMostPathPoints points. The rounding
-// error of the sum is below half of it.
+// More than twice the rounding error of a sum over a path of up to kMostPathPoints points, relative to the magnitude of
+// the sum.
 inline constexpr float kSumErrorAbove = 0x1p-43f;
 
 // The inputs of the kernels below.
@@ -83,7 +83,7 @@ HWY_INLINE void LoadRing(const Segment& segment, const std::uint32_t* indices, s
   }
 }
 
-// Prefetches the points of the rows that come kRowsAhead rows after these.
+// Prefetches the points of the `rows` rows that come kRowsAhead rows after the first row of `indices`.
 HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std::uint32_t* indices, std::size_t rows) {
   for (std::size_t i = 0; i < kTile * rows; ++i) {
     const std::size_t vertex = indices[kTile * kRowsAhead + i];
@@ -149,8 +149,8 @@ HWY_INLINE void SumRing(const PointColumns* points, std::size_t rows, ExactTile&
   }
 }
 
-// Returns an upper bound of the sum of the absolute products in any component, where each factor may be from either end
-// of the segment.
+// Returns an upper bound of the sum of the absolute products in any component of a sum over a path, where each factor
+// may be from either end of the segment.
 HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, std::size_t lane) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;
@@ -173,8 +173,8 @@ HWY_INLINE Floats MagnitudeAbove(const PointColumns* points, std::size_t rows, s
   return sum;
 }
 
-// Stores bounds of the errors of a sum over a path, for half of the lanes. The errors are 4 u of every product, and u
-// for each addition. For safety, the bound is twice the sum of these errors.
+// Stores bounds of the errors of a sum over a path, for half of the lanes. With u = 2^-53, the errors are 4 u of every
+// product, and u for each addition. For safety, the bound is twice the sum of these errors.
 HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::size_t lane, double (*errors)[kTile]) {
   const auto at = [=](std::size_t r, std::size_t end) HWY_ATTR {
     const auto& plane = points[r].at + 3 * end;

@@ -16,8 +16,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes tiles of elements from the points on the paths around the elements (groups/rings.h). The first object for
-/// some groups makes these paths, which the groups keep.
+/// A writer of tiles of elements, which it computes from the points on the paths around the elements (groups/rings.h).
+/// The first object for some groups makes these paths, which the groups keep.
 class GroupTiles {
  public:
   /// Prepares to write elements of groups. The groups must outlive the object, belong to the topology of the segment,
@@ -26,7 +26,7 @@ class GroupTiles {
   GroupTiles(const Segment& segment, const NormalGroups& groups, bool fetch);
 
   /// Writes the tiles of a range of elements (see ControlTile). The values are those of group_control_normals(), but
-  /// the terms of a sum are added in another order. They are within 2^-47 of the magnitude of the sum, rounded to
+  /// the terms of a sum are added in another order. The values are within 2^-47 of the magnitude of the sum, rounded to
   /// float32, and zero if they are no larger than that bound. Elements with many faces are computed by
   /// group_control_normals(). Preconditions: elements begins at a multiple of 16, and ends at a multiple of 16 or at
   /// the last element; elements.count > 0; tiles has ceil(elements.count / 16) elements.

@@ -25,13 +25,14 @@ void interpolate_points(VectorView<const float> from, VectorView<const float> to
 
 /// Writes the unit normals of the elements of a range of slices; the first element goes to result[0]. Returns the
 /// number of elements whose normal is outside of the range of float32, and which get (0, 0, 0). If `stream` is true,
-/// and the result is packed and aligned to 64 bytes, it bypasses the caches. Preconditions: slices.count > 0; result
-/// has as many elements as the slices, or up to kRingLanes - 1 fewer.
+/// and the result is packed and aligned to 64 bytes, the result bypasses the caches. Preconditions: slices.count > 0;
+/// result has as many elements as the slices, or up to kRingLanes - 1 fewer.
 std::size_t ring_unit_normals(const RingPoints& points, const RingSlices& all, IndexRange slices,
                               VectorView<float> result, bool stream) noexcept;
 
-/// Writes the unit normals of a range of triangles in the same way. corners has three corners for each of the
-/// face_count faces of the mesh. Preconditions: faces.count > 0; result has faces.count elements.
+/// Writes the unit normals of a range of triangles, as ring_unit_normals() does for the elements of slices. corners has
+/// three corners for each of the face_count faces of the mesh. Preconditions: faces.count > 0; result has faces.count
+/// elements.
 std::size_t triangle_unit_normals(const RingPoints& points, const std::uint32_t* corners, std::size_t face_count,
                                   IndexRange faces, VectorView<float> result, bool stream) noexcept;
 

@@ -270,8 +270,8 @@ HWY_NOINLINE FineNormals FineNormalsAt(const MovingTriangles& triangles, const E
   FineNormals fine;
   fine.n = Joined(lower, upper);
   fine.square = Dot(fine.n, fine.n);
-  // A B is divided by the largest ratio. If the square were multiplied by the ratio instead, the product could be
-  // infinite, and even an infinite A B would count as small enough.
+  // The product A B (see recompute_tiles.h) is divided by its largest allowed ratio to |n|^2. If |n|^2 were multiplied
+  // by this ratio instead, the result could be infinite, and even an infinite A B would count as small enough.
   const auto precise = hn::Le(hn::Mul(product, hn::Set(kFloats, 1 / kMaxThinProduct)), fine.square);
   fine.trusted = hn::And(precise, InRange(hn::Min(fine.square, smaller), fine.square));
   const Floats one = hn::Set(kFloats, 1.0f);
@@ -430,7 +430,7 @@ HWY_INLINE std::size_t GroupNormals(const NormalGroups& groups, IndexRange eleme
       const Lanes4 v = LoadRows(rows + 4 * k);
       const Lanes3 n = {v.x, v.y, v.z};
       const Floats square = Dot(n, n);
-      // An error of 14.56 u |n| leaves 2 u |n| for the rounding to float32.
+      // An error of n of at most 14.56 u |n|, where u = 2^-24, leaves 2 u |n| for the rounding to float32.
       const auto precise = hn::Le(hn::Mul(v.w, v.w), hn::Mul(hn::Set(kFloats, 212.0f), square));
       Write<kLayout>(Normalized(n), i + k, result);
       count = Append(hn::And(precise, InRange(square, square)), i + k, elements.count, count, doubtful);

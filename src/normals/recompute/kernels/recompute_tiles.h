@@ -31,7 +31,8 @@
 
 namespace chronormal::inline internal {
 
-/// The largest A B of a triangle that is not thin, divided by |n|^2. It follows from 2.31 sqrt(40) <= 14.7.
+/// The largest A B / |n|^2 of a triangle that is not thin (see the top of this file). The value follows from 2.31
+/// sqrt(40) <= 14.7.
 inline constexpr float kMostProduct = 40;
 
 /// Triangles as the kernels read them. Positions are either packed, or paired, with both ends of each vertex side by
@@ -52,8 +53,8 @@ struct alignas(16) FaceNormal {
   float x, y, z, error;
 };
 
-/// The largest A B, divided by |n|^2, for which double is precise enough. The remaining error is below kThinError
-/// sqrt(A B), in units of 2^-24.
+/// The largest A B / |n|^2 for which double is precise enough (see the top of this file). The remaining error of n is
+/// below kThinError sqrt(A B), in units of 2^-24.
 inline constexpr float kMaxThinProduct = 0x1p50f, kThinError = 0x1p-24f;
 
 /// The normals of faces in a ring: the normal of face f is normals[f & mask].
@@ -64,9 +65,9 @@ struct NormalWindow {
 };
 
 /// Writes the unit normals of a range of faces. Writes to `doubtful` the places in the range whose normals are not
-/// reliable, and returns their number. If `stream` is true, and the result is packed and aligned to 64 bytes, it
-/// bypasses the caches. Preconditions: faces.count > 0; result has faces.count elements, and doubtful has room for as
-/// many.
+/// reliable, and returns their number. If `stream` is true, and the result is packed and aligned to 64 bytes, the
+/// result bypasses the caches. Preconditions: faces.count > 0; result has faces.count elements, and doubtful has room
+/// for as many.
 std::size_t recompute_unit_normals(const MovingTriangles& triangles, IndexRange faces, const LocalTime& t,
                                    VectorView<float> result, bool stream, std::uint32_t* doubtful) noexcept;
 
