@@ -16,7 +16,8 @@
 namespace chronormal {
 namespace {
 
-// Reads a keyframe on another thread while the caller computes. On systems without threads, nothing is read in advance.
+// A reader of one keyframe on another thread while the caller computes. On systems without threads, nothing is read in
+// advance.
 class ReadAhead {
  public:
 #ifndef __EMSCRIPTEN__

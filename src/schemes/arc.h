@@ -82,8 +82,8 @@ struct CircleFamily {
   [[nodiscard]] Arc great_arc() const { return arc(0); }
 };
 
-/// The number of planes of the state with which an arc at uniform speed is played. They are the cosine and sine of the
-/// current angle, and the cosine and sine of the angle of one step.
+/// The number of planes of the state with which an arc at uniform speed is played. The planes are the cosine and sine
+/// of the current angle, and the cosine and sine of the angle of one step.
 inline constexpr std::size_t kTurnPlanes = 4;
 
 inline void put_turn(double* state, double angle, double step_angle) {

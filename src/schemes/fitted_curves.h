@@ -12,7 +12,7 @@
 
 namespace chronormal::inline internal {
 
-/// The coefficients of one element in a block, by the number of the plane.
+/// The coefficients of one element in a block, indexed by plane.
 struct ElementCoefficients {
   const float* first;
 

@@ -21,7 +21,8 @@ constexpr double kMaxShrinkage = 4;
 // and of their differences are normal (not subnormal) numbers of float32.
 constexpr double kSmallestPlayed = 0x1p-50, kLargestPlayed = 0x1p50;
 
-// Returns true if the drift of an element stays within the stated bound when it is played.
+// Returns true if the drift of an element that is played stays within the bound that chronormal/schemes/scheme.h states
+// (kDefaultAnchorInterval).
 bool can_be_played(const ControlNormals& c) {
   const double largest = largest_component(c);
   if (!(largest > kSmallestPlayed && largest < kLargestPlayed)) return false;

@@ -64,7 +64,7 @@ HWY_INLINE void Prefetch([[maybe_unused]] const T* place) {
 #endif
 }
 
-// Completes the stores of Stream(), so that other threads see what it has stored.
+// Completes the stores of Stream(), so that other threads see the stored values.
 HWY_INLINE void FlushStream() {
 #ifdef CHRONORMAL_PLAIN_SSE2
   _mm_sfence();

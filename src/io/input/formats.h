@@ -2,7 +2,7 @@
 /// write it. Private to io.
 ///
 /// To add a format, add an entry to the table. tests/io/input/formats_test.cpp and motion_readers_test.cpp go through
-/// the table. They fail for a reader that has no truncation, boundary and mutation tests, or no fuzz target
+/// the table. Both tests fail for a reader that has no truncation, boundary and mutation tests, or no fuzz target
 /// fuzz/NAME_fuzz.cpp.
 #ifndef CHRONORMAL_IO_INPUT_FORMATS_H_
 #define CHRONORMAL_IO_INPUT_FORMATS_H_

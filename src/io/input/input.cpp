@@ -58,7 +58,7 @@ struct Opened {
   ReadMotion read;            // motion and other data; for a document, empty until they are requested
 };
 
-// Return the name of a file, or one name for several files, for messages and tables.
+// Return the name of a file, its name without folders, or one name for several files, for messages and tables.
 std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {

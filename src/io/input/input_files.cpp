@@ -192,7 +192,7 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
   read.bytes_read += bytes.size();
   const std::size_t k = read.motion.keyframes.size();
   std::vector<std::vector<float>>& normals = read.normals.of_keyframes;
-  // If the normals of all keyframes are wanted, those of this keyframe are read only if every earlier keyframe had
+  // If the normals of all keyframes are wanted, the normals of keyframe k are read only if every earlier keyframe had
   // normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool wanted = k == 0 ? options.shading != KeepShading::kNone : of_all && normals.size() == k;
@@ -210,7 +210,8 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       const bool is_point = std::equal(around.begin() + 3, around.end(), around.begin());
       bool has_more_digits = !is_point && shifted.value().has_more_digits;
       for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits && !is_point; ++i) {
-        // Errors in these files are ignored here. They are reported when the files are read as keyframes.
+        // Errors in the other files of a sequence are ignored here. They are reported when the files are read as
+        // keyframes.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
         const Result<MeshFrame> other =

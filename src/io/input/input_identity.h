@@ -17,7 +17,8 @@ struct FileIdentity {
   std::uint64_t size = 0;    ///< size in bytes
   std::int64_t changed = 0;  ///< time of the last change, in nanoseconds since 1970
 
-  /// Returns size and time for messages and journals: "1200 bytes, changed at 1795430000.123456789 s".
+  /// Returns the size and the modification time of the file as text for messages and journals: "1200 bytes, changed at
+  /// 1795430000.123456789 s".
   [[nodiscard]] std::string text() const;
 };
 

@@ -1,4 +1,4 @@
-/// Reads the numbers in the names of files. They give the order and the times of files if nothing else gives them.
+/// Reads the numbers in the names of files. The numbers give the order and the times of the files if nothing else does.
 /// Private to io.
 ///
 /// A number has digits and may have a fraction: t_0.05. A minus before the digits is a sign at the start of a name,

@@ -65,8 +65,8 @@ Status write_keyframes(MotionStream& stream, const Format& format, const std::st
   for (const std::string& name : names.value()) {
     if (Status status = check_output(name, force); !status) return status;
   }
-  // No file gets its final name before all keyframes have been read, because the keyframes may come from files with
-  // these names.
+  // No file gets its final name before all keyframes have been read, because the keyframes may be read from existing
+  // files with the same names.
   std::vector<OutputFile> files;
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     if (Status status = stream.hold(k, k); !status) return status;

@@ -1,5 +1,5 @@
-/// A new file in the folder of the file that it is to become. It is removed when its object or the process ends, unless
-/// it was renamed. Private to io.
+/// A temporary file in the folder of the file that it is to become. The temporary file is removed when its object or
+/// the process ends, unless it was renamed. Private to io.
 ///
 /// All temporary files are entered into one list before they are created, so that remove_temporaries()
 /// (chronormal/io/output.h) misses none. Their names are random, so no other file has such a name, even if the file is

@@ -344,8 +344,8 @@ bool flush_file(int descriptor) {
 // Does nothing, because MOVEFILE_WRITE_THROUGH has already written the rename to the disk.
 void flush_folder_of(const std::string& /*path*/) {}
 
-// A lock on Windows also keeps other processes from reading the locked bytes. A byte far beyond the end of any file is
-// therefore locked.
+// Locks a byte far beyond the end of any file, because a lock on Windows also keeps other processes from reading the
+// locked bytes.
 bool lock_file(int descriptor) noexcept {
   OVERLAPPED place{};
   place.Offset = 0xFFFFFFFE;
@@ -373,8 +373,8 @@ bool rename_file(const char* from, const char* to, bool replace) noexcept {
   return false;
 }
 
-// Windows cannot replace a file while it is mapped, but a bake may write over its own input. Only files that are too
-// large to be read into memory are therefore mapped.
+// Maps only files that are too large to be read into memory. Windows cannot replace a file while it is mapped, but a
+// bake may write over its own input.
 const char* map_file(int descriptor, std::size_t size) noexcept {
   constexpr std::size_t kSmallest = std::size_t{1} << 30;
   if (size < kSmallest) return nullptr;
@@ -387,7 +387,7 @@ const char* map_file(int descriptor, std::size_t size) noexcept {
 
 void unmap(const char* bytes, std::size_t /*size*/) noexcept { (void)::UnmapViewOfFile(bytes); }
 
-// VirtualUnlock() on pages that were never locked removes them from the working set, which releases their memory.
+// Releases the memory by VirtualUnlock(), which removes pages that were never locked from the working set.
 void release_mapping(const char* bytes, std::size_t size) noexcept {
   (void)::VirtualUnlock(const_cast<char*>(bytes), size);
 }
@@ -457,7 +457,8 @@ std::optional<std::string> file_of_program() {
 
 bool is_terminal(int stream) noexcept { return is_console(stream); }
 
-// Asks the console to interpret escape sequences, which consoles before Windows 10 cannot do.
+// Asks the console to interpret escape sequences, and returns true if it will. Consoles before Windows 10 cannot do
+// this.
 bool is_clever_terminal(int stream) noexcept {
   const HANDLE handle = handle_of(stream);
   DWORD mode = 0;
@@ -495,8 +496,8 @@ extern "C" void end_by_abort(int /*signal*/) { watched.by_abort(); }
 
 }  // namespace
 
-// The C library of Windows gives no descriptor to a closed stream, and opens no other file under the number of this
-// stream.
+// Opens NUL for each closed standard stream. The C library of Windows gives no descriptor to a closed stream, and opens
+// no other file under the number of this stream.
 void prepare_standard_streams() noexcept {
   for (int stream = kStandardInput; stream <= kStandardError; ++stream) {
     if (::_get_osfhandle(stream) < 0) {

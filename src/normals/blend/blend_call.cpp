@@ -27,8 +27,8 @@ constexpr double kSmallestSquare = 0x1p-900, kLargestSquare = 0x1p900;
 // The largest error in radians of a normal in double, before the normal is rounded to float32.
 constexpr double kLargestAngle = 8e-7;
 constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLargestAngle};
-// The limits for terms in float32. They guarantee 1e-6 rad if the bound of the terms' error is at most 14 times 2^-24
-// |n(w)|, that is, 14 roundings. The rounding of the result is then added.
+// The limits for terms in float32. A normal within these limits has an error of at most 1e-6 rad: the error of the
+// terms is at most 14 times 2^-24 |n(w)|, and the rounding of the result to float32 is added.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
 // The costs of the steps of an evaluation, in nanoseconds, by which the path is chosen. They were fitted to a grid of
@@ -339,8 +339,9 @@ class Call {
       noise += face.noise;
       ++count;
     });
-    // Each addition has an error of at most u = 2^-53 times the sum of the absolute normals. This sum is at most twice
-    // the products that make_face() has counted 13 times.
+    // Each of the `count` additions has an error of at most u = 2^-53 times the sum of the absolute normals. This sum
+    // is at most twice the products in make_face(), and the noise of a face is at least 13 u times its products. An
+    // addition thus adds at most 2/13 of the noise.
     noise *= 1 + count / 6;
     const double square = dot(n, n);
     if (square >= kSmallestSquare && square <= kLargestSquare && square > noise * noise) {

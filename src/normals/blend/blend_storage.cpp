@@ -21,8 +21,8 @@ constexpr std::size_t kShareOfWork = 8;
 constexpr std::size_t kTargetBytes = sizeof(std::uint32_t) + 2 * kBlendLanes * sizeof(float);
 constexpr std::size_t kPairBytes = sizeof(std::uint32_t) + kBlendLanes * sizeof(float);
 
-// The factor by which error bounds are enlarged, so that they hold despite their own rounding to float32. The smallest
-// bound is for values near the end of the range of float32.
+// The factor by which error bounds are enlarged, so that they hold despite their own rounding to float32.
+// kSmallestBound is added to each bound, for values near the lower end of the range of float32.
 constexpr double kMargin = 1 + 0x1p-20, kSmallestBound = 0x1p-120;
 
 std::size_t bytes_of(const StoredTerm& term) {

@@ -28,8 +28,9 @@ namespace {
 
 // The number of elements that a thread takes at a time. Fewer elements are not shared between threads.
 constexpr std::size_t kPiece = 8192;
-// The number of elements that are evaluated at all requested t before the next elements are evaluated. It is small
-// enough for the nearest cache. If results bypass the caches, it is larger, so that results are written in long runs.
+// The number of elements that are evaluated at all requested t before the next elements are evaluated. kManyTimes
+// elements fit into the nearest cache. kManyTimesLarge is for results that bypass the caches, which should be written
+// in long runs.
 constexpr std::size_t kManyTimes = 1024, kManyTimesLarge = 8192;
 
 std::size_t many_times_step(MemoryAccess access) { return access.stream ? kManyTimesLarge : kManyTimes; }

@@ -22,7 +22,7 @@ constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 // The error, in radians, that rounding positions to float32 may cause in the angle at an edge.
 constexpr double kCreaseRounding = 1e-6;
 
-// The largest number of faces at a smooth edge. Edges with more faces are hard. This bounds the number of pairs of
+// The largest number of faces at a smooth edge. Edges with more faces are hard. The limit bounds the number of pairs of
 // faces that are compared.
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 

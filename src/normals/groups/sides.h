@@ -1,4 +1,4 @@
-/// Finds the two sides of a sheet, which consists of faces that are back to back. It serves normals and workflow.
+/// Finds the two sides of a sheet, which consists of faces that are back to back. Used by normals and workflow.
 ///
 /// A cape, a flag or a card of hair is often modelled twice, once for each side. Every face then has a *back*: a face
 /// with the same points in reversed order. The normals of the two cancel, so a point that belongs to both sides would

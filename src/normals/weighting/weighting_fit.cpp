@@ -201,7 +201,7 @@ TermSeries term_series(const Segment& segment, const IntervalNormals& of_face, c
           slack};
 }
 
-// The data of one element that its bounds need.
+// The data from which the bounds of one element are computed.
 struct Element {
   const Segment* segment;
   std::span<const IntervalNormals> of_faces;

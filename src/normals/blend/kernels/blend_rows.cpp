@@ -48,8 +48,8 @@ HWY_INLINE DoubleRow LoadLastThree(const float* from) {
   return LoadDoubleRow(row);
 }
 
-// Returns a row that multiplies x, y and z by a factor and the fourth component by 0. It is for rows whose fourth float
-// belongs to the next vector in memory.
+// Returns a row that multiplies x, y and z by a factor and the fourth component by 0. The result is for rows whose
+// fourth float belongs to the next vector in memory.
 HWY_INLINE DoubleRow ThreeTimes(double factor) {
   const double row[kBlendLanes] = {factor, factor, factor, 0};
   return LoadDoubleRow(row);

@@ -1,4 +1,4 @@
-/// Does the proofs of certificate.h for sixteen elements at a time. They are for elements that the quick test in
+/// Does the proofs of certificate.h for sixteen elements at a time. The proofs are for elements that the quick test in
 /// float32 did not settle.
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_CERTIFY_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_CERTIFY_H_

@@ -53,8 +53,8 @@ struct TileSummary {
 
 /// Tests the elements of tiles with a few operations in float32. An element passes if all three control normals are
 /// within about 70 degrees of n0 + 2 m + n1, or if eq. 11 of docs/theory.md holds for the curve, its halves or its
-/// quarters. It must also be well above the rounding errors of its products and within the range of float32. Elements
-/// that do not pass are uncertain.
+/// quarters. The element must also be well above the rounding errors of its products and within the range of float32.
+/// Elements that do not pass are uncertain.
 void summarize_tiles(std::span<const ControlTile> tiles, const PrecisionLimits& limits,
                      std::span<TileSummary> summaries) noexcept;
 

@@ -198,7 +198,7 @@ HWY_INLINE void StoreErrors(const PointColumns* points, std::size_t rows, std::s
   for (; r + 1 < rows; r += 2)
     add(distance(r, 0, 0), distance(r, 0, 1), distance(r + 1, r - 1, 0), distance(r + 1, r - 1, 1));
   if (r < rows) add(distance(r - 1, 0, 0), distance(r - 1, 0, 1), distance(r, 0, 0), distance(r, 0, 1));
-  // Each component has two of these products for each pair of points. m is half of a sum of such products.
+  // Each component has two products e d for each pair of points. m is half of a sum of such products.
   const std::size_t most_products = rows / 2 + 1;
   const Doubles share = hn::Set(kDoubles, 4 * kUnitRoundoff * static_cast<double>(most_products + 4));
   hn::Store(hn::Mul(share, n0), kDoubles, errors[0] + lane);

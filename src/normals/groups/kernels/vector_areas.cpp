@@ -22,7 +22,7 @@ HWY_INLINE V WithoutRounding(V value, V error) {
   return hn::IfThenElseZero(hn::Gt(hn::Abs(value), error), value);
 }
 
-// Returns one component of e x f from its two products. It is 0 if it may be only rounding error.
+// Returns one component of e x f from its two products. Returns 0 if the component may be only rounding error.
 HWY_INLINE Doubles ComponentOfArea(Doubles product, Doubles other) {
   const Doubles magnitude = hn::Add(hn::Abs(product), hn::Abs(other));
   return WithoutRounding(hn::Sub(product, other), hn::Mul(hn::Set(kDoubles, 8 * kUnitRoundoff), magnitude));
