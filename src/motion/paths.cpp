@@ -79,7 +79,8 @@ struct BendSums {
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
-  // Times may be uneven. So the middle keyframe is compared with the point of the straight line at its time.
+  // Times may be uneven. So the middle keyframe is compared with the point at its own time on the straight line between
+  // its two neighbours.
   const double part = (middle.time - from.time) / (to.time - from.time);
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {

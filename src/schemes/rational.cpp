@@ -10,8 +10,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The length of an end that vanishes, if the longest control normal has length 1. It is below the rounding of float32,
-// but its square is well above zero.
+// The length that a control normal at an end gets if it vanishes, where the longest control normal has length 1. This
+// length is below the rounding of float32, but its square is well above zero.
 constexpr double kVanishingLength = 1e-7;
 
 class Rational {

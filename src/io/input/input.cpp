@@ -510,7 +510,7 @@ struct Input::State {
   std::size_t most_pieces = kMostPieces, kept_bytes = 0;
   std::optional<CutPath> cut, cut_of_skins;
   std::optional<Error> cut_error;
-  // The next members belong to a document, and are set when they are first requested.
+  // The next members are only used for a glTF document, and are set when they are first requested.
   bool has_motion = true, has_normals = true;
   std::vector<GltfPart> parts;
   double curve_error = 0;

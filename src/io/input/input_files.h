@@ -42,7 +42,7 @@ using FolderLister = std::function<Result<std::vector<std::string>>(const std::s
 
 /// A function that sorts the files of the folder or the pattern `input`.
 using FileSorter = std::function<Status(const std::string& input, std::vector<std::string>& files)>;
-/// Sorts the files by stands_before().
+/// Sorts `files` by their paths, as stands_before() compares paths.
 [[nodiscard]] Status sort_by_number(const std::string& input, std::vector<std::string>& files);
 
 /// Returns the files that the options name, in order, as io/input.h describes. list_folder() lists folders, and sort()

@@ -39,8 +39,8 @@ std::string name_beside(const std::string& target) {
   return utf8_of(path_of(target).parent_path() / (".chronormal-" + random_digits() + ".tmp"));
 }
 
-// Puts a name into the first free place of the list, and returns this place. Returns kMostFiles if the list is full;
-// the file is then written without an entry.
+// Puts a name into the first free place of the list of temporary files, and returns this place. Returns kMostFiles if
+// the list is full; the file is then written without an entry.
 std::size_t enter(char* name) noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
     char* nobody = nullptr;
@@ -49,8 +49,8 @@ std::size_t enter(char* name) noexcept {
   return kMostFiles;
 }
 
-// Copies a name onto the heap, because the list needs names that outlive their objects. Returns nullptr and sets errno
-// if there is no memory.
+// Copies a name onto the heap, because the list of temporary files needs names that outlive their objects. Returns
+// nullptr and sets errno if there is no memory.
 char* copy_of(const std::string& name) noexcept {
   void* const copy = std::malloc(name.size() + 1);
   return copy == nullptr ? nullptr : static_cast<char*>(std::memcpy(copy, name.c_str(), name.size() + 1));
@@ -110,8 +110,8 @@ bool TemporaryFile::rename_to(const std::string& target, bool replace) noexcept 
   return renamed;
 }
 
-// Takes the name out of the list and frees it. If a signal handler has taken the name already, the process is about to
-// end and the handler may still read the name. The name is then not freed.
+// Takes the name of the file out of the list of temporary files, and frees the name. If a signal handler has taken the
+// name already, the process is about to end and the handler may still read the name. The name is then not freed.
 void TemporaryFile::forget() noexcept {
   const int system_error = errno;
   char* own = name_;

@@ -47,8 +47,8 @@ class TemporaryFile {
   /// Closes the descriptor. Returns false and sets errno if the system could not write bytes that it still held.
   [[nodiscard]] bool close() noexcept { return file_.close(); }
 
-  /// Renames the file to `target`. If `replace` is true, it takes the place of an existing file. Returns false and sets
-  /// errno on failure: EEXIST if a file of that name exists and must not be replaced.
+  /// Renames the file to `target`. If `replace` is true, the file takes the place of an existing file. Returns false
+  /// and sets errno on failure: EEXIST if a file of that name exists and must not be replaced.
   [[nodiscard]] bool rename_to(const std::string& target, bool replace) noexcept;
 
   /// Leaves the file to the other process that has opened it (of_peer()) and has renamed it. The destructor does not

@@ -43,7 +43,7 @@ constexpr double kPathPoint = 1.8;        // adding a point of the path around a
 constexpr double kWrittenElement = 5;     // writing the unit normal of an element from the sum over its path
 constexpr double kWholeInFloat32 = 0.4;   // a factor: the time of the whole mesh in float32 divided by that in double
 
-// Returns the part of an ascending list of indices that is inside a range, as places in the list.
+// Returns the part of an ascending list of indices that is inside a range, as a range of places in the list.
 IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
   if (list.empty() || list.back() < range.first || list.front() >= range.end()) return {};
   const auto place = [list](std::size_t index) {

@@ -33,7 +33,7 @@ std::size_t bytes_of_lists(const StoredTarget& target) {
   return target.elements.bytes() + target.pairs.capacity() * sizeof(StoredPair);
 }
 
-// Returns a power of two by which the largest value can be divided to be below 1.
+// Returns a power of two by which the largest value can be divided so that the quotient is below 1.
 double scale_of(double largest) {
   int exponent = 0;
   std::frexp(largest, &exponent);

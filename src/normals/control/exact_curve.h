@@ -62,7 +62,8 @@ class ExactCurve {
   using Coefficient = WideInteger<kDigits>;
   using CoefficientVector = std::array<Coefficient, 3>;
 
-  /// Make the curve of a polygon, given by its vertices, and the curve of several faces, which is the sum of theirs.
+  /// Make the curve of a polygon, given by its vertices, and the curve of several faces, which is the sum of their
+  /// curves.
   [[nodiscard]] static ExactCurve of_polygon(const Segment& segment, std::span<const std::uint32_t> vertices) noexcept;
   [[nodiscard]] static ExactCurve of_faces(const Segment& segment, std::span<const std::uint32_t> faces) noexcept;
 
@@ -84,14 +85,15 @@ class ExactCurve {
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// Returns n(t) / |n(t)|. The cases of Direction are decided exactly. t must be the result of local_time().
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;
-  /// Returns n(t) without any rounding, as settled integers in units of 2^(2 base() - 298 - 2 t.scale).
+  /// Returns n(t) without any rounding, as integers that are settled (WideInteger::settle()), in units of 2^(2 base() -
+  /// 298 - 2 t.scale).
   static constexpr std::size_t kValueDigits = 50;  // the two factors t have 2 (53 + 200) bits together
   using Value = std::array<WideInteger<kValueDigits>, 3>;
   [[nodiscard]] Value integers_at(const UnitFraction& t) const noexcept;
   /// Returns the exponent of the unit of coordinates: all coordinates are multiples of 2^(base - 149).
   [[nodiscard]] unsigned base() const noexcept { return base_; }
-  /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, as settled integers with a common unit that is a
-  /// power of two.
+  /// Returns the coefficients c0, c1, c2 of n(t) = c0 + c1 t + c2 t^2, as integers that are settled
+  /// (WideInteger::settle()), with a common unit that is a power of two.
   [[nodiscard]] std::array<CoefficientVector, 3> in_powers() const noexcept;
 
  private:

@@ -48,7 +48,8 @@ using LoopOf = std::function<void(std::uint32_t i, std::vector<std::uint32_t>& l
 /// A node is a vertex, or a set of corners, that is not divided when the point is split into sides.
 struct SideEdge {
   std::uint32_t node = 0, neighbour = 0;
-  /// True if the face passes the edge from the point to the neighbour, false if it passes it towards the point.
+  /// True if the face goes along the edge from the point to the neighbour, false if the face goes from the neighbour to
+  /// the point.
   bool leaves = false;
 };
 

@@ -76,7 +76,7 @@ struct Interval {
   if (!y.finite() || !x.finite()) return Interval::whole();
   const double my = std::fmax(0.5 * (y.low + y.high), 0.0), mx = 0.5 * (x.low + x.high);
   const double radius = (y.high - y.low) + (x.high - x.low);
-  // The distance between the origin and any point of the intervals is at least this.
+  // The distance between the origin and any point of the intervals is at least `distance`.
   const double distance = 0.999 * portable::hypot(mx, my) - radius;
   if (!(distance > 0)) return Interval::whole();
   constexpr double kLibrary = 16 * std::numeric_limits<double>::epsilon();

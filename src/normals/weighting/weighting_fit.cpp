@@ -297,8 +297,9 @@ struct Element {
   }
 };
 
-// Returns true if all corners belong to one face and the sum certainly has the direction of this face. The weights of a
-// triangle vanish only with its area. For other polygons, the result is true only for uniform weights.
+// Returns true if all corners belong to one face and the sum of the terms of the corners certainly has the direction of
+// this face. The weights of a triangle vanish only with its area. For other polygons, the result is true only for
+// uniform weights.
 bool is_direction_of_one_face(const Segment& segment, std::span<const std::uint32_t> faces, Weighting weighting) {
   if (faces.empty()) return false;
   for (const std::uint32_t face : faces) {

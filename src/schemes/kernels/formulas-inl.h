@@ -141,8 +141,8 @@ struct CircleArc {
   }
 };
 
-// An arc of any circle that has turned by a given share of its angle at t = 1/2. Plane 10 has this share; the others
-// are those of CircleArc.
+// An arc of any circle that has turned by a given share of its angle at t = 1/2. Plane 10 has this share; the other
+// planes are those of CircleArc.
 struct TimedCircleArc {
   static constexpr std::size_t kPlanes = 11;
 

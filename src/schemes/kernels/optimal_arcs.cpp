@@ -176,8 +176,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     open = open & (bracket.gain() > larger_of(Real(kGain) * bracket.at_middle, Real(kNoError)));
     if (!any(open)) break;
     const Real left = bracket.middle - bracket.low, right = bracket.high - bracket.middle;
-    // The next arc is at the lowest point of the parabola through the three arcs. Every third time it is at the golden
-    // section of the longer side instead.
+    // The next arc is at the lowest point of the parabola through the three arcs. Every third time, the next arc is at
+    // the golden section of the longer side of the bracket instead.
     const Real of_low = (bracket.at_low - bracket.at_middle) / left,
                of_high = (bracket.at_high - bracket.at_middle) / right;
     const Real sum = of_low + of_high;
@@ -185,7 +185,7 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
     const RealMask longer_right = right > left;
     const Real longer = select(longer_right, right, zero - left);
     if (i % 3 == 2) move = Real(0.381966011250105) * longer;
-    // The new arc must differ from the middle arc and from the arcs at the ends.
+    // The new arc must differ from the middle arc and from the arcs at the ends of the bracket.
     const Real least = Real(0.05) * smaller_of(left, right);
     move = select(absolute(move) < least, Real(0.05) * longer, move);
     move = larger_of(smaller_of(move, Real(0.95) * right), Real(-0.95) * left);

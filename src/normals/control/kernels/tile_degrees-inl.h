@@ -55,8 +55,8 @@ struct FloatControlLanes {
 };
 
 // Stores control normals in float32, with a bound of the error of their components as magnitude. The degree is 0 if all
-// three control normals are the same, and 2 if the curve bends by more than eight errors. Otherwise the degree is 1,
-// and the bound is increased by a quarter of the bend and some roundings.
+// three control normals are the same, and 2 if the curve bends by more than eight times this bound. Otherwise the
+// degree is 1, and the bound is increased by a quarter of the bend and some roundings.
 HWY_INLINE void StoreInFloat(const FloatControlLanes& c, Floats error, std::size_t lane, ControlTile& tile) {
   std::size_t k = 0;
   for (const Lanes3* v : {&c.n0, &c.m, &c.n1}) {

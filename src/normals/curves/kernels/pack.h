@@ -27,7 +27,8 @@ struct PrecisionLimits {
   /// below 2^-21 of the largest.
   double largest_magnitude = 0x1p21;
 
-  /// The largest tolerance in radians. For larger ones, the difference between a chord and its angle would matter.
+  /// The largest tolerance in radians. For larger tolerances, the difference between a chord and its angle would
+  /// matter.
   static constexpr double kLargestTolerance = 0.2;
   [[nodiscard]] static PrecisionLimits for_tolerance(double radians) noexcept;
   /// Returns the limits for tiles that were computed in float32, where `magnitude` bounds the error of a component.

@@ -93,7 +93,7 @@ HWY_INLINE void FetchRows(const Segment& segment, PointAccess access, const std:
 }
 
 // Returns true if a path contains the last vertex of the mesh. The 16 bytes that are loaded for this vertex would end
-// beyond the array.
+// beyond the array of positions.
 HWY_INLINE bool HasLast(const std::uint32_t* indices, std::size_t rows, std::size_t vertex_count) {
   const hn::RebindToUnsigned<FloatTag> tag;
   const auto last = hn::Set(tag, static_cast<std::uint32_t>(vertex_count - 1));

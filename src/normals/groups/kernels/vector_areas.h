@@ -1,7 +1,8 @@
 /// Computes vector areas of triangles, and their sums over the faces around elements, in lanes of double.
 ///
 /// Points and areas are rows of four doubles: x, y, z and a fourth number, which is ignored in points and 0 in areas.
-/// Both functions give the same bits as without_rounding() of CrossSum and of VectorSum (core/rounding.h).
+/// triangle_areas() and sums_of_areas() give the same bits as without_rounding() of CrossSum and of VectorSum
+/// (core/rounding.h).
 #ifndef CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 #define CHRONORMAL_NORMALS_GROUPS_KERNELS_VECTOR_AREAS_H_
 

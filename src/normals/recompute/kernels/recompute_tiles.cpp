@@ -228,7 +228,8 @@ HWY_INLINE Lanes3 PointsOf(const float* points, const EdgeBlock& block, std::siz
   return {hn::Load(kFloats, planes[0]), hn::Load(kFloats, planes[1]), hn::Load(kFloats, planes[2])};
 }
 
-// The results of exact edges for kLanes faces of a block. recompute_tiles.h explains them under "thin".
+// The normals of kLanes faces of a block, computed from exact edges. recompute_tiles.h explains such normals under
+// "thin".
 struct FineNormals {
   Lanes3 n, unit;
   Floats square;  // n . n in float32
