@@ -39,9 +39,9 @@ struct Ends {
   Vec3d from, to;
 };
 
-/// An edge of a face from its first corner, over a piece. `chord` is the edge between the chords, `beside` is p: the
-/// edge between the curves is chord + s (1 - s) p. `farther` bounds the length of a further part of p, and `rounding`
-/// the rounding error of the edge at either end.
+/// An edge of a face from its first corner, over a piece: `chord` between points on the chords, and chord + s (1 - s) p
+/// between points on the curves. `beside` is the known part of p, `farther` bounds the length of the rest of p, and
+/// `rounding` bounds the rounding error of the edge at either end.
 struct PieceEdge {
   Ends chord, beside;
   double farther = 0, rounding = 0;

@@ -2,8 +2,8 @@
 ///
 /// A rotation about a fixed axis at constant speed takes u0 along a circle,
 ///     u(t) = w + cos(t A) p + sin(t A) q,   w = (axis . u0) axis,  p = u0 - w,  q = axis x u0        (eq. 7)
-/// Quaternion slerp between two frames is such a rotation, so at run time it needs one sine with its cosine and six
-/// multiplications and additions, and no quaternion. On a great circle w = 0, which is vector slerp.
+/// Quaternion slerp between two frames is such a rotation, so at run time an evaluation needs one sine with its cosine
+/// and six multiplications and additions, and no quaternion. On a great circle w = 0, which is vector slerp.
 #ifndef CHRONORMAL_SCHEMES_ARC_H_
 #define CHRONORMAL_SCHEMES_ARC_H_
 

@@ -107,7 +107,7 @@ class BlockedValues {
  public:
   BlockedValues() = default;
 
-  /// Sets the size and all values to zero. Reuses the memory if it is large enough.
+  /// Sets the numbers of planes and elements, and sets all values to zero. Reuses the memory if it is large enough.
   void assign(std::size_t plane_count, std::size_t element_count) {
     plane_count_ = plane_count;
     element_count_ = element_count;

@@ -31,7 +31,8 @@ class ScaledLinear {
  private:
   static double best_scale(const ElementMotion& element, const Vec3d& u0, const Vec3d& u1) {
     if (u0 == u1) return 1;
-    // If s were beyond e^6, the curve would practically jump, and the shorter end would lose digits in float32.
+    // If the scale s of an end were beyond e^6, the curve would practically jump, and the shorter end would lose digits
+    // in float32.
     constexpr double kRange = 6;
     constexpr std::size_t kGrid = 25;
     std::array<double, kGrid + 1> points;

@@ -50,7 +50,7 @@ struct OptimalQuaternion : UniformArc {
     for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
 
     // The grid contains slerp. The frames that are constructed from the edges of a face, and the circle through the
-    // middle normal, are added to it.
+    // middle normal, are added to the grid.
     if (element.is_face()) {
       for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
         if (!frames) continue;

@@ -32,8 +32,8 @@ void restrict_in_place(std::span<T> p, double a, double b) {
 
 class WeightBasis {
  public:
-  /// The largest degree. Lagrange weights of a higher degree are so large that results in float32 are nothing but
-  /// rounding error.
+  /// The largest degree of the weights. Lagrange weights of a higher degree are so large that results in float32 are
+  /// nothing but rounding error.
   static constexpr std::size_t kMostDegree = 27;
   using Coefficients = std::array<double, kMostDegree + 1>;
 

@@ -212,7 +212,7 @@ void note_if_far(const Origin& origin, std::span<const float> first, ReadMotion&
 // in another order, its vertices are in another order.
 std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh, const std::vector<float>& first) {
   constexpr double kTolerance = 1e-4, kFarther = 2, kSpread = 0.15;
-  // The largest number of coordinates that are sorted. Sorting so many takes little time.
+  // The largest number of coordinates that are sorted and compared. Sorting no more than this number takes little time.
   constexpr std::size_t kFewCoordinates = 1 << 20;
   const std::size_t vertices = faces.vertex_count();
   double size = 0, moved = 0, radius_of_mesh = 0, radius = 0;

@@ -64,7 +64,7 @@ Result<FileBytes> open_frame(const InputOptions& options, const std::string& pat
   return error;
 }
 
-// The data of a frame other than the first.
+// The data that read_frame() reads for a frame of a sequence other than the first frame.
 struct ReadFrame {
   Result<std::vector<float>> positions = std::vector<float>();
   std::vector<double> residuals = {};

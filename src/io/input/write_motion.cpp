@@ -19,7 +19,7 @@
 namespace chronormal {
 namespace {
 
-// A file name with a place for a number.
+// A file name that may have a place for the number of a keyframe.
 struct NamePattern {
   std::string before, after;
   bool has_number = false;

@@ -100,8 +100,9 @@ Scan scan_json(std::string_view text) {
   return result;
 }
 
-// A builder of the tree of values while the parser goes through the text. It leaves out the items that JsonItems takes.
-// (The library's own parser with a callback is slow: at the end of every object it goes through all siblings.)
+// A builder of the tree of values while the parser goes through the text. The builder leaves out the items that
+// JsonItems takes. (The library's own parser with a callback is slow: at the end of every object it goes through all
+// siblings.)
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
  public:
   // Makes a builder. In the text, each number that is too large for double was replaced by null. `infinities` has these

@@ -1,5 +1,5 @@
 /// Handles positions far from the origin, which occur in surveys. A float32 has 24 bits, and far from the origin most
-/// of them are equal for all vertices. Readers therefore subtract a common origin in double before they round
+/// of these bits are equal for all vertices. Readers therefore subtract a common origin in double before they round
 /// positions, and writers add it again (Motion::origin). Private to io.
 #ifndef CHRONORMAL_IO_MESH_FAR_ORIGIN_H_
 #define CHRONORMAL_IO_MESH_FAR_ORIGIN_H_

@@ -6,7 +6,7 @@
 ///
 /// Errors     functions that can fail return false, nothing or a closed descriptor, and leave the reason in errno.
 /// Threads    functions on different descriptors may run at the same time; read_at() and write_at() also on the same
-///            one.
+///            descriptor.
 #ifndef CHRONORMAL_IO_SYSTEM_FILES_H_
 #define CHRONORMAL_IO_SYSTEM_FILES_H_
 

@@ -479,8 +479,8 @@ namespace {
 // The functions that the handlers call. They are set before the handlers are installed.
 Endings watched{};
 
-// Ends the process with the exit code that Windows uses. The system runs this function in a thread of its own. Under
-// Wine, the exit code would otherwise be 0.
+// Ends the process with the exit code that Windows uses for Ctrl-C. The system runs this function in a thread of its
+// own. Under Wine, the exit code would otherwise be 0.
 BOOL WINAPI end_by_request(DWORD event) {
   const bool is_key = event == CTRL_C_EVENT || event == CTRL_BREAK_EVENT;
   watched.by_request(is_key ? "interrupted (Ctrl-C)" : "ended, since its console was closed");

@@ -32,7 +32,7 @@ BlendChoice choose_path(const BlendInput& input, std::span<const double> weights
 /// Sets the weights of a pose: chooses the path, and computes the data that all elements share at these weights.
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
-/// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call it.
+/// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call this function.
 /// Preconditions: elements.first is a multiple of 64, and `result` has as many elements as the range.
 BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
                          VectorView<float> result) noexcept;

@@ -12,8 +12,8 @@ namespace chronormal::inline internal {
 /// the smallest double.
 inline constexpr double kSmallestTime = 0x1p-200;
 
-/// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end. NaN stays NaN, and callers then write the
-/// normal (0, 0, 0).
+/// Returns t in [0, 1]. A t outside of [0, 1] is moved to the nearer end, and a t below kSmallestTime becomes 0. NaN
+/// stays NaN, and callers then write the normal (0, 0, 0).
 [[nodiscard]] inline double local_time(double t) noexcept {
   if (std::isnan(t)) return t;
   return t < kSmallestTime ? 0 : t > 1 ? 1 : t;

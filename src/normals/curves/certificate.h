@@ -75,9 +75,9 @@ inline constexpr double kSmallestScale = 0x1p-30;
 /// The largest relative error of the components of control normals in double with which float32 can be used.
 inline constexpr double kLargestShare = 0x1p-30;
 
-/// Returns the smallest size of n(t) in double for which n(t) has a direction, relative to sum w_k max_abs(c_k). Above
-/// this size, the errors of the control normals, which are at most `share`, and ten roundings of 2^-53 turn n(t) by
-/// less than 6e-7 rad.
+/// Returns the smallest size of n(t) in double for which the direction of n(t) is certain, relative to sum w_k
+/// max_abs(c_k). Above this size, the errors of the control normals, which are at most `share`, and ten roundings of
+/// 2^-53 turn n(t) by less than 6e-7 rad.
 [[nodiscard]] inline double smallest_certain(double share) { return std::max(0x1p-26, 0x1p22 * share); }
 
 inline constexpr double kDeterminantRounding = 0x1p-44;

@@ -38,7 +38,7 @@ std::size_t part_size(std::size_t size) {
 // vertex. If vertices are in random order, this halves the cache misses.
 class EndsSideBySide {
  public:
-  // Prepares the copy. The copy uses `memory` if that is large enough. Nothing is copied yet.
+  // Prepares the copy of the positions of `segment`, in `memory` if that is large enough. Nothing is copied yet.
   EndsSideBySide(const Segment& segment, AlignedArray<float> memory)
       : ends_(std::move(memory)), from_(segment), segment_(segment) {
     const std::size_t count = segment.from.count;
@@ -96,7 +96,8 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        // The swap saves moving the flagged elements of the part one by one.
+        // The flagged elements so far are swapped into the part, which appends its own. They need not be moved one by
+        // one.
         std::swap(parts_[next_].flagged, curves_.flagged);
         builder_.emplace(parts_[next_], limits_);
       }

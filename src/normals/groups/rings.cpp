@@ -47,7 +47,7 @@ class PathMaker {
     return path_;
   }
 
-  // Returns true if the last path that was made adds nothing, in place of a path with more points than the limit.
+  // Returns true if the last path that was made adds nothing, in place of a path with more than most_points points.
   [[nodiscard]] bool is_left_out() const { return is_left_out_; }
 
  private:

@@ -308,7 +308,7 @@ class Call {
   }
 
  private:
-  // Makes results that bypassed the caches visible to other threads. Call it at the end of an evaluation.
+  // Makes results that bypassed the caches visible to other threads. Call this function at the end of an evaluation.
   void finish() const {
     if (stream_) hwy::FlushStream();
   }

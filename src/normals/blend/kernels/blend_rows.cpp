@@ -150,7 +150,7 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
                                 const VectorView<float>& result) {
   return ForLanesOfWord(elements, [&](std::size_t lane, std::uint32_t bits) HWY_ATTR {
     const std::size_t first = kBitsOfWord * place + lane;
-    // No row after that of the last element may be read.
+    // No row after that of the last element may be read, so the row of the last element is read again.
     const std::size_t last = result.count - 1;
     const DoubleColumns n =
         ColumnsOfDoubles([=](std::size_t i) HWY_ATTR { return RowAt(rows, std::min(first + i, last)); });

@@ -34,7 +34,7 @@ void face_control_tiles(const Segment& segment, IndexRange faces, std::span<Cont
 /// preconditions are those of face_control_tiles().
 void float_triangle_tiles(const Segment& segment, IndexRange faces, std::span<ControlTile> tiles) noexcept;
 
-/// Writes the control normals of a mesh of triangles, as face_control_normals() does.
+/// Writes the control normals of a range of faces of a mesh of triangles, as face_control_normals() does.
 void triangle_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
 }  // namespace chronormal::inline internal

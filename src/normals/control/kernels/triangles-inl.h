@@ -106,7 +106,7 @@ struct TriangleLanes {
 };
 
 // Loads the positions of one vertex per lane at both ends of the segment. The vertices of neighbouring lanes are kStep
-// entries apart in the list. Both ends are loaded together, so that every index is read once.
+// entries apart in `vertices`. Both ends are loaded together, so that every index is read once.
 template <PointAccess kAccess, std::size_t kStep>
 HWY_INLINE void LoadBothEnds(const Segment& segment, const std::uint32_t* vertices, Lanes3& from, Lanes3& to) {
 #if HWY_TARGET == HWY_SCALAR

@@ -124,8 +124,8 @@ class Glance {
     return hn::Ge(hn::Mul(AllOf(kUp * ratio * ratio), smallest), AllOf(1));
   }
 
-  // Returns the lanes in which ratio |n(t)| >= sum w_k |c_k| may hold at every t. The limits here are sums of squares,
-  // which are smaller than the square of that sum.
+  // Returns the lanes in which ratio |n(t)| >= sum w_k |c_k| may hold at every t. limit_ has sums of squares, which are
+  // smaller than the square of that sum.
   HWY_INLINE DoubleMask MayStayAbove(double ratio) const {
     const Doubles factor = AllOf(kUp * ratio * ratio);
     auto may = hn::Ge(hn::Mul(factor, square_[0]), limit_[0]);

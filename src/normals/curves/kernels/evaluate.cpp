@@ -182,8 +182,8 @@ struct Quadratic11 {
     return {Component(p), Component(p + kTile), Component(p + 2 * kTile)};
   }
   // Returns one component of n(t). The ends are in the upper 11 bits of their halves, which multiplies their values by
-  // 32. The two parts of m, moved to the same place, are multiplied by 2048. The part of m that is in the low bits of
-  // the halves is added first, so that no partial sum leaves the range of int32.
+  // 32. The two parts of m, shifted to the upper 5 bits of their halves, are multiplied by 2048. The part of m that is
+  // in the low bits of the halves is added first, so that no partial sum leaves the range of int32.
   HWY_INLINE Floats Component(const std::int32_t* p) const {
     const Shorts words = LoadPairs(p);
     return PairSum(start, hn::And(words, mask), ends, ShiftHalvesLeft11(words), middle);

@@ -55,7 +55,7 @@ struct alignas(64) FlaggedTile {
   }
 };
 
-/// The factor by which limits are rounded up, and the smallest value of a limit.
+/// The factor by which FlaggedNormals::limits are rounded up, and the smallest value of such a limit.
 inline constexpr double kLimitUp = 1 + 0x1p-20, kLeastLimit = 0x1p-50;
 
 /// The unit normals of the elements of a tile, in float32.
