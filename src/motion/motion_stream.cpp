@@ -29,8 +29,8 @@ class ReadAhead {
   [[nodiscard]] bool is_of(std::size_t keyframe) const noexcept { return keyframe_ == keyframe; }
   [[nodiscard]] bool is_under_way() const noexcept { return keyframe_.has_value(); }
 
-  // Starts to read a keyframe. `read` is called with the number of the keyframe and with memory for its positions.
-  // `read` must live until finish() returns.
+  // Starts to read a keyframe. A copy of `read` is called with the number of the keyframe and with memory for its
+  // positions. Objects to which `read` refers must live until finish() returns.
   template <class Read>
   void start([[maybe_unused]] const Read& read, [[maybe_unused]] std::size_t keyframe, std::vector<float> room) {
     positions_ = std::move(room);
@@ -44,7 +44,7 @@ class ReadAhead {
 #endif
   }
 
-  // Waits until the keyframe is read, and returns the memory with its positions.
+  // Waits until the keyframe is read, and moves its positions to `positions`.
   Status finish(std::vector<float>& positions) {
     Status status = Success{};
 #ifndef __EMSCRIPTEN__

@@ -298,7 +298,7 @@ Status ObjReader::resolve(std::int64_t index, std::string_view word) {
   if (index > largest_.index) largest_ = {index, statement_line_, faces_.face_count(), faces_.open_corners()};
   const std::int64_t vertex = index < 0 ? count + index : index - 1;
   // An index that does not fit into 32 bits is larger than the number of vertices. The check of largest_ at the end of
-  // the file reports it.
+  // the file reports such an index.
   if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
     return error("the mesh has more than 4,294,967,295 corners");
   return Success{};

@@ -13,7 +13,7 @@
 namespace chronormal {
 namespace {
 
-// Number of elements that a thread computes at a time; a multiple of the bits of a word.
+// Number of elements that a thread computes at a time; a multiple of kBitsOfWord.
 constexpr std::size_t kBlockOfElements = 16384;
 
 }  // namespace

@@ -39,7 +39,7 @@ class FacesOfVertices {
  public:
   explicit FacesOfVertices(const Topology& topology) : topology_(topology) {}
 
-  // Returns the faces around any of some vertices, in ascending order.
+  // Returns the faces that have at least one of `vertices`, in ascending order.
   [[nodiscard]] Indices around(std::span<const std::uint32_t> vertices) {
     // The faces around many vertices are found by going through the whole mesh, which takes less memory than sorting.
     constexpr std::size_t kFew = 16;

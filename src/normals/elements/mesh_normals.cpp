@@ -430,7 +430,7 @@ struct MeshNormals::Parts {
     return outputs.count;
   }
 
-  // Writes outputs at one time. Writes zeros if the time is NaN or if there is no segment.
+  // Writes the normals of a range of outputs at one time. Writes zeros if the time is NaN or if there is no segment.
   template <class Output>
   std::size_t write(const LocalTime& t, IndexRange outputs, const Output& output) const noexcept {
     if (std::isnan(t.t) || curves.size == 0) return write_zeros(outputs, output);
@@ -445,7 +445,8 @@ struct MeshNormals::Parts {
   MeshNormalsOptions options;
   std::vector<std::uint32_t> group_of_face;  // kept until the outputs that share a normal are known
   std::vector<float> normal_of_corner;       // kept until the outputs that share a normal are known
-  // The groups, which all objects for one mesh share as soon as the groups are known; nullptr for faces.
+  // The groups, which all objects for one mesh share as soon as the groups are known; nullptr if the elements are
+  // faces.
   std::shared_ptr<const NormalGroups> groups;
   bool shares = false;      // true if outputs share elements; false if output i is always element i
   CurveData curves, spare;  // curves of the current segment, and memory for those of the next

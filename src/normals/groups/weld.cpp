@@ -87,7 +87,7 @@ void split_many_by_place(const Motion::Keyframe& keyframe, Coinciding vertices, 
 // Returns the points of all vertices. `found` has the sets of vertices that coincide.
 Points points_of(std::size_t vertex_count, std::span<const Coinciding> found) {
   Points points = separate_points(vertex_count);
-  // Until points are numbered below, each entry is the first vertex at the point of its vertex.
+  // Until points are numbered below, entry v is the first vertex at the point of vertex v.
   std::vector<std::uint32_t>& of_vertex = points.point_of_vertex;
   for (const Coinciding vertices : found) {
     for (const std::uint32_t vertex : vertices) of_vertex[vertex] = vertices.front();

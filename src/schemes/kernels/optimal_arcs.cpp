@@ -140,8 +140,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   good = good & (along > zero) & (absolute(g) < Real(kLargestG));
   if (!any(good)) return none;
 
-  // The search starts with the arc through the middle normal and one arc on each side of it. Their distance in g is a
-  // fraction of the mean error.
+  // The search starts with the arc through the middle normal and one arc on each side of it. The distance between
+  // neighbouring arcs in g is a fraction of the mean error.
   Bracket bracket;
   bracket.middle = select(good, g, zero);
   bracket.at_middle = search.mean_error(bracket.middle);

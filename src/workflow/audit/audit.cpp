@@ -218,8 +218,8 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // If both ends of an edge are within half of the smallest tear, the edge is not torn. Most edges pass this test and
-  // need no other.
+  // If the differences at both ends of an edge are shorter than half of the smallest tear, the edge is not torn. Most
+  // edges pass this test and need no other.
   constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // the factor leaves a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;
