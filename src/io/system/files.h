@@ -143,8 +143,8 @@ void release_mapping(const char* bytes, std::size_t size) noexcept;
 /// after a backslash stands for itself. On Windows, a backslash always separates folders.
 [[nodiscard]] std::vector<std::string> match_pattern(const std::string& pattern, bool has_escapes);
 
-/// Returns the file that a program writes to when it writes to `path`. If `path` is a symbolic link, this is the file
-/// at the end of the chain of links, which need not exist.
+/// Returns the file that a program writes to when it writes to `path`. If `path` is a symbolic link, the result is the
+/// file at the end of the chain of links, which need not exist.
 [[nodiscard]] std::string follow_links(const std::string& path);
 
 /// An identity of a file that does not depend on the spelling of its path: "s.npz" and "./s.npz" have the same key, and

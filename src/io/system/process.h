@@ -33,8 +33,8 @@ void watch_endings(const Endings& endings) noexcept;
 /// Gives freed memory back to the system, if the C library supports that.
 void give_back_free_memory() noexcept;
 
-/// Ends the process at once, without destructors. Safe to call in a signal handler. The function is not noexcept: a wasm
-/// module ends by an exception of JavaScript, which must pass all callers.
+/// Ends the process at once, without destructors. Safe to call in a signal handler. The function is not noexcept: a
+/// wasm module ends by an exception of JavaScript, which must pass all callers.
 [[noreturn]] void end_now(int exit_code);
 
 }  // namespace chronormal::inline internal

@@ -51,8 +51,8 @@ class TemporaryFile {
   /// and sets errno on failure: EEXIST if a file of that name exists and must not be replaced.
   [[nodiscard]] bool rename_to(const std::string& target, bool replace) noexcept;
 
-  /// Leaves the file to the other process that has opened it (of_peer()) and has renamed it. The destructor does not
-  /// remove the file.
+  /// Leaves the file to the other process that has the file open (of_peer()) and has renamed it. The destructor does
+  /// not remove the file.
   void forget() noexcept;
 
  private:

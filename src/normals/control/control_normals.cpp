@@ -16,8 +16,8 @@
 namespace chronormal {
 namespace {
 
-// The rounding error of n(t) by eq. 5 in double, relative to the sizes of the control normals. n(t) counts as zero if no
-// component is larger than this error, which unit_normal_at() in the header describes as 8 rounding errors.
+// The rounding error of n(t) by eq. 5 in double, relative to the sizes of the control normals. n(t) counts as zero if
+// no component is larger than this error, which unit_normal_at() in the header describes as 8 rounding errors.
 constexpr double kEvaluationError = 16 * kUnitRoundoff;
 
 // An edge from the first corner of a face, at both ends of the segment.

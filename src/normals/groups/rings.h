@@ -34,8 +34,8 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kRingLanes = 16;  // number of elements of a slice
 
-/// The slices as kernels read them, in rows of kRingLanes indices. Slice s has the rows from first_row[s] to before
-/// first_row[s + 1], which are at least two.
+/// The paths around elements as kernels read them: slices of sixteen elements (see the top of this file), in rows of
+/// kRingLanes indices. Slice s has the rows from first_row[s] to before first_row[s + 1], which are at least two.
 struct RingSlices {
   const std::uint32_t* indices = nullptr;
   const std::size_t* first_row = nullptr;

@@ -80,8 +80,8 @@ struct RationalQuadratic {
         S(weights[0]) * vector_of(c, 0) + S(weights[1]) * vector_of(c, 1) + S(weights[2]) * vector_of(c, 2);
     S square = S(weights[3]) * c[9];
     for (std::size_t k = 1; k < 5; ++k) square = square + S(weights[3 + k]) * c[9 + k];
-    // If the quartic is below this fraction of its largest coefficient, too few of its digits are correct. The length
-    // of n is then computed from n itself.
+    // If the quartic is below a tenth of its largest coefficient, too few of its digits are correct. The length of n is
+    // then computed from n itself.
     const auto has_digits = square > S(0.1f);
     const Triple<S> u = (S(1.0f) / sqrt(select(has_digits, square, S(1.0f)))) * n;
     if (!any(!has_digits)) return u;

@@ -1,5 +1,5 @@
-// Finds the degrees of sixteen elements. In double, it works like degree() in control_normals.h. In float32, it can
-// only tell that a degree is certainly 2.
+// Finds the degrees of sixteen elements. The functions in double work like degree() in control_normals.h. The function
+// in float32 can only tell that a degree is certainly 2.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 

@@ -88,7 +88,7 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
 // n(t).a >= min c(k).a for all t, where c(k) are the control normals.
 HWY_INLINE LaneTests TestLanes(const ControlTile& tile, std::size_t lane, Floats square11, Floats square16,
                                Floats noise_square) {
-  // The same squared ratio as in TestPiece(): the largest for which float32 is exact enough.
+  // The squared ratio that TestPiece() also uses: the largest for which float32 is exact enough.
   const Floats sum_ratio_square = hn::Set(kFloats, 8.7f);
   const Floats smallest_largest = hn::Set(kFloats, 0x1p-30f), largest_largest = hn::Set(kFloats, 0x1p50f);
 
