@@ -38,7 +38,8 @@ class ScaledLinear {
     std::array<double, kGrid + 1> points;
     for (std::size_t i = 0; i < kGrid; ++i)
       points[i] = kRange * (2.0 * static_cast<double>(i) / (kGrid - 1) - 1);  // s = 1 is among these points
-    // The ratio of the areas at both ends is the exact s for an element of degree 1, so it is one of the points.
+    // The ratio of the areas at both ends is the exact s for an element of degree 1, so its logarithm is one of the
+    // points.
     const double areas = length(element.control_normals().n1) / length(element.control_normals().n0);
     points[kGrid] = std::isnormal(areas) ? std::clamp(portable::log(areas), -kRange, kRange) : 0;
     std::sort(points.begin(), points.end());

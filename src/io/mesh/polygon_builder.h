@@ -13,8 +13,8 @@
 
 namespace chronormal::inline internal {
 
-/// A builder of faces. Most meshes have only triangles, so it stores no offsets of faces until the first face that is
-/// not a triangle.
+/// A builder of faces. Most meshes have only triangles, so the builder stores no offsets of faces until the first face
+/// that is not a triangle.
 class PolygonBuilder {
  public:
   static constexpr std::size_t kMaxCorners = std::numeric_limits<std::uint32_t>::max();

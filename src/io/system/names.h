@@ -38,8 +38,8 @@ namespace chronormal::inline internal {
   return begin;
 }
 
-/// Returns the arguments of the program in UTF-8, from the arguments of main(). They are valid as long as the program
-/// runs.
+/// Returns the arguments of the program in UTF-8, from the arguments of main(). The arguments are valid as long as the
+/// program runs.
 [[nodiscard]] std::span<char*> arguments_of_program(int count, char** arguments);
 
 /// Returns the path of the program's own file, or nothing if the system does not know it.

@@ -351,8 +351,8 @@ class Call {
     }
   }
 
-  // Moves the window so that it contains the needed faces. Returns false if they do not fit, or if this would cost more
-  // than the credit.
+  // Moves the window so that it contains the needed faces. Returns false if the faces do not fit, or if moving the
+  // window would cost more than `credit`.
   bool bring(IndexRange needed, FaceNormal* normals, FaceWindow& window, std::size_t& credit) const {
     if (needed.count == 0 || window.holds(needed)) return true;
     const bool follows = window.begin <= needed.first && needed.first <= window.end;

@@ -22,7 +22,7 @@ constexpr std::size_t kElementsAtOnce = 1024;
 // hundredth of the sum of their lengths.
 constexpr double kFaceError = 0x1p-30, kLargestAngle = 0x1p-23;
 
-// Returns the normal of a face. Double computes it, or integers if double is not precise enough.
+// Returns the normal of a face. The normal is computed in double, or in integers if double is not precise enough.
 Vec3d face_normal_at(const Segment& segment, std::span<const std::uint32_t> face, const LocalTime& t) {
   Vec3d n;
   double size = 0;

@@ -1,5 +1,5 @@
-// Finds the degrees of sixteen elements. The functions in double work like degree() in control_normals.h. The function
-// in float32 can only tell that a degree is certainly 2.
+// Finds the degrees of sixteen elements. SetDegrees() does so in double, like degree() in control_normals.h.
+// SetDegreesByFloats() does so in float32, and only if all degrees are certainly 2.
 //
 // This file is included once for each instruction set, as lanes-inl.h is.
 

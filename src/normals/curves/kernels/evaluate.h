@@ -75,8 +75,8 @@ void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, PlanesR
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, OctahedralResult result) noexcept;
 void evaluate_blocks(const BlockSpan& span, const CurveWeights& weights, Rgb10A2Result result) noexcept;
 
-/// Makes the results that this thread has streamed visible to other threads. Call it once, after the last span, since
-/// it waits for the memory.
+/// Makes the results that this thread has streamed visible to other threads. Call this function once, after the last
+/// span, since it waits for the memory.
 void flush_stream() noexcept;
 
 }  // namespace chronormal::inline internal

@@ -44,7 +44,7 @@ struct alignas(64) FlaggedTile {
     }
     for (k = 0; k < 3; ++k) limits[k][lane] = flagged.limits[k];
   }
-  /// Copies `count` lanes of another tile, from its lane `first` on. The first of them goes to lane `lane` of this
+  /// Copies `count` lanes of another tile, from its lane `first` on. The first copied lane goes to lane `lane` of this
   /// tile.
   void set_lanes(std::size_t lane, const FlaggedTile& from, std::size_t first, std::size_t count) noexcept {
     for (std::size_t k = 0; k < 9; ++k) std::copy_n(from.normals[k] + first, count, normals[k] + lane);
