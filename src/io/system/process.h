@@ -20,7 +20,7 @@ struct Endings {
   /// ends. If it returns false, the write fails with an error. On Windows, the write always fails, because there is no
   /// signal.
   bool (*by_lost_reader)();
-  /// Called when a mapped input became shorter, or its disk failed. Must not return.
+  /// Called when an input file that is mapped into memory became shorter, or its disk failed. Must not return.
   void (*by_lost_input)();
   /// Called when a library has called std::abort(). Must not return. If nullptr, the signal ends the program.
   void (*by_abort)();

@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// The largest number of points of a path around an element that lanes can process.
+/// The largest number of points of a path around an element that SIMD lanes can process.
 inline constexpr std::size_t kMostRingPoints = 64;
 
 /// The coefficients of n(w) (blend_terms.h) at some elements: A and C_ii for a target, or C_ij for a pair of targets. A

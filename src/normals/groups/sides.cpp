@@ -186,7 +186,7 @@ void keep_sides_apart(const Topology& topology, Points& points) {
   for (std::size_t first = 0, end = 0; first < corners.size(); first = end) {
     for (end = first + 1; end < corners.size() && corners[end].point == corners[first].point;) ++end;
     const std::span<const PointCorner> here = std::span(corners).subspan(first, end - first);
-    // The nodes whose sides are found are the vertices at the point.
+    // The nodes (SideEdge::node) at this point are its vertices.
     std::vector<std::uint32_t> vertices;
     std::vector<SideEdge> edges;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> of_faces, apart;

@@ -193,7 +193,7 @@ struct Quadratic11 {
   Ints start;
 };
 
-// The following structs write results to memory, kLanes vectors at a time.
+// The common base of the following structs, which write results to memory, kLanes vectors at a time.
 
 template <bool kPastCaches>
 struct Accesses {

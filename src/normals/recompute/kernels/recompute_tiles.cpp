@@ -126,7 +126,7 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 constexpr bool kReadsBehind = true;
 
-// The edges of the faces k, k + 4, ... as rows of four floats.
+// The edges of every fourth face of a block, from some face on, as rows of four floats.
 struct EdgeRows {
   Floats e0, f0, e1, f1;
 };
