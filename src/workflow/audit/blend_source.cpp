@@ -214,7 +214,7 @@ void BlendSource::place_base(std::span<Vec3d> positions) const {
     positions[i] = to_double(vector_at(shading_.set.base, vertices[i]));
 }
 
-// Returns the deltas of an involved target. Vertices have their numbers in the part.
+// Returns the deltas of the k-th involved target. Each delta names its vertex by the index of the vertex in the part.
 const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   if (moved_[k]) return *moved_[k];
   std::vector<Delta>& result = moved_[k].emplace();
@@ -232,11 +232,11 @@ const std::vector<BlendSource::Delta>& BlendSource::moved(std::size_t k) {
   return result;
 }
 
-// Returns the weights of the current moment and of the moments that follow in its segment.
+// Returns the weights of the current sample, followed by the weights of the next samples in the same segment.
 std::vector<std::vector<double>> BlendSource::now_and_next() const {
   std::vector<std::vector<double>> result = {now_};
-  // Finds the first sample after t_. There may be a million samples, and they are evenly spaced, so no sample after t_
-  // has an index below t_ times the number of samples.
+  // Finds the index of the first sample after t_. There may be a million samples, and they are evenly spaced, so no
+  // sample after t_ has an index below t_ times the number of samples.
   auto i = static_cast<std::size_t>(t_ * static_cast<double>(samples_));
   while (i < samples_ && time_of_sample(i, samples_) <= t_) ++i;
   for (; i < samples_ && result.size() < StoredSums::kAtOnce; ++i)

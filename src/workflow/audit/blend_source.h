@@ -1,4 +1,5 @@
-/// A source for measure.h: the mesh of a glTF file as a viewer shows it at given weights. Private to workflow.
+/// The positions and normals that a viewer shows for a mesh of a glTF file at given weights, as a source for the loop
+/// of the audit (measure.h). Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_BLEND_SOURCE_H_
 
@@ -24,13 +25,14 @@ namespace chronormal::inline internal {
   return {v[0], v[1], v[2]};
 }
 
-/// Returns the place of a vertex as a message names it. `vertex` counts through all parts of the mesh. The place has
-/// the number of the part, and the number of the vertex in this part.
+/// Returns the part and the vertex by which messages name a vertex. `vertex` is an index among the vertices of all
+/// parts. The result has the index of the part, and the index of the vertex in this part.
 [[nodiscard]] AuditPlace place_of(const GltfShading& shading, std::size_t vertex);
 
-/// A function that writes the weights of the targets that are involved in a motion, at position t of a segment.
+/// A function that writes the weights of the involved targets at position t of a segment, with t from 0 to 1.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// A function that returns the weight or the time by which messages name position t of a segment.
+/// A function that returns the number by which messages name position t of a segment: a time in seconds, or the weight
+/// of a target.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {
@@ -47,19 +49,20 @@ class BlendSource {
               MeshSkin* skin = nullptr);
 
   bool place(std::size_t segment, double t, std::span<Vec3d> positions);
-  /// Writes the positions of the part at the given weights. Does not change the placed moment.
+  /// Writes the positions of the part at the given weights. Does not change the moment at which the source is placed.
   void place_at(std::span<const double> weights, std::span<Vec3d> positions);
-  /// Returns the weights of the placed moment.
+  /// Returns the weights at the moment of the last place().
   [[nodiscard]] const std::vector<double>& now() const noexcept { return now_; }
   /// Returns the number of calls of place() that have changed positions.
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Turn sums of face normals into true normals, at the placed moment or at the given weights, by rotating them as the
-  /// author's normals are rotated from the geometry's.
+  /// Turn sums of face normals into true normals, at the placed moment or at the given weights. They rotate each sum as
+  /// the author's normal is rotated from the normal of the geometry.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
-  /// Adds up the stored normals as they are rendered at the placed moment, and finds how the skin transforms them.
+  /// Adds up the stored normals for the moment of the last place() as they are rendered, and finds how the skin
+  /// transforms them.
   void show();
   /// Returns a normal of the i-th output as the screen shows it: transformed by the skin, if there is one. The result
   /// has any length.
@@ -99,7 +102,8 @@ class BlendSource {
   MeshSkin* skin_;
   std::vector<AffineTransform> carriers_;  // the transform of each output by the skin; empty if there is no skin
   std::size_t placed_ = 0;
-  // The deltas by which each involved target moves vertices of the part; nullopt until they are needed.
+  // For each involved target, the deltas by which it moves vertices of the part. An entry is nullopt until it is
+  // needed.
   std::vector<std::optional<std::vector<Delta>>> moved_;
   std::vector<ShownTurn> turns_;  // for each output, how the author's normal is rotated from the geometry's
   std::optional<SegmentEnds> ends_;
@@ -108,17 +112,17 @@ class BlendSource {
   double t_ = 0;
   std::vector<double> now_, start_, end_;
   StoredSums sums_;
-  // The sums of stored normals and their weighted deltas, at the placed moment, and at the start and the end of its
-  // segment, (outputs, 3).
+  // The sums of stored normals and their weighted deltas: at the moment of the last place(), and at the start and the
+  // end of its segment. Each is an array (outputs, 3).
   std::span<const float> shown_now_, shown_start_, shown_end_;
 };
 
-/// Lists the vertices whose normals change with some of these targets, because the targets move a face around the
-/// vertex or have a delta for its stored normal. For the rule flat, lists corners instead of vertices.
+/// Lists the vertices whose normals change with the involved targets, because such a target moves a face around the
+/// vertex or has a delta for its stored normal. For the rule flat, lists corners instead of vertices.
 [[nodiscard]] std::vector<JudgedOutput> moving_outputs(const GltfShading& shading, const AuthorTruth& truth,
                                                        std::span<const std::size_t> involved, AuditRule rule);
 
-/// Returns the part of a mesh that has these outputs.
+/// Returns the part of a mesh that is needed to judge these outputs: their elements, and the faces around them.
 [[nodiscard]] JudgedPart judged_part(const GltfShading& shading, const AuthorTruth& truth,
                                      std::vector<JudgedOutput> outputs, AuditRule rule);
 

@@ -83,8 +83,7 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures the angles between the stored base normals and the sums of face normals from which the true normals are
-// computed.
+// Measures the angles between the stored base normals and the true normals of the base, which are sums of face normals.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -105,7 +104,8 @@ void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, Auth
   }
 }
 
-// Records the angles between the base normals and the geometry. Records nothing if no vertex has a base normal.
+// Adds to the result the angles between the stored base normals and the normals of the geometry. Adds nothing if no
+// vertex has a base normal.
 void note_offset(const GltfShading& shading, const AuthorTruth& truth, const AuthoredWeighting& authored,
                  std::optional<Weighting> asked, Audit& result) {
   const bool any_shaded = std::any_of(shading.element_of_vertex.begin(), shading.element_of_vertex.end(),
@@ -146,7 +146,7 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
   if (mesh.rule != AuditRule::kFlat)
-    // By the rule flat, folds between facets are intended, so edges are not examined for tears.
+    // The rule flat intends folds between faces, so edges are not examined for tears.
     part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());
   return part;
 }
@@ -158,13 +158,13 @@ struct SubjectWeights {
   std::vector<Weights> played;
 };
 
-// A subject of the audit, with its errors in each viewer.
+// A subject of the audit (a target, a track or a list of poses), with its errors in each viewer.
 struct Measured {
   AuditSubject subject;
   std::vector<ViewerError> of_viewers;
 };
 
-// Returns the weights of all targets. A target that is not involved has weight 0.
+// Returns the weights of all targets, given the weights of the involved targets. All other targets get weight 0.
 std::vector<double> of_all_targets(std::span<const double> weights, const Involved& involved, std::size_t targets) {
   std::vector<double> all(targets);
   for (std::size_t i = 0; i < involved.size(); ++i) all[involved[i]] = weights[i];
@@ -203,8 +203,8 @@ struct SegmentsOfTrack {
   }
 };
 
-// Measures a subject. `index` is the index that the subject will have in the result. Returns nothing if no output can
-// be judged.
+// Measures the errors of a subject. `index` is the index that the subject will have in the list of the audit. Returns
+// nothing if no output can be judged.
 std::optional<Measured> measure_part(const MeshAudit& mesh, const JudgedPart& part, const Involved& involved,
                                      const SubjectWeights& weights, const Moment& moment, MeshSkin* skin,
                                      AuditSubject subject, std::size_t index) {
@@ -247,8 +247,8 @@ void add_subject(Measured measured, Audit& result) {
   result.subjects.push_back(std::move(measured.subject));
 }
 
-// Audits a target from weight 0 to 1. Correction targets of a bake get the weights that the bake defines for this
-// weight.
+// Audits target k alone, from weight 0 to 1. Correction targets that a bake has added get the weights that follow from
+// the weight of target k.
 void audit_target(const MeshAudit& mesh, std::size_t k, Audit& result) {
   const GltfShading& shading = mesh.shading;
   Involved involved = {k};
@@ -441,8 +441,8 @@ void audit_expression(const MeshAudit& mesh, std::size_t index, double worst_tar
   add_subject(std::move(*measured), result);
 }
 
-// Lists the distinct sets of weights with which a file opens, except sets of zeros. Each set has the index of the first
-// node that shows it.
+// Lists the distinct sets of weights that a mesh has when the file is opened, except sets of zeros. Each set has the
+// index of the first node that shows the mesh with these weights.
 std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> opening_poses(const GltfDocument& document,
                                                                                       std::size_t mesh) {
   std::vector<std::pair<std::vector<double>, std::optional<std::size_t>>> poses;
@@ -486,7 +486,7 @@ void audit_openings(const MeshAudit& mesh, Audit& result) {
   }
 }
 
-// Returns the poses of the mesh that the options request: the given poses, or random poses.
+// Returns the poses of the mesh that the options request: a given list of poses, or random poses.
 PoseList asked_poses(const GltfDocument& document, const AuditOptions& options, std::size_t mesh) {
   constexpr unsigned kSeed = 51;
   const GltfMesh& of_mesh = document.meshes()[mesh];
@@ -539,7 +539,7 @@ std::size_t count_rows(const GltfDocument& document, std::size_t mesh, const Tra
   return rows;
 }
 
-// Returns an error table for a mesh, with no rows yet.
+// Returns an error table with the vertices of a mesh, and with no rows yet.
 ErrorTable table_of(const GltfShading& shading) {
   ErrorTable table{"mesh" + std::to_string(shading.mesh), ElementKind::kVertices, shading.set.topology,
                    shading.set.base};

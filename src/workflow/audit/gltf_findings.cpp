@@ -25,8 +25,8 @@ bool moves_vertices(const GltfShading& shading, std::size_t k, const GltfPart& p
   return first != moved.end() && *first < part.first_vertex + part.vertex_count;
 }
 
-// Finds stale tangents of a target. A tangent is stale if its angle to the true normal at weight 1 is farther from a
-// right angle than in the base.
+// Finds stale tangents of target k. A tangent is stale if its angle to the true normal is farther from 90 degrees at
+// weight 1 of the target than in the base.
 std::optional<AuditFinding> stale_tangents(const GltfShading& shading, const AuthorTruth& truth, AuditRule rule,
                                            std::size_t k, const JudgedPart& part, std::span<const std::size_t> involved,
                                            const Weights& weights) {
@@ -158,7 +158,8 @@ std::vector<AuditFinding> faults_of_target(const GltfDocument& document, const G
 std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged, double worst_target) {
   std::optional<AuditFinding> fault = find_wrong_normals(subject);
   if (!fault || fault->kind == Kind::kUnlit) return fault;
-  // The findings of the targets already report an error of this size.
+  // If the targets were judged alone and one of them has an error at least as large, the findings of the targets
+  // already report this error.
   if (are_targets_judged && worst_target > kAuditFault && subject.error.worst <= worst_target + kAuditFault)
     return std::nullopt;
   if (are_targets_judged) fault->kind = Kind::kWrongTogether;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uint32_t kUnused = static_cast<std::uint32_t>(-1);
 
-// Replaces all marks that are not kUnused by the numbers 0, 1, 2 and so on. Returns the indices of these marks.
+// Numbers the entries of `marks` that are not kUnused by 0, 1, 2 and so on, and replaces each entry by its number.
+// Returns the indices of these entries.
 std::vector<std::uint32_t> number_used(std::vector<std::uint32_t>& marks) {
   std::vector<std::uint32_t> used;
   used.reserve(marks.size() - static_cast<std::size_t>(std::count(marks.begin(), marks.end(), kUnused)));
@@ -45,8 +46,8 @@ JudgedPart::JudgedPart(const Topology& topology, const NormalGroups& groups, Wei
   }
   vertices_ = number_used(vertex);
 
-  // The normals of faces are stored if they take little memory, or if computing them again for each element would take
-  // long.
+  // Keeps the normals of faces in memory if they take little memory, or if computing them again for each element would
+  // take long.
   constexpr std::size_t kSmallFace = 4, kFewFaces = 100000;
   const bool has_corners = weighting != Weighting::kArea;
   keeps_faces_ = keeps_faces_ || (!has_corners && faces.size() <= kFewFaces);

@@ -16,11 +16,11 @@
 
 namespace chronormal::inline internal {
 
-/// The number of elements or outputs that one task handles.
+/// The number of elements or outputs that one task of a thread handles.
 inline constexpr std::size_t kRange = 4096;
 
-/// If a sum of vectors is shorter than this share of the sum of their sizes, it consists only of rounding errors and
-/// has no direction.
+/// The limit below which a sum of vectors counts as zero, relative to the sum of the lengths of its vectors. A shorter
+/// sum consists only of rounding errors and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
 /// Returns a bound of the change of a polygon's normal if the coordinates of its corners are rounded to float32.
@@ -38,7 +38,7 @@ template <class VertexAt>
   return sum;
 }
 
-/// A vertex whose normal is judged, or a corner if its vertex has several normals.
+/// A vertex whose normal is judged. If the vertex has several normals, one corner with such a normal.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
   std::uint32_t face = 0, corner = 0;  ///< the face and the corner that show the normal; not set by all callers
@@ -55,17 +55,18 @@ class JudgedPart {
  public:
   /// Creates the part. Elements and faces of the outputs are renumbered for this part, but vertices and corners keep
   /// their numbers in the mesh. If needs_faces is false, normals() may leave out the normals of faces. If the weighting
-  /// is area, `groups` need no corners. If sums is given, it supplies the normals of elements and must outlive the
-  /// part.
+  /// is area, `groups` need no corners. If `sums` is given, this object supplies the normals of elements and must
+  /// outlive the part.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);
 
-  /// Return the vertices and the elements of the part, with their numbers in the mesh, in ascending order.
+  /// Return the vertices and the elements of the part, as indices in the mesh, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const std::uint32_t> elements() const noexcept { return elements_; }
   [[nodiscard]] std::span<const JudgedOutput> outputs() const noexcept { return outputs_; }
 
-  /// Returns the faces of an element. corners_of() returns the corners of a face as indices in vertices().
+  /// Returns the faces of an element. Elements and faces are numbered within the part. corners_of() returns the corners
+  /// of a face as indices in vertices().
   [[nodiscard]] std::span<const std::uint32_t> faces_of(std::size_t element) const noexcept {
     return std::span(faces_of_element_)
         .subspan(element_offsets_[element], element_offsets_[element + 1] - element_offsets_[element]);
@@ -86,8 +87,8 @@ class JudgedPart {
   /// have at most one output.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
-  /// Returns the index that a vertex of the mesh has in vertices(). May be called only for parts with sums, and for
-  /// vertices that these sums need.
+  /// Returns the index that a vertex of the mesh has in vertices(). May be called only for parts that were created with
+  /// `sums`, and for vertices that these sums need.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
   /// Computes the normals of faces and elements from the positions of vertices(). The normal of a face is a cross
@@ -109,10 +110,10 @@ class JudgedPart {
 
   std::vector<std::uint32_t> vertices_, elements_;
   std::vector<std::uint32_t> face_offsets_ = {0}, face_vertices_;  // the corners of each face, as indices in vertices_
-  // The faces around each element. Elements and faces are numbered as in the part.
+  // The faces around each element. Elements and faces are numbered within the part.
   std::vector<std::uint32_t> element_offsets_ = {0}, faces_of_element_;
-  // For each face of an element, the corner of the face that belongs to the element, by its number in the face. The
-  // list is empty if faces are weighted by area.
+  // For each face around an element, the corner of this face that belongs to the element: 0 is the first corner of the
+  // face. The list is empty if faces are weighted by area.
   std::vector<std::uint32_t> corners_of_element_;
   Weighting weighting_;
   const AuthorSums* sums_;

@@ -25,10 +25,10 @@
 
 namespace chronormal::inline internal {
 
-/// If the normal of an element is shorter than this share of its largest control normal, its error does not count in
-/// the sums of errors. The surface nearly collapses there, and its shading mostly follows from the normals around it.
-/// If the caller sets a limit of the error (--tolerance), the limit applies to such a normal as long as the normal has
-/// a direction.
+/// The limit below which the length of a normal does not count, relative to the largest control normal of its element.
+/// Errors of shorter normals are left out of the sums of errors. The surface nearly collapses there, and its shading
+/// mostly follows from the normals around it. If the caller sets a limit of the error (--tolerance), the limit applies
+/// to such a normal as long as the normal has a direction.
 inline constexpr double kVanished = 1e-4;
 
 /// The value that stands for the error of an output whose faces have an area, but whose face normals cancel each other.
@@ -37,10 +37,10 @@ inline constexpr double kCancels = -3;
 inline constexpr std::size_t kAuditSamples = 21, kAuditFewSamples = 5, kAuditSamplesOfAll = 210;
 inline constexpr std::size_t kAuditFewSamplesOfTarget = 11;
 
-/// The number of outputs that are computed together. Their data fit into the fastest cache.
+/// The number of outputs (judged normals) that are computed together, so that their data fit into the fastest cache.
 inline constexpr std::size_t kOutputsAtOnce = 256;
 
-/// Returns the bin of the histogram for an error in [0, 180] degrees.
+/// Returns the index of the bin of the histogram (kAuditBinEdges) to which an error in [0, 180] degrees belongs.
 [[nodiscard]] inline std::size_t bin_of(double degrees) noexcept {
   std::size_t bin = 0;
   for (const double edge : kAuditBinEdges) bin += degrees >= edge ? 1U : 0U;
@@ -50,8 +50,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 /// Returns the bin of the fine histogram for an error in degrees. If the processor does not round to nearest, an angle
 /// may also be -0 or slightly more than 180 degrees, so the result is clamped to the last bin.
 [[nodiscard]] inline std::size_t fine_bin_of(double degrees) noexcept {
-  // Each power of two in degrees has 128 bins. For this reason the exponent of a double and the first 7 bits of its
-  // fraction, read as one integer, are the number of the bin apart from a constant.
+  // Each doubling of the angle in degrees has 128 bins, so the exponent of a double and the first 7 bits of its
+  // fraction, read as one integer, are the index of the bin plus a constant.
   static_assert(kAuditBinsOfDoubling == 128);
   constexpr int kFractionBits = 52 - 7, kExponentBias = 1023;
   constexpr std::uint64_t kFirst = std::uint64_t{kExponentBias + kAuditLeastExponent} * kAuditBinsOfDoubling;
@@ -69,7 +69,8 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 /// blended normal is zero.
 [[nodiscard]] Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t) noexcept;
 
-/// Returns the number of samples in each segment. If targets are judged one by one, each target is a segment.
+/// Returns the number of moments in each segment at which normals are measured. If targets are judged one by one, each
+/// target is a segment.
 [[nodiscard]] std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments,
                                               std::size_t fewest = kAuditFewSamples) noexcept;
 
@@ -85,7 +86,7 @@ inline constexpr std::size_t kOutputsAtOnce = 256;
 [[nodiscard]] AuthoredOffset authored_offset(const AuthoredWeighting& authored, std::optional<Weighting> asked);
 
 /// Returns the fault of a subject whose stored normals have an error above kAuditFault. If the subject has several
-/// faults, returns the first of these: normals that cannot be lit, errors at keys, errors between keys.
+/// faults, returns the first in this order: normals that cannot be lit, errors at keys, errors between keys.
 [[nodiscard]] std::optional<AuditFinding> find_wrong_normals(const AuditSubject& subject);
 
 /// Adds the errors of a segment to those of its subject.
@@ -119,7 +120,7 @@ void finish(Audit& result);
 //     over(subject, work)            adds work(segment), the errors of each measured segment, to the subject; returns a
 //                                    Status
 
-/// The positions and normals of a part at the moment at which the source was placed last.
+/// The positions and normals of a part at the moment of the last place().
 struct PlacedPart {
   explicit PlacedPart(const JudgedPart& judged) : part(judged), positions(judged.vertices().size()) {}
 
@@ -259,7 +260,7 @@ void find_right(const Source& source, const PlacedPart& placed, std::span<const 
       const JudgedOutput& output = outputs[range.first + k];
       const Vec3d& normal = placed.normals.elements[output.element];
       const double least = kVanished * largest[output.element];
-      // The first of the two tests takes less time, and decides for most normals.
+      // Comparing the largest component takes less time than computing a length, and decides for most normals.
       const bool has_normal = max_abs(normal) > least || length(normal) > least;
       result.set(range.first + k,
                  {some[k], source.hides(output, normal), has_normal, placed.normals.sizes[output.element] > least});
@@ -288,7 +289,7 @@ template <class Source, class Shown>
       for (std::size_t k = 0; k < count; ++k) {
         const RightOutput is = right[from + k];
         const bool may_be_lit = is_flat ? is_shown[k] != Vec3d{} : is.has_area;
-        // A hidden output is not judged, because the skin collapses its true normal.
+        // The skin collapses the true normal of a hidden output, so this output is not judged.
         of_some[k] = is.is_hidden                                                        ? kNotJudged
                      : !is_finite(is_shown[k]) || (may_be_lit && is_shown[k] == Vec3d{}) ? kNotLit
                      : !is.has_normal || !may_be_lit                                     ? kNotJudged
@@ -344,7 +345,7 @@ struct KeptErrors {
   [[nodiscard]] bool any() const noexcept { return table != nullptr || are_watched; }
 };
 
-/// A sample that was measured, as each_sample() receives it.
+/// The data of a measured sample (one moment of a segment) that each_sample() receives.
 struct MeasuredSample {
   std::size_t segment = 0;
   double t = 0;
@@ -353,7 +354,7 @@ struct MeasuredSample {
   std::span<const double> next;     ///< positions of the next samples in the segment, from 0 to 1
   const RightOutputs& right;        ///< true normals of all outputs
   const MotionError& error;
-  /// Degrees: the error of each output, or NaN if it is not judged; empty if errors are not kept.
+  /// The error of each output in degrees, or NaN if the output is not judged. Empty if single errors are not kept.
   std::span<const float> each;
 };
 
@@ -362,8 +363,8 @@ struct MeasuredSample {
 void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, std::span<const float> degrees,
                  bool is_weight, double at);
 
-/// Measures all samples of a subject's segments, and writes the errors into the subject. Calls each_sample(measured
-/// sample) for every sample. Errors: as the segments return them.
+/// Measures all samples of a subject's segments, and writes the errors into the subject. Calls each_sample with a
+/// MeasuredSample for every sample. Errors: those that reading the segments returns.
 template <class Source, class Segments, class EachSample>
 [[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
                              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {

@@ -17,15 +17,15 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The number of blocks for each thread that are measured before their results are added up. The number is large enough
-// to keep all threads busy, and small enough to keep the results small.
+// The number of blocks per thread that are measured before their results are added up. It is large enough to keep all
+// threads busy, and small enough for the results to take little memory.
 constexpr std::size_t kBlocksPerWaveAndThread = 8;
 
 // The largest number of samples in a segment that are measured by blocks. The errors of a block take 20 kB for each
 // sample.
 constexpr std::size_t kMostSamples = 128;
 
-// A block: some outputs, and the faces from which their normals are computed.
+// A group of outputs that are measured together, and the faces from which their normals are computed.
 struct Block {
   IndexRange outputs, elements;
   // For each face of the block, the indices of its three vertices in the mesh.
@@ -78,8 +78,8 @@ Vec3d normal_of(const PlanesOf4& sums, std::size_t e) {
   return without_rounding(Vec3d{sums.x[e], sums.y[e], sums.z[e]}, kRoundingOfTerms * sums.w[e]);
 }
 
-// Raises each entry of `largest` to the length of the largest control normal that its element has in these segments,
-// like largest_control_normals() in measure.h.
+// Raises each entry of `largest` to the length of the largest control normal that its element has in `segments`, as in
+// largest_control_normals() in measure.h.
 void keep_largest_normals(const Motion& motion, std::span<const std::size_t> segments, const Block& block,
                           std::vector<double>& largest) {
   Scratch scratch;
@@ -102,7 +102,8 @@ void keep_largest_normals(const Motion& motion, std::span<const std::size_t> seg
   }
 }
 
-// Replaces each number by the largest one that any peer process has, with one exchange for all numbers.
+// Replaces each number by the largest value that any peer process has for this number. Sends all numbers in one
+// exchange.
 void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) {
   if (run.peers == nullptr) return;
   std::vector<double> all;
@@ -141,14 +142,14 @@ double rounding_at(const Segment& segment, double t, const Block& block, std::si
   return sum;
 }
 
-// Returns the normal that a viewer renders for an element, interpolated between the normals that it stores at both
-// ends.
+// Returns the normal that a viewer renders for element e, interpolated between the normals that the viewer keeps at
+// both ends of the segment.
 Vec3d shown_at(const Scratch& scratch, std::size_t e, double weight) {
   const auto kept = [e](const PlanesOf4& planes) { return Vec3d{planes.x[e], planes.y[e], planes.z[e]}; };
   return rounded_to_float(unit(lerp(kept(scratch.from), kept(scratch.to), weight)));
 }
 
-// Writes the errors of a block at each sample of a segment.
+// Computes the errors of a block at each sample of a segment, and writes them to `errors`.
 void measure_block(const Segment& segment, std::size_t number, const Block& block, std::span<const double> largest,
                    const JudgedPart& part, AuditRule rule, const FindPlace& at, Scratch& scratch,
                    std::span<MotionError> errors) {

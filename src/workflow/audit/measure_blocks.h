@@ -18,12 +18,12 @@
 
 namespace chronormal::inline internal {
 
-/// Returns true if measure_blocks() can be used. It needs triangles with area weights, a rule that interpolates
-/// linearly or not at all, and so few samples that the errors of one segment take little memory.
+/// Returns true if measure_blocks() can be used. This function needs triangles with area weights, a rule that
+/// interpolates linearly or not at all, and so few samples that the errors of one segment take little memory.
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
 
-/// A function that returns the place of a moment and a vertex as messages name it, like at() of a source (measure.h).
+/// A function that returns the place (segment, time and vertex) by which messages name an error.
 using FindPlace = std::function<AuditPlace(std::size_t segment, double t, const JudgedOutput& output)>;
 
 /// The segments of a subject in a motion, in the form that measure() needs.
@@ -35,9 +35,9 @@ struct SegmentsOfRun {
   [[nodiscard]] auto keys() const {
     return [&motion = stream.motion(), own = of_motion](std::size_t s) { return motion.segments[own[s]]; };
   }
-  /// Returns the segments that the run reads to find which vertices move and how long normals get.
+  /// Returns the segments that the run reads first, to find which vertices move and how long normals get.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Returns the segments to measure. Shards divide only a sequence, which is a single subject.
+  /// Returns the segments whose errors the run measures. Shards divide only a sequence, which is a single subject.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }
@@ -57,8 +57,9 @@ struct SegmentsOfRun {
   }
 };
 
-/// Measures all samples of these segments, as measure() does if a viewer computes the normals at keyframes itself. The
-/// outputs of the part must be in the order of their elements. Errors: as the stream and the run return them.
+/// Measures all samples of these segments, with the same result as measure(), for viewers that compute the normals at
+/// keyframes themselves. The outputs of the part must be in the order of their elements. Errors: those of the stream
+/// and of the run.
 [[nodiscard]] Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, AuditRule rule,
                                     const FindPlace& at, AuditSubject& subject);
 

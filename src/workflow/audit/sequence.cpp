@@ -304,8 +304,8 @@ Result<Audit> internal::watched_audit(MotionStream& stream, const StoredNormals&
 
   const Topology& topology = motion.topology;
   if (const Status status = stream.hold(0, 0); !status) return status.error();
-  // If no normals are stored for all keyframes, the viewer computes normals itself and weights faces by area, even if
-  // the normals in the first file follow another weighting.
+  // If no normals are stored for all keyframes, the viewer computes normals itself and weights faces by area. This is
+  // so even if the file of keyframe 0 stores normals with another weighting.
   const std::optional<Weighting> asked =
       result.stored || options.weighting ? options.weighting : std::optional(Weighting::kArea);
   Weighting weighting = asked.value_or(Weighting::kArea);

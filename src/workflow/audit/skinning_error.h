@@ -13,13 +13,13 @@ namespace chronormal::inline internal {
 
 class SkinningErrors {
  public:
-  /// Judges a sample at which the source is placed. Compares the true normal n(w), transformed by the skin and without
-  /// the author's offset, with the sum of face normals of the skinned positions. Mirrored faces keep their outer side.
-  /// Skips a vertex if its n(w) is below kVanished of its largest length, or if the face normals of the skinned surface
-  /// nearly cancel.
+  /// Measures the error of the skin at the moment at which the source is placed. Compares the true normal n(w),
+  /// transformed by the skin and without the author's offset, with the sum of face normals of the skinned positions.
+  /// Mirrored faces keep their outer side. Skips a vertex if its n(w) is below kVanished of its largest length, or if
+  /// the face normals of the skinned surface nearly cancel.
   void add_sample(const BlendSource& source, const MeasuredSample& sample);
 
-  /// Returns the error of all samples, or nothing if the source has no skin.
+  /// Returns the error over all samples that were added, or nothing if the source has no skin.
   [[nodiscard]] const std::optional<SkinningError>& all() const noexcept { return all_; }
 
  private:

@@ -77,7 +77,7 @@ void StoredSums::add_up(std::vector<std::vector<double>> sets) {
     if (!is_finite[s]) std::fill_n(sums_.data() + s * stride_, stride_, std::numeric_limits<float>::quiet_NaN());
 }
 
-// Adds up one group of outputs. by_target has the weights in the order (targets, sets of weights).
+// Adds up the normals and weighted deltas of group g. by_target has the weights as an array (targets, sets of weights).
 void StoredSums::add_group(std::size_t g, std::span<const float> by_target) {
   const Group& group = groups_[g];
   const std::size_t sets = sets_.size(), first = g * kGroup, count = std::min(kGroup, outputs_.size() - first);

@@ -19,7 +19,7 @@ namespace chronormal::inline internal {
 
 class StoredSums {
  public:
-  /// Sums of this many sets of weights take hardly longer than the sum of one set.
+  /// The number of sets of weights for which sums are computed in one pass. They take hardly longer than one set.
   static constexpr std::size_t kAtOnce = 4;
 
   /// Creates an empty store. shading and outputs must outlive the store. `involved` lists targets in ascending order. A
@@ -32,18 +32,18 @@ class StoredSums {
   /// zero, even if their weight is infinite or NaN. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 
-  /// Returns the sums for one of the sets of weights, three numbers for each output. Returns an empty span if the set
-  /// is not known.
+  /// Returns the sums for one of the sets of weights, three numbers for each output. Returns an empty span if the last
+  /// add_up() did not get this set.
   [[nodiscard]] std::span<const float> find(const std::vector<double>& weights) const noexcept;
 
-  /// Writes the unit normals, rounded to float, that a viewer renders for the sums of outputs from number `first` on.
+  /// Writes the unit normals, rounded to float32, that a viewer renders for the sums of outputs from number `first` on.
   /// If a sum is zero, infinite or NaN, so is its normal.
   void shown(std::span<const float> sums, std::size_t first, std::span<Vec3d> normals) const;
 
   [[nodiscard]] const Viewer& viewer() const noexcept { return viewer_; }
 
  private:
-  // A group of neighbouring outputs, with a row of deltas for each target that changes any of their normals.
+  // A group of neighbouring outputs. It has a row of deltas for each target that changes any of their normals.
   struct Group {
     std::vector<std::uint32_t> targets;  // the targets of the rows, as ascending indices in involved_
     std::vector<float> deltas;           // (targets, 3 kGroup), the deltas of the outputs in the group

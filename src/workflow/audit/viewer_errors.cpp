@@ -19,7 +19,7 @@ bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
 
-// A source as a viewer sees it through a skin, with the functions that error_at() needs.
+// The source as one viewer shows it through a skin, with the functions of a source that error_at() calls.
 struct SeenByViewer {
   const BlendSource& source;
   SkinRule rule;
@@ -33,7 +33,7 @@ struct SeenByViewer {
   }
 };
 
-// Returns the diagonal of the box around the base positions.
+// Returns the length of the diagonal of the box around the base positions.
 double size_of(const GltfShading& shading) noexcept {
   Vec3d low, high;
   for (std::size_t v = 0; v < shading.set.topology.vertex_count(); ++v) {
@@ -86,8 +86,8 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play the same weights and store normals in the same way render the same normals. One of them is
-    // judged for all of them. For each entry of kept_, this list has the error that is known already, or nullptr.
+    // Viewers that play the same weights and store normals in the same way render the same normals. Only the first of
+    // such viewers is judged. of_kept has for each entry of kept_ the error that is known already, or nullptr.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;

@@ -19,7 +19,7 @@
 
 namespace chronormal::inline internal {
 
-/// The error of a viewer in one subject.
+/// The error of a viewer in one subject of the audit.
 struct ViewerError {
   MotionError error;
   double displaced = 0;  ///< as in ViewerAudit
@@ -27,14 +27,14 @@ struct ViewerError {
 
 class ViewerErrors {
  public:
-  /// Creates the judge. `weights` has a function for each viewer, which writes the weights that this viewer plays for
-  /// the involved targets, as in BlendSource. shading and part must outlive the object. is_skinned is true if a skin
-  /// moves the part, since viewers apply skins in different ways.
+  /// Creates the object. `weights` has a function for each viewer, which writes the weights that this viewer plays for
+  /// the involved targets. shading and part must outlive the object. is_skinned is true if a skin moves the part, since
+  /// viewers apply skins in different ways.
   ViewerErrors(const GltfShading& shading, const JudgedPart& part, std::span<const Viewer> viewers,
                std::vector<Weights> weights, std::span<const std::size_t> involved, bool is_skinned = false);
 
-  /// Judges every viewer at a sample at which the source is placed. A viewer that renders the same normals as the
-  /// source gets the error of the source.
+  /// Measures the error in every viewer at the moment at which the source is placed. A viewer that renders the same
+  /// normals as the source gets the error of the source.
   void add_sample(BlendSource& source, const MeasuredSample& sample);
 
   /// Returns the weights that each viewer played at the last sample.
@@ -50,7 +50,7 @@ class ViewerErrors {
   const JudgedPart& part_;
   bool is_skinned_;
   std::vector<Weights> weights_;
-  // The sums of normals and deltas, one entry for each way in which viewers store them.
+  // The sums of stored normals and deltas: one entry for each way in which viewers store normals and deltas.
   std::vector<StoredSums> kept_;
   std::vector<std::size_t> kept_by_;        // for each viewer, its index in kept_
   RightOutputs right_;                      // true normals of outputs, as viewers with another skin rule show them

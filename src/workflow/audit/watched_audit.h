@@ -1,5 +1,5 @@
-/// Audits a share of a sequence, and reports each sample of an audit to callers that keep more than sums. Private to
-/// workflow.
+/// Declares audits that report each sample to a caller who needs more than sums, and the audit of a share of a
+/// sequence. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 #define CHRONORMAL_WORKFLOW_AUDIT_WATCHED_AUDIT_H_
 
@@ -26,7 +26,7 @@
 
 namespace chronormal::inline internal {
 
-/// The errors in one segment, and the errors at both ends of the segment alone.
+/// The errors at all samples of one segment, and the errors at its two ends alone.
 struct SegmentErrors {
   std::size_t segment = 0;
   MotionError error, at_keys;
@@ -37,13 +37,13 @@ using AuditShard = ShardOf<Audit, SegmentErrors>;
 
 /// Audits the share of a sequence's segments that belongs to the run. Every shard needs facts about the whole motion,
 /// such as which vertices move and how long a normal gets. A shard finds these facts in all segments, or, if it has
-/// peers, in its own segments and with maximize(). Errors: also kUsage if single errors are requested of a divided run
-/// or of targets, or if known segments belong to another audit; errors of run.keep.
+/// peers, in its own segments and with maximize(). Errors: those of an undivided audit; kUsage if single errors are
+/// requested of a divided run or of targets, or if known segments belong to another audit; those of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 
 /// Joins the shards of one audit. The result equals that of an audit in one run. There must be at least one shard.
-/// Errors: as join() returns them.
+/// Errors: those of join() for shards.
 [[nodiscard]] Result<Audit> merge(std::vector<AuditShard> shards);
 
 /// A judged sample of a subject. Spans and references are valid during the call.
@@ -73,7 +73,7 @@ struct AuthorOfMesh {
   AuthoredWeighting weighting;  ///< the weighting that the base normals follow
 };
 
-/// The meshes of an audited file, keyed by index.
+/// The meshes of the author's file, keyed by the index of the mesh.
 using KnownAuthors = std::map<std::size_t, std::shared_ptr<AuthorOfMesh>>;
 
 /// Audits a file. If options.author is the file of an earlier audit in `known`, uses the facts about the author that
@@ -82,15 +82,15 @@ using KnownAuthors = std::map<std::size_t, std::shared_ptr<AuthorOfMesh>>;
 [[nodiscard]] Result<Audit> audit(const GltfDocument& document, const AuditOptions& options, KnownAuthors& known);
 
 /// Run the audits of workflow/audit.h and report each sample, subject by subject. Tracks with the same keys are
-/// reported once, as the first of these tracks. If the watch is empty, no sample is reported.
+/// reported once, as the first of these tracks. If `watch` is empty, no sample is reported.
 [[nodiscard]] Result<Audit> watched_audit(const GltfDocument& document, const AuditOptions& options,
                                           const AuditWatch& watch, KnownAuthors* known = nullptr);
 [[nodiscard]] Result<Audit> watched_audit(MotionStream& stream, const StoredNormals& normals,
                                           const AuditOptions& options, AuditRun& run, const AuditWatch& watch);
 
 /// Returns the groups of corners that share a normal in the audit of a motion. Corners are in one group if smooth edges
-/// join them. If keyframe 0 has stored normals, these determine which edges are smooth. Errors: as NormalGroups and the
-/// stream return them.
+/// join them. If keyframe 0 has stored normals, these determine which edges are smooth. Errors: those of NormalGroups
+/// and of the stream.
 [[nodiscard]] Result<NormalGroups> audited_groups(MotionStream& stream, const StoredNormals& normals, bool weld);
 
 }  // namespace chronormal::inline internal

@@ -60,7 +60,7 @@ std::vector<std::size_t> candidate_meshes(const GltfDocument& document) {
   return result;
 }
 
-// Returns true if a target changes the image, because it moves vertices or changes normals.
+// Returns true if a target changes the rendered image, because it moves vertices or changes normals.
 bool changes(const GltfShading& shading, std::size_t target) { return moves(shading, target) || shading.turns[target]; }
 
 bool any_changes(const GltfShading& shading) {
@@ -90,16 +90,16 @@ std::vector<bool> recomputed_parts(const GltfMesh& mesh, const GltfShading& shad
   return result;
 }
 
-// Finds the true normals. If the options give a weighting, they are sums by this weighting; otherwise they are the
-// normals that the author intended. If base normals are recomputed, the author's normals do not count, and area is the
-// weighting unless the options give one.
+// Finds the true normals. If the options give a weighting, they are sums by this weighting; otherwise they follow the
+// normals of the author. If base normals are recomputed, the author's normals do not count, and area is the weighting
+// unless the options give one.
 AuthorTruth truth_of(GltfShading& shading, const BakeOptions& options) {
   if (options.recompute_base) return {shading, options.weighting.value_or(Weighting::kArea)};
   return author_truth(shading, options.weighting);
 }
 
-// Splits the gaps between keys into pieces, so that the curves of correction weights can follow weights that are not
-// quadratic within a gap. Long tracks are not split, because their gaps are short.
+// Splits the gaps between the keys of each track into pieces, so that the curves of correction weights can follow
+// weights that are not quadratic within a gap. Long tracks are not split, because their gaps are short.
 void cut_gaps(MeshWeights& weights) {
   constexpr std::size_t kNodes = 128, kMostPieces = 8;
   for (WeightTrack& track : weights.tracks)
@@ -124,7 +124,7 @@ RigPoses rig_of(const GltfMesh& mesh, const GltfShading& shading, PoseList given
   return {mesh.target_names, std::move(moving), mesh.target_count, std::move(given)};
 }
 
-// Functions that compute the arrays of a mesh for one target at a time, so that few arrays are in memory together.
+// Functions that compute the arrays of a mesh for one target at a time, so that not all arrays are in memory together.
 struct MeshDeltas {
   std::function<std::optional<TargetDeltas>(std::size_t target)> own;  // returns nothing if the target keeps its deltas
   std::function<TargetDeltas(std::size_t extra)> extra;
@@ -169,7 +169,7 @@ std::size_t bytes_of_tangents(const DeltaSource& source, const std::vector<bool>
   return bytes;
 }
 
-// The progress of a bake, which the caller wants to know. Each target of a mesh counts twice: when the candidate for
+// The progress of a bake, as it is reported to the caller. Each target of a mesh counts twice: when the candidate for
 // its mesh is chosen, and when the target is written.
 class Course {
  public:
@@ -293,9 +293,9 @@ bool is_baked(const GltfShading& shading, const BakeOptions& options) {
          (shading.mark->sequence || !shading.mark->extras.empty() || shading.mark->encoding == encoding_of(options));
 }
 
-// Judges a mesh that was baked before, so that a bake reports an error beyond the tolerance. In a mesh that was baked
-// from a sequence, each target is one keyframe. Judging such targets takes long, so they are judged only if a tolerance
-// is requested.
+// Judges a mesh that an earlier bake wrote, so that the bake reports an error beyond the tolerance. In a mesh that was
+// baked from a sequence, each target is one keyframe. Judging such targets takes long, so they are judged only if a
+// tolerance is requested.
 Status judge_again(const GltfDocument& document, const BakeOptions& options, GltfShading& shading, MeshBake& baked) {
   const bool is_asked = options.tolerance || options.plan || !shading.mark->sequence;
   if (encoding_of(options) != BakeEncoding::kSmallest || !is_asked || !any_changes(shading) || !any_shaded(shading))

@@ -25,7 +25,7 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"file", "end point", "least squares", "exact"};
 constexpr std::array<std::size_t, 5> kActive = {1, 2, 4, 8, 16};
 constexpr std::size_t kRowsPerTarget = 16;  // rows of weights per target, to which deltas are fitted by least squares
-// The largest number of weights in all rows together. One list in memory has all of these weights.
+// The largest number of weights in all poses together, because one list in memory has all of these weights.
 constexpr std::size_t kMostWeights = std::size_t{1} << 27;
 // The largest number of bytes for the precomputed terms of n(w). If the terms take more, normals are computed from
 // blended positions.
@@ -45,8 +45,8 @@ struct Output {
   std::uint32_t element = 0, number = 0;
 };
 
-// A set of blend shapes whose normals are compared. If groups is nullptr, the elements are faces. `shading` is nullptr
-// if the set does not come from a glTF file.
+// A set of blend shapes whose normals are compared. If `groups` is nullptr, the elements are faces. `shading` is
+// nullptr if the set does not come from a glTF file.
 struct Subject {
   const BlendSet* set = nullptr;
   const NormalGroups* groups = nullptr;
@@ -56,20 +56,20 @@ struct Subject {
   [[nodiscard]] std::size_t elements() const { return groups ? groups->size() : set->topology.face_count(); }
 };
 
-// A normal, and the size of the terms of which it is the sum. A term is a product of the lengths of two edges.
+// A normal, and the sum of the sizes of its terms. The size of a term is the product of the lengths of two edges.
 struct SizedNormal {
   Vec3d value;
   double size = 0;
 
-  // Returns the normal, or (0, 0, 0) if its terms cancel so far that only rounding error is left. A returned direction
-  // has an error of at most 1e-6 rad.
+  // Returns the normal, or (0, 0, 0) if its terms cancel so far that only rounding error is left. The direction of a
+  // returned normal has an error of at most 1e-6 rad.
   [[nodiscard]] Vec3d without_rounding() const { return length(value) > 1e-10 * size ? value : Vec3d{}; }
 };
 
 SizedNormal operator+(const SizedNormal& a, const SizedNormal& b) { return {a.value + b.value, a.size + b.size}; }
 
-// Computes n(w) of all elements as cross products of blended positions, without the library's own formula for n(w).
-// Returns (0, 0, 0) for an n(w) that is only rounding error.
+// Computes the normals n(w) of all elements as cross products of blended positions, independently of the formula for
+// n(w) that is tested. Returns (0, 0, 0) for an n(w) that is only rounding error.
 std::vector<Vec3d> true_normals(const Subject& subject, std::span<const double> weights) {
   const Topology& topology = subject.set->topology;
   std::vector<double> positions(subject.set->base.size());
@@ -152,7 +152,8 @@ class BlendMeter {
     return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
   }
 
-  // Measures the errors at `rows`. The deltas by least squares are fitted to other weights, fitted_rows.
+  // Measures the errors at the weights in `rows`. Deltas by least squares are fitted to the weights in fitted_rows,
+  // which are different.
   BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
                       const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);
@@ -186,8 +187,8 @@ class BlendMeter {
     return result;
   }
 
-  // Returns the sum of the stored normal and of weight times stored delta over all targets. Adds in float32 and in the
-  // order of targets, as viewers do.
+  // Returns the sum that a viewer computes for an output: the stored normal, plus weight times stored delta over all
+  // targets. Adds in float32 and in the order of targets, as viewers do.
   [[nodiscard]] Vec3d stored(const Output& output, std::span<const double> weights) const {
     Vec3f sum = to_float(vector_at(subject_.shading->normals, output.number));
     for (std::size_t k = 0; k < weights.size(); ++k) {
@@ -288,7 +289,7 @@ Status check(const BlendCompareOptions& options) {
   return Success{};
 }
 
-// Lists the numbers of targets that have a weight at the same time. Errors are compared for each of these numbers. If
+// Lists the numbers of targets that are active at the same time. Schemes are compared separately for each number. If
 // `wanted` is not 0, the list has only this number; otherwise it has the usual numbers that are below the number of
 // targets, and the number of targets.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
@@ -309,8 +310,8 @@ Status check_memory(const std::string& place, std::size_t rows, std::size_t targ
                                   " poses; compare fewer poses");
 }
 
-// Draws random weights for the mesh's own targets. Returns rows with the weights of all targets, in which the weights
-// of correction targets follow from the drawn weights.
+// Draws random weights for `own`, the mesh's own targets. Returns rows with the weights of all targets, in which the
+// weights of correction targets follow from the drawn weights.
 std::vector<double> random_rows(const Subject& subject, const std::vector<std::size_t>& own, std::size_t count,
                                 std::size_t active, std::uint64_t seed) {
   const std::vector<double> drawn = random_blend_weights({own.size(), count, active, 0, 1, seed});
@@ -345,7 +346,7 @@ BlendSubject describe(const Subject& subject, ElementKind kind) {
   return result;
 }
 
-// Lists the vertices that have a stored normal and a face.
+// Lists the vertices that have a stored normal and belong to a face.
 std::vector<Output> outputs_of(const GltfShading& shading) {
   std::vector<Output> result;
   for (std::uint32_t v = 0; v < shading.element_of_vertex.size(); ++v)

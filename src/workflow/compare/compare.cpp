@@ -31,9 +31,9 @@
 namespace chronormal {
 namespace {
 
-// The number of elements in a block. It is so small that a block stays in the second-level cache, even with the scheme
-// that needs most memory. A wave of blocks, which are computed at the same time, has kBlocksPerWaveAndThread blocks for
-// each thread. This number is small, so that few partial results are in memory and progress is reported often.
+// The numbers of elements in a block, and of blocks for each thread in a wave. A block is so small that it stays in the
+// second-level cache, even with the scheme that needs most memory. The blocks of a wave are computed at the same time.
+// A wave is small, so that few partial results are in memory and progress is reported often.
 constexpr std::size_t kBlockSize = 1024;
 constexpr std::size_t kBlocksPerWaveAndThread = 4;
 
@@ -43,8 +43,8 @@ double nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
 }
 
-// Returns the median. A thread that is interrupted measures too long a time, and a few such values do not change the
-// median.
+// Returns the median of measured times. A thread that is interrupted measures too long a time, and a few such values do
+// not change the median.
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -64,8 +64,8 @@ struct Tally : SchemeTally {
   }
 };
 
-// The times of one scheme. Only the median of each segment is kept, so memory grows with the number of segments but not
-// with the number of faces.
+// The times that one scheme takes. Only the median of each segment is kept, so memory grows with the number of segments
+// but not with the number of faces.
 struct SchemeTimes {
   std::vector<float> prepare_ns, evaluate_ns;
 };
@@ -74,7 +74,7 @@ double time_of_sample(std::size_t i, std::size_t samples) {
   return static_cast<double>(i) / static_cast<double>(samples - 1);
 }
 
-// The elements of a motion: its faces, or groups of their corners.
+// The elements of a motion whose normals are compared: its faces, or groups of their corners.
 class Elements {
  public:
   explicit Elements(const Topology& topology) : count_(topology.face_count()) {}
@@ -96,16 +96,16 @@ class Elements {
   }
   [[nodiscard]] bool are_faces() const noexcept { return !groups_; }
 
-  // Returns the number by which messages name an element. This is the number of its face, or of the first vertex or
-  // corner that shows it.
+  // Returns the number by which messages name an element: the index of its face, or the index of the first vertex or
+  // corner that shows the element.
   [[nodiscard]] std::size_t first_output(std::size_t element) const {
     if (!groups_) return element;
     const auto outputs = groups_->element_of_output();
     return static_cast<std::size_t>(std::find(outputs.begin(), outputs.end(), element) - outputs.begin());
   }
 
-  // Computes the control normals of all faces for the segments from first to last, and keeps these control normals,
-  // because a face can belong to many groups.
+  // Computes the control normals of all faces for the segments from `first` to `last`. Keeps them, because a face can
+  // belong to many groups.
   void enter(const Motion& motion, std::size_t first, std::size_t last) {
     if (!groups_ || !by_area()) return;
     of_faces_.erase(of_faces_.begin(), of_faces_.lower_bound(first));
@@ -142,7 +142,7 @@ class Elements {
     else
       face_control_normals(segment, range, result);
   }
-  // Returns a range of elements in the form that schemes need for their preparation. All arguments must outlive the
+  // Returns a range of elements as a block from which schemes prepare their data. All arguments must outlive the
   // result.
   [[nodiscard]] ElementBlock block(const Segment& segment, IndexRange range,
                                    std::span<const ControlNormals> normals) const {
@@ -162,12 +162,13 @@ class Elements {
       errors.push_back(settled_group_normals(shared(segment), *groups_, of_faces, range.first + i).errors);
     return errors;
   }
-  // Returns the triangles for exact_normals(), or nothing if the elements are not triangles.
+  // Returns the triangles of a range of faces, for exact_normals(). Returns nothing if the elements are not triangles.
   [[nodiscard]] std::optional<ReferenceTriangles> triangles(const Segment& segment, IndexRange range) const {
     if (groups_ || !segment.topology->all_triangles()) return std::nullopt;
     return ReferenceTriangles(segment, range);
   }
-  // Computes the exact normals at a sample. The results have any length.
+  // Computes the exact normals of a range of elements at a sample (an instant of a segment). The results have any
+  // length.
   void exact_normals(const Segment& segment, IndexRange range, const std::optional<ReferenceTriangles>& triangles,
                      std::size_t sample, std::size_t samples, std::span<Vec3d> result) const {
     const double t = time_of_sample(sample, samples);
@@ -199,27 +200,28 @@ class Elements {
   Weighting weighting_ = Weighting::kArea;
   std::size_t count_;
   std::size_t samples_ = 0;  // the number of samples; set only for groups
-  // The number of corners above which the normal of a face is computed once for all groups that contain the face. These
-  // stored normals take less than 400 bytes for each corner.
+  // The largest number of corners of a face whose normal is computed anew for each group. The normal of a larger face
+  // is computed once for all groups that contain the face. These stored normals take less than 400 bytes for each
+  // corner.
   std::size_t many_corners_ = 0;
-  // The control normals of faces, by segment; only for groups.
+  // The control normals of all faces, keyed by the segment. Only used if elements are groups.
   std::map<std::size_t, std::vector<ControlNormals>> of_faces_;
   std::vector<std::uint32_t> large_;           // for groups: faces with more than many_corners_ corners
   std::map<std::size_t, SharedFaces> shared_;  // only for groups: control normals of faces for exact sums, by segment
-  // By segment: the areas of the faces in large_ at each sample.
+  // The areas of the faces in large_ at each sample, keyed by the segment.
   std::map<std::size_t, std::vector<ReferenceArea>> of_large_;
   double shared_ns_ = 0;
 };
 
-// Returns the angle in degrees between an exact and a rendered normal. Returns NaN if one of them has no direction;
-// Quality does not count such samples either.
+// Returns the angle in degrees between an exact and a rendered normal. Returns NaN if one of the normals has no
+// direction, because Quality does not count such samples.
 float error_in_degrees(const Vec3d& exact, const Vec3d& shown) {
   if (exact == Vec3d{} || shown == Vec3d{} || !is_finite(shown)) return std::numeric_limits<float>::quiet_NaN();
   return static_cast<float>(angle_between(unit(exact), shown) * kDegreesPerRadian);
 }
 
-// Makes a table of the errors of one scheme, (rows, elements). If several vertices or corners share an element, each of
-// them has an entry.
+// Makes a table of the errors of one scheme. of_elements has the errors of elements, (rows, elements). If several
+// vertices or corners share an element, each of them gets an entry in the table.
 ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOptions& options, const std::string& scheme,
                     const std::vector<float>& of_elements) {
   ErrorTable table{scheme, options.elements.kind, motion.topology, motion.keyframes[0].positions};
@@ -240,7 +242,7 @@ ErrorTable table_of(const Motion& motion, const Elements& all, const CompareOpti
   return table;
 }
 
-// Returns a bound of the largest error of a scheme that is prepared for a block.
+// Returns a certified bound of the largest error of a scheme that has been prepared for a block.
 CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, std::span<const ControlErrors> errors) {
   CertifyOptions options;
   options.only_worst = true;
@@ -255,7 +257,7 @@ CertifiedError certified_error(const Scheme& scheme, const ElementBlock& block, 
   return all;
 }
 
-// Returns a checksum of the options and of the names of the schemes.
+// Returns a checksum of the options of a comparison and of the names of the schemes.
 std::uint32_t checksum_of_options(const CompareOptions& options, const std::vector<std::string>& names) {
   NumberChecksum sum;
   for (const std::string& name : names) sum.add(name);
@@ -270,7 +272,7 @@ std::uint32_t checksum_of_options(const CompareOptions& options, const std::vect
 }
 
 // Prepares every scheme on one block of elements, evaluates it at every sample, and compares its normals with the exact
-// normals. If `each` is not empty, writes the errors of each scheme to its array there.
+// normals. If `each` is not empty, writes the errors of each scheme to the array of this scheme in `each`.
 std::vector<Tally> compare_block(const Segment& segment, const Elements& all, IndexRange range,
                                  const std::vector<std::string>& names, const CompareOptions& options,
                                  std::span<std::vector<float>> each) {
@@ -427,8 +429,8 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   Result<std::vector<SchemeComparison>> made = rows_of(options);
   if (!made) return made.error();
   std::vector<SchemeComparison> rows = std::move(made).value();
-  // Results show the errors of all schemes relative to those of `linear`, so `linear` is computed even if no row shows
-  // it.
+  // Adds `linear` to the computed schemes even if no row shows it, because results show the errors of all schemes
+  // relative to those of `linear`.
   std::vector<std::string> names;
   for (const SchemeComparison& row : rows) names.push_back(row.scheme);
   if (std::find(names.begin(), names.end(), "linear") == names.end()) names.emplace_back("linear");
@@ -486,7 +488,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   const Status compared = run.over(
       stream, segment_keys(motion), run.rest(), std::max<std::size_t>(at_once / blocks, 1), [&](IndexRange segments) {
         all.enter(motion, segments.first, segments.end() - 1);
-        // Several small segments are computed together. A large segment is computed in several waves.
+        // Computes several small segments together, and a large segment in several waves.
         const std::size_t wanted = segments.count * blocks;
         for (std::size_t first = 0; first < wanted; first += at_once) {
           const std::size_t count = std::min(at_once, wanted - first);

@@ -9,11 +9,12 @@
 namespace chronormal {
 namespace {
 
-// An average error of `linear` below this is only rounding error, so errors of other schemes are not divided by it.
+// The average error of `linear`, in radians, below which this error is only rounding error. Errors of other schemes are
+// then not divided by it.
 constexpr double kNoError = 1e-6;  // radians
 
-// Returns the cheapest scheme whose error is within the tolerance, in degrees. A scheme for which no normal could be
-// compared does not count.
+// Returns the cheapest scheme whose error is within `degrees`. Leaves out a scheme for which no normal could be
+// compared.
 std::optional<std::size_t> cheapest_within(const std::vector<SchemeComparison>& schemes, double degrees) {
   std::optional<std::size_t> cheapest;
   for (std::size_t s = 0; s < schemes.size(); ++s) {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kQuaternion = "quaternion:", kRandom = "quaternion:random";
 
-// Returns the sum of vectors that a scheme computes before normalization.
+// Returns the vector that a scheme computes at t, before it is normalized: the weighted sum of its coefficients.
 Vec3d sum_at(const FittedCurves& fitted, double t) {
   const WeightBasis& basis = *fitted.basis;
   const ElementCoefficients coefficients = coefficients_of(fitted.coefficients, 0);
@@ -58,9 +58,9 @@ std::optional<FramePair> frames_of(std::string_view scheme, const ElementMotion&
   return random_frames(element, seed);
 }
 
-// Returns the tangents of the frames at all times. The scheme quaternion:optimal allows any tangent, because all
-// tangents turn with the same rotation and give the same normals. For this scheme, the tangent at t = 0 lies along the
-// first edge.
+// Returns the tangents of the frames of a quaternion scheme at all times. The scheme quaternion:optimal allows any
+// tangent, because all tangents turn with the same rotation and give the same normals. For this scheme, the tangent at
+// t = 0 lies along the first edge.
 std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& element, const FittedCurves* fitted,
                                std::span<const double> times) {
   Vec3d start;
@@ -84,8 +84,8 @@ std::vector<Vec3d> tangents_of(std::string_view scheme, const ElementMotion& ele
   return tangents;
 }
 
-// Returns the matrix M of the paper (eq. 8). Its linear part is e1 e^0 + f1 f^0 + u1 u^0, where e^0, f^0, u^0 is the
-// dual basis of e0, f0, u0.
+// Returns the matrix M of the paper (eq. 8), which takes the face from t = 0 to t = 1. Its linear part is e1 e^0 + f1
+// f^0 + u1 u^0, where e^0, f^0, u^0 is the dual basis of e0, f0, u0; e and f are edges, and u is the unit normal.
 std::optional<std::array<std::array<double, 4>, 3>> matrix_of(const FaceFigure& figure, const ControlNormals& normals) {
   const auto edge = [&](std::size_t corner, std::size_t end) {
     return figure.corners[corner][end] - figure.corners[0][end];

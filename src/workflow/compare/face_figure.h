@@ -40,10 +40,10 @@ struct SchemeFigure {
   std::vector<double> lengths;  ///< (S) lengths before normalization; empty if the length is always 1
   /// The steps of de Casteljau's algorithm. `nodes` has the exact normals with which the algorithm begins, (K).
   /// `points` has the points that the algorithm computes at each sample: K - 1 of the first level, K - 2 of the second,
-  /// ..., 1 of the last level, (S, K (K - 1) / 2). Both lists are empty for other schemes.
+  /// ..., 1 of the last level, (S, K (K - 1) / 2). Both lists are empty for schemes that do not use this algorithm.
   std::vector<Vec3d> nodes, points;
-  /// (S) The tangent of a quaternion's frame at each sample. The binormal is normal x tangent. The list is empty for
-  /// other schemes, and if the scheme used its fallback.
+  /// The tangent of a quaternion scheme's frame at each sample, (S). The binormal is normal x tangent. The list is
+  /// empty for other schemes, and if the scheme used its fallback.
   std::vector<Vec3d> tangents;
 };
 
@@ -51,7 +51,8 @@ struct FaceFigure {
   std::size_t face = 0, segment = 0;
   std::vector<std::array<Vec3d, 2>> corners;  ///< the positions of each corner at t = 0 and at t = 1
   std::vector<double> times;                  ///< (S) the times t, from 0 to 1
-  /// (S) exact unit normals; where the area is zero, their limit, or zero if there is no limit.
+  /// The exact unit normal at each sample, (S). If the area is zero at a sample, its limit, or zero if there is no
+  /// limit.
   std::vector<Vec3d> normals;
   std::vector<double> lengths;  ///< (S) the length of n(t), which is twice the area
   /// The paper's matrix M (eq. 8), by rows. It is the affine map that takes the first, the second and the last corner

@@ -1,5 +1,5 @@
-// Leaves out keyframes of a motion, and compares the normals that schemes interpolate there with the true normals of
-// these keyframes.
+// Leaves out keyframes of a motion, lets schemes interpolate normals at the times of these keyframes, and compares
+// these normals with the true normals.
 #include "chronormal/workflow/compare.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kTruthBlock = 1024;
 
-// The keyframes that are not left out.
+// The keyframes of a motion that are not left out: every `every`-th keyframe.
 class KeptKeys {
  public:
   KeptKeys(const Motion& motion, std::size_t every) : motion_(motion), every_(every) {}
@@ -104,7 +104,7 @@ class TruthElements {
   std::size_t count_;
 };
 
-// The segment between two kept keyframes, and the keyframes that were left out in it.
+// The segment between two kept keyframes, and the keyframes between them that were left out.
 struct Piece {
   Segment segment;
   std::span<const Motion::Keyframe> between;
@@ -116,7 +116,7 @@ struct Piece {
   }
 };
 
-// Returns the poses of the mesh on a curve, at the times of the keyframes that were left out.
+// Returns the poses of the mesh if its vertices move on a curve, at the times of the keyframes that were left out.
 std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegment& curve) {
   std::vector<Motion::Keyframe> poses;
   for (const Motion::Keyframe& keyframe : piece.between) {
@@ -131,8 +131,8 @@ std::vector<Motion::Keyframe> poses_on_curve(const Piece& piece, const CubicSegm
   return poses;
 }
 
-// Measures the errors of all rows on one block of elements. The rows of schemes come first, then the rows of curved
-// paths.
+// Measures the errors on one block of elements, for all rows of the result. The rows of schemes come first, then the
+// rows of curved paths.
 std::vector<Quality> errors_of_block(const Piece& piece, const TruthElements& elements, IndexRange range,
                                      const std::vector<std::string>& names) {
   std::vector<std::unique_ptr<Scheme>> schemes;

@@ -11,9 +11,9 @@
 
 namespace chronormal::inline internal {
 
-/// Reserves memory for this many rows. `earlier` counts the bytes of other tables of the same result, and grows by the
-/// bytes of this table. Errors: kUsage if the table takes more than kMostErrorBytes; errors of expansion.check() for
-/// all tables together.
+/// Reserves memory for `rows` rows of a table of errors. `earlier` counts the bytes of other tables of the same result,
+/// and grows by the bytes of this table. Errors: kUsage if the table takes more than kMostErrorBytes; those of
+/// expansion.check() for all tables together.
 [[nodiscard]] Status reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion,
                                   std::uint64_t& earlier);
 [[nodiscard]] inline Status reserve_rows(ErrorTable& table, std::size_t rows, const Expansion& expansion) {

@@ -31,13 +31,14 @@
 namespace chronormal {
 namespace {
 
-// A bound of the rounding error of a normal, relative to the largest coordinate times the longer edge. Rounding to
-// float32 moves a point by up to sqrt(3) times half a unit in the last place. An edge has two such points at its ends,
-// and a normal is the cross product of two such edges.
+// A factor that bounds the rounding error of a normal, relative to the largest coordinate times the longer edge.
+// Rounding to float32 moves a point by up to sqrt(3) times half a unit in the last place. An edge has two such points
+// at its ends, and a normal is the cross product of two such edges.
 constexpr double kRounding = 4 * 1.7320508075688772 * 0x1p-24;
 
-// The number of faces or vertices in a block. It is so small that the control normals of a block stay in the
-// second-level cache. A wave has one segment, or enough small segments to keep all threads busy.
+// The numbers of faces or vertices in a block, and of blocks for each thread in a wave. A block is so small that its
+// control normals stay in the second-level cache. A wave has one segment, or enough small segments to keep all threads
+// busy.
 constexpr std::size_t kBlock = 8 * kCountedTogether, kBlocksPerThread = 4;
 
 // The problems that a face can have, one bit for each.
@@ -66,7 +67,7 @@ struct FaceTally {
     }
     marks[face].fetch_or(mark, std::memory_order_relaxed);
   }
-  // Adds the count for the faces that follow in the same keyframe or segment.
+  // Adds the count of one problem for faces that follow in the same keyframe or segment.
   void add(const FaceTally& next) {
     if (count == 0) {
       first_face = next.first_face;
@@ -93,7 +94,7 @@ struct Box {
   static Vec3f highest(const Vec3f& a, const Vec3f& b) {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
   }
-  // Returns the largest absolute coordinate.
+  // Returns the largest absolute coordinate of a point in the box.
   [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
 };
 
@@ -187,7 +188,7 @@ double rounding_of(std::span<const std::uint32_t> face, VectorView<const float> 
 // Judges a face at one keyframe by its normal. `most` is the largest coordinate of the keyframe.
 void inspect_at_keyframe(std::span<const std::uint32_t> face, std::size_t f, VectorView<const float> positions,
                          double most, const Vec3d& normal, KeyframeTally& tally, FaceMarks& marks) {
-  // The largest possible rounding error of a triangle's normal.
+  // A bound of the rounding error of any triangle's normal at this keyframe.
   const double largest_rounding = kRounding * most * 2 * most;
   const double size = max_abs(normal);
   if (size > static_cast<double>(face.size() - 2) * largest_rounding) return;
@@ -222,15 +223,15 @@ void inspect_vertices(const Segment& segment, IndexRange vertices, VertexTally& 
   }
 }
 
-// Returns a factor s for a quick test of angles. If a.b > 0 and (a.b)^2 > s |a|^2 |b|^2, the angle between a and b is
-// certainly smaller than `angle`, in radians.
+// Returns the factor s of a quick test that an angle is small. If a.b > 0 and (a.b)^2 > s |a|^2 |b|^2, the angle
+// between a and b is certainly smaller than `angle`, in radians.
 double square_of_cosine_above(double angle) {
   const double cosine = angle < std::numbers::pi / 2 ? portable::cos(angle) : 0;
   return cosine * cosine * (1 + 1e-12);
 }
 
-// Examines a face in a segment. most_of_square must be square_of_cosine_above() of the largest angle so far. If a face
-// turns by less, its exact angle is not computed.
+// Examines face f in a segment. most_of_square is square_of_cosine_above() of the largest turn of a face so far. If
+// face f turns by less, the exact angle is not computed.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);
@@ -245,7 +246,7 @@ void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c
   if (is_far_from_collapse(c)) return;
   const Collapses exact = find_collapses(segment, f, c);
   const auto zero = std::find_if(exact.instants().begin(), exact.instants().end(), [](const Collapse& each) {
-    // If there are normals before and after the collapse, it is not at an end of the segment.
+    // Finds a collapse that is not at an end of the segment: there are normals before and after it.
     return each.before != Vec3d{} && each.after != Vec3d{};
   });
   if (zero != exact.instants().end()) tally.vanishing.add(f, kVanishes, marks, zero->upper);
@@ -294,8 +295,8 @@ void inspect_still_faces(const Segment& segment, IndexRange faces, double most, 
                         marks);
 }
 
-// Returns the range of items in the block with this number, among `count` faces or vertices. The range is empty for
-// numbers beyond the last block.
+// Returns the range of faces or vertices in the block with this number, if there are `count` of them in all. The range
+// is empty for numbers beyond the last block.
 IndexRange block_of(std::size_t number, std::size_t count) {
   const std::size_t first = std::min(number * kBlock, count);
   return {first, std::min(kBlock, count - first)};
@@ -336,8 +337,8 @@ Result<Inspection> inspect(MotionStream& stream,
     }
   }
 
-  // Each keyframe is judged once, in the first segment that begins or ends with it. A keyframe without such a segment
-  // is judged as a mesh at rest.
+  // Assigns each keyframe to the first segment that begins or ends with it, so that it is judged once. A keyframe
+  // without such a segment is judged as a mesh at rest.
   const std::size_t segment_count = motion.segments.size();
   std::vector<std::optional<std::size_t>> judge(result.keyframes);
   for (std::size_t s = segment_count; s > 0; --s) {
@@ -357,7 +358,8 @@ Result<Inspection> inspect(MotionStream& stream,
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
   std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
   std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
-  // The numbers of segments come first, and then the numbers of keyframes that no segment judges.
+  // Maps an index to the keyframes at both ends. Indices of segments come first, followed by those of the keyframes
+  // that no segment judges.
   const auto moves = [&](std::size_t s) { return s < segment_count; };
   const auto keys_of = [&](std::size_t s) {
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};
@@ -421,7 +423,7 @@ Result<Inspection> inspect(MotionStream& stream,
   result.low = result.low + origin;
   result.high = result.high + origin;
 
-  // The counts are added in order, so that the first face of each problem does not depend on the threads.
+  // Adds the counts in order, so that the first face of each problem does not depend on the threads.
   for (std::size_t k = 0; k < keyframes.size(); ++k) {
     add_tally(result.no_area, keyframes[k].no_area, k);
     add_tally(result.slivers, keyframes[k].slivers, k);

@@ -61,7 +61,7 @@ Result<GltfPrimitiveInspection> inspect_primitive(const GltfDocument& document, 
   return result;
 }
 
-// Widens the range of weights if the spline goes beyond this range between two keys.
+// Widens the range of a track's weights if the spline goes beyond this range between two keys.
 void add_spline(const Bernstein<double, 3>& weight, GltfTrackInspection& result) {
   const auto [lowest, highest] = std::minmax_element(weight.begin(), weight.end());
   if (result.lowest <= *lowest && *highest <= result.highest) return;
@@ -84,7 +84,8 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
   if (times.empty()) return result;
   result.first_time = times.front();
   result.last_time = times.back();
-  // A cubic spline has three rows for each key. The middle row has the weights.
+  // Takes the middle one of the three rows that a cubic spline has for each key. It has the weights, and the others
+  // have tangents.
   const bool is_cubic = document.animations()[animation].tracks[track].interpolation == GltfInterpolation::kCubicSpline;
   const std::size_t rows = times.size() * (is_cubic ? 3 : 1), width = values.size() / rows;
   bool is_first = true;

@@ -26,7 +26,7 @@ Status inspect_opened(const ProgressCallback& progress, Inspected& result) {
   return inspect_keyframes(*read.value(), progress, result);
 }
 
-// Inspects the contents of a glTF file, and then its meshes that move.
+// Inspects the contents of a glTF file, and then the motions of its meshes that move.
 Status inspect_document(const std::string& animation, const ProgressCallback& progress, Inspected& result) {
   Input& input = *result.opened;
   const GltfDocument& document = *input.document();

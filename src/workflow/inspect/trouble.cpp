@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::size_t kLongestName = 40;
 
-// A weight this near to 0 or 1 counts as 0 or 1, because exporters compute weights with rounding errors.
+// The distance from 0 or 1 up to which a weight counts as 0 or 1, because exporters compute weights with rounding
+// errors.
 constexpr double kRoundedWeight = 1e-3;
 
 std::string numbered(const char* what, std::size_t number) { return what + (' ' + std::to_string(number)); }
@@ -28,7 +29,7 @@ std::string have(const std::string& counted_things, std::size_t count) {
   return counted_things + (count == 1 ? " has" : " have");
 }
 
-// Returns the number of reports as text, such as ", 30 times altogether", if some face is reported more than once.
+// Returns how often faces were reported, such as ", 30 times altogether", if some face is reported more than once.
 // Otherwise returns an empty text.
 std::string in_all(const Places& places) {
   return places.pairs > places.faces ? ", " + grouped(places.pairs) + " times altogether" : "";
@@ -48,8 +49,8 @@ class Troubles {
             (input_.segments.empty() ? "" : " at " + keyframe_label(input_, places.first_at)),
         std::move(meaning));
   }
-  // Adds a problem such as "2 faces turn over" or "1 face turns over". For these, `verb` is " turn" and `rest` is "
-  // over".
+  // Adds a problem such as "2 faces turn over" or "1 face turns over". In this example, `verb` is " turn" and `rest` is
+  // " over".
   void in_segments(std::string kind, const Places& places, const std::string& verb, const std::string& rest,
                    bool has_instant, std::string meaning) {
     if (places.pairs == 0) return;
@@ -134,7 +135,8 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                "they separate later, so they must not be merged by their first positions");
 }
 
-// Returns the name of a part, such as "Head, primitive 1". Adds the name of the node if several nodes have the mesh.
+// Returns the name of a primitive in a motion, such as "Head, primitive 1". Adds the name of the node if several nodes
+// have the mesh.
 std::string part_label(const InspectedGltf& gltf, const GltfPart& part) {
   std::string label = mesh_label(*gltf.document, part.mesh) + numbered(", primitive", part.primitive);
   if (part.node && gltf.inspection.instances[part.mesh] > 1)

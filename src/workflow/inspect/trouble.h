@@ -1,5 +1,5 @@
-/// Describes problems that inspect_input() has found, and what these problems mean for normals. The words are for
-/// people. Private to workflow and the program.
+/// Describes the problems that inspect_input() has found, in sentences for people, and what these problems mean for
+/// normals. Private to workflow and the program.
 #ifndef CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 #define CHRONORMAL_WORKFLOW_INSPECT_TROUBLE_H_
 

@@ -25,8 +25,8 @@ Json place_json(const AuditPlace& place, const char* moment) {
 
 const char* moment_of(const AuditSubject& subject) { return audit_moment_name(subject.kind); }
 
-// Adds the average number of torn edges in a sample, for tears beyond 10, 20 and 40 degrees, and the largest number in
-// one sample.
+// Adds the average number of torn edges in a sample, and the largest number in one sample, for tears beyond 10, 20 and
+// 40 degrees.
 void add_torn(const MotionError& error, Json& json) {
   if (error.samples == 0) return;
   Json average = Json::array();
@@ -139,7 +139,7 @@ Json viewer_json(const Audit& audit, const AuditLimits& limits, const ViewerAudi
   return json;
 }
 
-// Returns all findings about one input, except its subjects.
+// Returns the JSON of an audit of one input, without the list of its subjects.
 Json without_subjects(const std::string& input, const Audit& audit, const AuditLimits& limits) {
   Json json;
   json["input"] = {{"name", input}};
@@ -166,12 +166,13 @@ Json without_subjects(const std::string& input, const Audit& audit, const AuditL
   return json;
 }
 
-// Returns the text for one input. Converts subjects one by one, so that the JSON objects of all subjects are never in
-// memory together.
+// Returns the JSON text of an audit of one input. Converts subjects one by one, so that the JSON objects of all
+// subjects are never in memory together.
 std::string audit_text_of(const std::string& input, const Audit& audit, const AuditLimits& limits, bool is_indented) {
   Json json = json_of_command("audit", kAuditSchema);
   json.update(without_subjects(input, audit, limits));
-  // audit_object() does not do this, because it is for lists of inputs.
+  // Sets `passed` to false if nothing could be judged. audit_object() does not do this, because it is for lists of
+  // inputs.
   if (limits.any() && !audit.is_judged()) json["passed"] = false;
   return with_items(
       is_indented ? json_text(json) : json.dump(-1, ' ', false, Json::error_handler_t::replace), "subjects",

@@ -13,11 +13,11 @@ namespace chronormal::inline internal {
 /// The version of the JSON of audits. Version 2 renamed `hosts` to `viewers`, and added torn edges.
 inline constexpr int kAuditSchema = 2;
 
-/// Returns an object with all findings about one input. Leaves out the fields with which the JSON of every command
-/// begins.
+/// Returns an object with the results of an audit of one input. Leaves out the fields with which the JSON of every
+/// command begins (json_of_command()).
 [[nodiscard]] Json audit_object(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
-/// Returns the text of audit_json() as one line, for the container of a report.
+/// Returns the JSON text of an audit as one line, for the container of a report.
 [[nodiscard]] std::string audit_line(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 }  // namespace chronormal::inline internal

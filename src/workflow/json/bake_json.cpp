@@ -33,8 +33,8 @@ Json audit_json(const MotionError& before, const MotionError& after) {
           {"worse", is_worse(after, before)}};
 }
 
-// Names of the kinds of poses in JSON: the animations and static poses of the file, each target alone, and poses that a
-// program may set.
+// The names of the kinds of poses in JSON: the animations and static poses of the file, each target alone, and poses
+// that a program may set.
 constexpr std::array<const char*, 3> kPoses = {"file", "alone", "posed"};
 
 Json shown_json(const ShownErrors& errors) {

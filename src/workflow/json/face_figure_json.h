@@ -1,4 +1,4 @@
-/// The figures of one face as a JSON value, for `chronormal compare` and for reports. Private to workflow.
+/// Makes JSON from the figures of one face, for `chronormal compare` and for reports. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
 #define CHRONORMAL_WORKFLOW_JSON_FACE_FIGURE_JSON_H_
 
@@ -7,8 +7,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the figures as an object. Lists of vectors are flat arrays of x, y, z. Directions and degrees are rounded to
-/// 1e-7, the accuracy of float32.
+/// Returns the figures of one face as an object. Lists of vectors are flat arrays of x, y, z. Directions and degrees
+/// are rounded to 1e-7, the accuracy of float32.
 [[nodiscard]] Json face_figure_object(const FaceFigure& figure);
 
 }  // namespace chronormal::inline internal

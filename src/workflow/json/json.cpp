@@ -8,15 +8,15 @@ Json json_of_command(const char* command, int schema) {
   return {{"chronormal", CHRONORMAL_VERSION}, {"command", command}, {"schema", schema}};
 }
 
-// Returns the object as text. Escapes the control characters from DEL on, which JSON allows but terminals may
-// interpret. A reader of the JSON gets the same strings.
+// Returns an object as indented text with a final line end. Escapes the control characters from DEL on, which JSON
+// allows but terminals may interpret. A reader of the JSON gets the same strings.
 std::string json_text(const Json& json) {
   return escaped_for_json(json.dump(2, ' ', false, Json::error_handler_t::replace)) + '\n';
 }
 
 std::string with_items(std::string text, const std::string& name, std::size_t count,
                        const std::function<Json(std::size_t)>& item, bool is_indented) {
-  // Quotes inside strings are escaped, so the text of the empty list with its name can only match the list itself.
+  // Finds the empty list by its text. Quotes inside strings are escaped, so this text cannot occur inside a string.
   const std::string list = '"' + name + (is_indented ? "\": []" : "\":[]"), margin(is_indented ? 4 : 0, ' ');
   const std::size_t at = text.find(list);
   if (at == std::string::npos || count == 0) return text;

@@ -23,8 +23,8 @@ namespace chronormal::inline internal {
 
 [[nodiscard]] std::string inspect_json(const Inspected& input);
 
-/// Returns the text of an audit. input is the name of the audited file. The field `passed` tells whether the audit is
-/// within the limits.
+/// Returns the JSON text of an audit. input is the name of the audited file. The field `passed` tells whether the
+/// errors are within the limits.
 [[nodiscard]] std::string audit_json(const std::string& input, const Audit& audit, const AuditLimits& limits);
 
 struct NamedComparison {
@@ -33,11 +33,11 @@ struct NamedComparison {
   TargetNames targets = {};  ///< the names of targets; set if the motion consists of targets
 };
 
-/// Returns the text of comparisons. If several is true, writes a list of inputs even if there is only one input. If
-/// with_times is false, the text is the same on every run. inputs must not be empty.
+/// Returns the JSON text of comparisons. If several is true, writes a list of inputs even if there is only one input.
+/// If with_times is false, the text is the same on every run. inputs must not be empty.
 [[nodiscard]] std::string compare_json(const std::vector<NamedComparison>& inputs, bool several, bool with_times);
 
-/// Returns the text of the figures of a face. `input` is the name of the file that has the face.
+/// Returns the JSON text of the figures of a face. `input` is the name of the file that has the face.
 [[nodiscard]] std::string face_figure_json(const std::string& input, const FaceFigure& figure);
 
 struct NamedBlendComparison {
@@ -55,7 +55,7 @@ struct NamedTruthComparison {
 
 [[nodiscard]] std::string truth_json(const NamedTruthComparison& input);
 
-/// The audit of the input of a bake, and the audit of the baked file.
+/// The audit of the input of a bake, and the audit of the file that the bake wrote.
 struct BeforeAndAfter {
   Audit before, after;
 
@@ -73,12 +73,12 @@ struct BakeReport {
 [[nodiscard]] std::string bake_json(const GltfBake& bake, const BakeReport& report);
 [[nodiscard]] std::string bake_json(const SequenceBake& bake, BakeEncoding encoding, const BakeReport& report);
 
-/// Returns the text that lists, for each mesh, the targets, bytes and errors of every candidate. The option --encode
-/// smallest compares these figures.
+/// Returns the JSON text that lists, for each mesh, the targets, bytes and errors of every candidate. The option
+/// --encode smallest compares these figures.
 [[nodiscard]] std::string plan_json(const GltfBake& bake, const BakeReport& report);
 
-/// Returns the text of an answer. input is the name of the file. Each column is an array with the name that it has in a
-/// .npz file.
+/// Returns the JSON text of the answer to a query. input is the name of the queried file. Each column is an array with
+/// the name that it has in a .npz file.
 [[nodiscard]] std::string query_json(const std::string& input, const QueryAnswer& answer);
 
 }  // namespace chronormal::inline internal

@@ -16,7 +16,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The rows of one shard, and their position among all rows.
+// The file of one shard, with its rows and their position among the rows of all shards.
 struct ShardRows {
   PositionedFile file;
   npy::Array array;
@@ -25,8 +25,8 @@ struct ShardRows {
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  // Returns true if the shapes of both arrays agree. Arrays with matching checksums have the same shape, unless
-  // somebody forged the parts.
+  // Returns true if the arrays of two shards have the same number of rows in all, and rows of the same shape. Arrays
+  // with matching checksums do, unless somebody forged the parts.
   [[nodiscard]] bool is_like(const ShardRows& other) const {
     return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);
@@ -103,7 +103,7 @@ Status merge_arrays(std::span<const std::string> paths, const std::string& outpu
   for (const ShardRows& rows : all) {
     std::uint32_t sum = 0;
     std::uint64_t at = 0;
-    // Reads the bytes of a part up to offset `end`. Copies them to the output if is_copied is true.
+    // Reads the bytes of a shard's file up to offset `end`. Copies them to the output if is_copied is true.
     const auto pass = [&](std::uint64_t end, bool is_copied) -> Status {
       while (at < end) {
         const auto size = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), end - at));

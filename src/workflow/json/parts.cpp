@@ -1,5 +1,5 @@
-// Writes and reads parts as JSON. A struct becomes a list of its members in their order. Sums keep their bits, because
-// the shortest text of a double is read back as the same double.
+// Writes and reads parts, the results of shards, as JSON. A struct becomes a list of its members in their order. Sums
+// keep their bits, because the shortest text of a double is read back as the same double.
 #include "workflow/json/parts.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kMostCount = 9007199254740992;  // a double holds every integer up to this number
 
-// A reader of the numbers of a list, one after the other.
+// A reader that returns the numbers of a JSON list one after the other.
 class Numbers {
  public:
   explicit Numbers(JsonView list) : list_(std::move(list)) {}
@@ -69,7 +69,7 @@ SchemeTally read_tally(Numbers numbers) {
 }
 
 // Writes the sums and counts of a MotionError. Most bins of the fine histogram are empty, so only the other bins are
-// written, each as its number and its count.
+// written, each as its index and its count.
 Json error_json(const MotionError& error) {
   Json json = {error.judged,
                error.sum,
@@ -188,7 +188,7 @@ std::array<double, 2> read_span(const JsonView& part) {
   return {first, numbers.real()};
 }
 
-// Writes how the curved paths of vertices were cut into straight pieces, in the format of parts.
+// Writes how the curved paths of vertices were cut into straight pieces, as fields of a part (the file of a shard).
 void put_cut(Json& json, const std::optional<CutPath>& cut) {
   if (!cut) return;
   json["path"] = path_name(cut->path.kind);
@@ -215,7 +215,7 @@ std::optional<CutPath> read_cut(const JsonView& part) {
   return cut;
 }
 
-// Calls each(view) for the items of a list. If the object has no such list, does nothing.
+// Calls each(view) for the items of the list `key` of an object. If the object has no such list, does nothing.
 template <class Each>
 void each_item(const JsonView& object, const char* key, const Each& each) {
   if (!object.has(key)) return;
@@ -249,7 +249,7 @@ SegmentErrors read_measured(const JsonView& segment) {
   return found;
 }
 
-// Reads the text of one segment.
+// Reads the JSON text of the result of one segment.
 template <class Read>
 auto read_segment(std::string_view text, const std::string& name, const Read& read)
     -> Result<decltype(read(std::declval<const JsonView&>()))> {
@@ -330,8 +330,8 @@ AuditShard read_audit(const JsonView& part) {
   return shard;
 }
 
-// The parts that were read, and the fields that are equal in all parts. Either the list of comparisons or the list of
-// audits is empty.
+// The parts (files of shards) that were read, and the fields that are equal in all parts. Either the list of
+// comparisons or the list of audits is empty.
 struct ReadParts {
   std::string name;
   std::optional<double> tolerance;
@@ -339,7 +339,7 @@ struct ReadParts {
   std::vector<AuditShard> audits;
 };
 
-// Returns the checksums of a part. Adds checksums of its tolerance and of the name of its input.
+// Returns the checksums that a part contains, together with checksums of its tolerance and of the name of its input.
 TaskChecksums checksums_of(const JsonView& part) {
   TaskChecksums checksums = read_task_checksums(part);
   NumberChecksum input, tolerance;

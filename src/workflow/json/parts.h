@@ -29,15 +29,16 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the text of the part that a shard of a comparison writes. The run has the segments that the shard has
-/// computed.
+/// Returns the text of the part that a shard of a comparison writes. `run` has the results of the segments that the
+/// shard has computed.
 [[nodiscard]] std::string compare_part(const NamedComparison& shard, const CompareRun& run);
-/// Returns the text of the part that a shard of an audit writes. input is as in audit_json(); tolerance is in degrees.
+/// Returns the text of the part that a shard of an audit writes. input is the name of the audited file, and tolerance
+/// is in degrees.
 [[nodiscard]] std::string audit_part(const std::string& input, const Audit& shard, const AuditRun& run,
                                      std::optional<double> tolerance);
 
-/// Convert one segment to its line of text in a part, and back. `name` is the name of the file for messages. Errors:
-/// kInvalidInput with the place in the text.
+/// Convert the result of one segment to its line of text in a part, and back. `name` is the name of the file for
+/// messages. Errors: kInvalidInput with the place in the text.
 [[nodiscard]] std::string segment_part(const ComparedSegment& segment);
 [[nodiscard]] std::string segment_part(const SegmentErrors& segment);
 [[nodiscard]] Result<ComparedSegment> read_compared_segment(std::string_view text, const std::string& name);
@@ -55,20 +56,21 @@ struct MergedParts {
   bool is_within = true;
 };
 
-/// Joins the parts of one comparison or one audit. The parts may be in any order, and there must be at least one.
-/// Errors: kInvalidInput, with the place in the text, for a text that is not a part or is damaged; kUsage for parts of
-/// two different tasks or inputs, with the names of both parts, or if some segment is not in exactly one part.
+/// Joins the parts (texts that shards wrote) of one comparison or one audit. The parts may be in any order, and there
+/// must be at least one. Errors: kInvalidInput, with the place in the text, for a text that is not a part or is
+/// damaged; kUsage for parts of two different tasks or inputs, with the names of both parts, or if some segment is not
+/// in exactly one part.
 [[nodiscard]] Result<MergedParts> merge_parts(std::span<const Part> parts);
 
-/// Joins parts of comparisons only. The result is that of one run without times and names of targets.
+/// Joins parts of comparisons only. The result is that of a comparison in one run, without times and names of targets.
 [[nodiscard]] Result<NamedComparison> merge_compare_parts(std::span<const Part> parts);
-/// Joins parts of audits only. The result is that of one run.
+/// Joins parts of audits only. The result is that of an audit in one run.
 [[nodiscard]] Result<Audit> merge_audit_parts(std::span<const Part> parts);
 
-/// Joins the rows of the files at these paths, and writes them as one array. The files may be in any order, and there
-/// must be at least one. Needs a megabyte of memory. Errors: kFailed for files that cannot be read; kInvalidInput for
-/// files that no shard of samples wrote, or that are damaged; kUsage for shards of different samples or inputs, or if
-/// some row is not in exactly one file; errors of write_output() in io/output.h.
+/// Joins the rows of the .npy files that shards of samples wrote to `paths`, and writes all rows as one array. The
+/// files may be in any order, and there must be at least one. Needs a megabyte of memory. Errors: kFailed for files
+/// that cannot be read; kInvalidInput for files that no shard of samples wrote, or that are damaged; kUsage for shards
+/// of different samples or inputs, or if some row is not in exactly one file; those of write_output() in io/output.h.
 [[nodiscard]] Status merge_arrays(std::span<const std::string> paths, const std::string& output, bool force);
 
 }  // namespace chronormal::inline internal

@@ -13,7 +13,8 @@ Json value_json(T value) {
   return value;
 }
 
-// Returns an array with one value for each row. If the column has several numbers in each row, each value is an array.
+// Returns a column of an answer as an array with one value for each row. If the column has several numbers in each row,
+// each value is an array.
 Json column_json(const QueryColumn& column) {
   Json rows = Json::array();
   std::visit(
@@ -28,7 +29,7 @@ Json column_json(const QueryColumn& column) {
   return rows;
 }
 
-// Writes whole numbers without a decimal point, since most facts are counts.
+// Returns a fact as a JSON number. Writes whole numbers without a decimal point, since most facts are counts.
 Json fact_json(double value) {
   constexpr double kEveryInteger = 0x1p53;
   if (value == std::floor(value) && std::fabs(value) < kEveryInteger) return static_cast<std::int64_t>(value);

@@ -7,7 +7,7 @@
 namespace chronormal {
 namespace {
 
-// Finds the faces that collapse in a part of a segment, and when they do.
+// Finds the faces that collapse in a part of a segment, and the times at which they collapse.
 std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -23,7 +23,7 @@ std::vector<FaceCollapses> collapses_of(const Motion& motion, const SegmentPart&
   return found;
 }
 
-// Returns the number of bytes that the rows for these faces take in the answer.
+// Returns the number of bytes that the rows for these collapses take in the answer.
 std::uint64_t bytes_of_collapses(const std::vector<FaceCollapses>& found) {
   constexpr std::uint64_t kBytesPerCollapse = 2 * sizeof(std::int64_t) + 9 * sizeof(double) + 1;
   constexpr std::uint64_t kBytesPerAlways = 2 * sizeof(std::int64_t);

@@ -27,7 +27,7 @@ std::vector<float> places_at(const PointPaths& points, const std::array<double, 
   return places;
 }
 
-// Returns true if the faces of a closed mesh face inwards. The volume of such a mesh is negative by much more than
+// Returns true if the faces of a closed mesh face inwards, because its signed volume is negative by much more than
 // rounding errors.
 bool is_inside_out(const Topology& topology, const std::vector<float>& positions) {
   const auto place = [&](std::uint32_t vertex) {

@@ -13,12 +13,13 @@
 namespace chronormal {
 namespace {
 
-// An interval of t. It begins between the two numbers in `from`, and ends between the two numbers in `to`.
+// An interval of t with ends that are not exactly known. It begins between the two numbers in `from`, and ends between
+// the two numbers in `to`.
 struct Interval {
   std::array<double, 2> from{}, to{};
 };
 
-// A face, vertex or corner that shows its front, and the interval of t in which it does.
+// A face, vertex or corner that shows its front, and the interval of t in which it shows its front.
 struct Front {
   std::size_t element = 0;
   Interval when;
@@ -30,7 +31,7 @@ struct Found {
   std::size_t always_front = 0, always_back = 0;
 };
 
-// Cuts off what lies outside of a part of a segment from an interval. Returns false if nothing is left.
+// Restricts an interval of t to a part of a segment. Returns false if nothing is left.
 bool cut(Interval& when, const SegmentPart& part) {
   if (when.from[0] >= part.t1 || when.to[1] <= part.t0) return false;
   for (double& t : when.from) t = std::max(t, part.t0);
@@ -45,8 +46,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
     if (cut(when, part)) fronts.push_back({element, when});
   };
   for (const FacingChange& change : facing.changes()) {
-    // If a face turns edge-on and back without showing its other side, one interval ends there and the next interval
-    // begins.
+    // Ends the interval and begins the next one if a face turns edge-on and back without showing its other side.
     if (is_front) {
       when.to = {change.lower, change.upper};
       close();
@@ -57,7 +57,8 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (is_front) close();
 }
 
-// Returns the view in one segment. A moving eye moves at constant speed from the first to the last time of the motion.
+// Returns the view (viewer) in one segment. A moving eye moves at constant speed from time `first` to time `last` of
+// the motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   if (view.from == view.to) return view;
   return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),
@@ -110,7 +111,7 @@ std::uint64_t bytes_of_fronts(const Found& found) {
   return kBytesPerFront * found.fronts.size() + kBytesPerSilhouette * found.silhouettes.size();
 }
 
-// The columns of an answer that give for each row the segment and the interval of t.
+// The columns of an answer that give, for each row, the segment and the interval of t.
 struct WhenColumns {
   std::vector<std::int64_t> segments;
   std::array<std::vector<double>, 4> ends;
@@ -139,7 +140,7 @@ Result<QueryAnswer> query_facing(const Motion& motion, const View& placed, bool 
   const bool are_faces = elements.kind == ElementKind::kFaces;
   if (silhouettes && !are_faces)
     return Error{ErrorCode::kUsage, "--silhouettes", "silhouettes can only be listed for faces; leave --elements out"};
-  // The eye gets a position relative to the origin of the motion, as the vertices have.
+  // Makes the position of the eye relative to the origin of the motion, as the positions of vertices are.
   View view = placed;
   const Vec3d origin = {motion.origin[0], motion.origin[1], motion.origin[2]};
   if (view.is_eye) {

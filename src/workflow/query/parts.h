@@ -1,5 +1,5 @@
-/// The loop over parts of segments that all queries use, and limits on the size of an answer. A part is the range of t
-/// in one segment about which the caller asks.
+/// Declares the loop over parts of segments that all queries use, and limits on the size of an answer. A part is the
+/// range of t in one segment about which the caller asks.
 #ifndef CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 #define CHRONORMAL_WORKFLOW_QUERY_PARTS_H_
 
@@ -19,13 +19,13 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the limit on the size of an answer.
+/// Returns the limit on the size of an answer to a query.
 [[nodiscard]] inline Expansion expansion_of(const QuerySpan& span) {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
 
-/// Checks that the answer is within the limit if every face, vertex or corner has a row for every part. A row takes
-/// bytes_per_row bytes. Errors: those of Expansion::check().
+/// Checks that the answer is within the limit if it has rows_of_part rows for every part (a face, vertex or corner
+/// each). A row takes bytes_per_row bytes. Errors: those of Expansion::check().
 [[nodiscard]] inline Status check_rows(std::size_t rows_of_part, std::string_view what,
                                        std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
                                        const QuerySpan& span) {
@@ -38,7 +38,7 @@ namespace chronormal::inline internal {
 /// is the group of faces that determine its normal.
 class AskedOutputs {
  public:
-  /// Groups the corners of a motion by the options. Errors: those of make_groups().
+  /// Groups the corners of a motion into elements, as the options tell. Errors: those of make_groups().
   [[nodiscard]] static Result<AskedOutputs> make(const Motion& motion, const ElementOptions& options) {
     Result<NormalGroups> groups = make_groups(motion, options);
     if (!groups) return groups.error();
@@ -63,14 +63,14 @@ class AskedOutputs {
   NormalGroups groups_;
 };
 
-/// The check that an answer stays within the limit while it grows, for answers whose length is not known before. The
-/// written answer may be slightly larger, so the writer checks the size once more.
+/// A check that an answer stays within the limit of its size while it grows, for answers whose length is not known
+/// before. The written answer may be slightly larger, so the writer checks the size once more.
 class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part, which is number `done` of `total`. Errors: those of Expansion::check(), as soon as
-  /// the sum is too large.
+  /// Adds the bytes of another part of a segment. `done` of `total` parts are then finished, which a message tells.
+  /// Errors: those of Expansion::check(), as soon as the sum is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(bytes_,
@@ -82,9 +82,9 @@ class RowsInBounds {
   std::uint64_t bytes_ = 0;
 };
 
-/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. Each round
-/// handles as many parts as there are threads. After each round, the sum of bytes_of(result) is compared with the
-/// limit. Errors: those of RowsInBounds::add().
+/// Calls answer(part) for every part of a segment in `parts`, on all cores, and returns the results in the order of the
+/// parts. Each round handles as many parts as there are threads. After each round, the sum of bytes_of(result) is
+/// compared with the limit on the size of the answer. Errors: those of RowsInBounds::add().
 template <class T, class Answer, class BytesOf>
 [[nodiscard]] Result<std::vector<T>> for_bounded_parts(std::span<const SegmentPart> parts, const QuerySpan& span,
                                                        const QueryProgress& progress, const Answer& answer,
@@ -106,8 +106,8 @@ template <class T, class Answer, class BytesOf>
   return results;
 }
 
-/// Calls answer(part) for every part, like for_bounded_parts(), but does not check the size of the results. The caller
-/// must have called check_rows() before.
+/// Calls answer(part) for every part, on all cores, and returns the results in the order of the parts. Does not check
+/// the size of the results, so the caller must have called check_rows() before.
 template <class T, class Answer>
 [[nodiscard]] std::vector<T> for_parts(std::span<const SegmentPart> parts, const QueryProgress& progress,
                                        const Answer& answer) {

@@ -1,4 +1,4 @@
-// Code that all queries use: the parts of segments in a span of time, and answers as files.
+// Implements what all queries use: the parts of segments in a span of time, and answers as files.
 
 #include "chronormal/workflow/query.h"
 
@@ -31,8 +31,8 @@ std::string npy_of(const QueryColumn& column) {
   return NpyBytes(shape, std::get<std::vector<std::uint8_t>>(column.values)).bytes();
 }
 
-// Converts a time to t in a segment. If the result is not exactly a double, rounds it towards `end`, so that the part
-// contains the whole span of time.
+// Converts a time to t in a segment. If t is not exactly a double, rounds it towards `end`, so that the part of the
+// segment contains the whole span of time.
 double t_towards(const Segment& segment, double time, double end) {
   const LocalTime t = LocalTime::between(segment.start_time, time, segment.end_time);
   return t.is_double() ? t.t : std::nextafter(t.t, end);

@@ -1,5 +1,5 @@
 // Answers the query `shutter`: the normal that a renderer should use while the shutter is open. Also returns the error
-// of the usual way, which interpolates between the normals at both ends.
+// of interpolating between the normals at both ends, which is the usual way.
 
 #include "chronormal/analysis/cones.h"
 
@@ -39,7 +39,8 @@ Means means_of(const Motion& motion, const SegmentPart& part) {
   return means;
 }
 
-// Computes the means of outputs. The mean of an element is computed once, because vertices at one point can share it.
+// Computes the mean normals of vertices or corners over a part of a segment. The mean of an element is computed once,
+// because vertices at one point can share it.
 Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const SegmentPart& part) {
   const Segment segment = motion.segment(part.segment);
   struct One {
@@ -68,7 +69,7 @@ Means means_of_outputs(const Motion& motion, const AskedOutputs& outputs, const 
   return means;
 }
 
-// Averages the means of all parts. The weights are the durations of the parts.
+// Averages the mean normals of all parts, weighted by the durations of the parts.
 Means whole_of(const Motion& motion, std::span<const SegmentPart> parts, std::span<const Means> found) {
   Means whole = found.front();
   whole.to = found.back().to;

@@ -32,7 +32,7 @@ struct Faces {
   std::vector<std::size_t> first;  // the first triangle of each face, then the number of triangles
 };
 
-// A list of numbers for each element, stored one after the other.
+// A list of numbers for each element. All lists are stored one after the other in one array.
 struct ListsOfElements {
   // Collects the lists. each(use) must call use(element, number) for all entries, in order. Entries whose element is
   // kNone are ignored.
@@ -62,7 +62,7 @@ ListsOfElements faces_of_elements(const ModelPart& part, const Faces& faces) {
           }};
 }
 
-// Calls use(corner, element) for each corner that an element adds up.
+// Calls use(corner, element) for each corner whose polygon an element adds to its normal.
 template <class Use>
 void for_terms(const ModelPart& part, const Use& use) {
   const ModelTruth& truth = part.truth;
@@ -71,7 +71,7 @@ void for_terms(const ModelPart& part, const Use& use) {
   for (std::uint32_t c = 0; c < truth.corners.size(); ++c) use(c, part.element[truth.corners[c]]);
 }
 
-// Returns the polygon of each corner.
+// Returns for each corner the index of its polygon.
 std::vector<std::uint32_t> polygons_of_corners(const ModelTruth& truth) {
   std::vector<std::uint32_t> result;
   result.reserve(truth.corners.size());
@@ -93,7 +93,7 @@ ListsOfElements vertices_of_truths(const ModelPart& part) {
           }};
 }
 
-// The faces, vertices and elements that stay in a part.
+// Marks of the faces, vertices and elements of a part that are kept.
 struct Kept {
   std::vector<bool> faces, vertices, elements;
 };
@@ -134,8 +134,8 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Returns about most_triangles triangles that replace the given triangles and have vertices of the same mesh. Keeps the
-// border of the triangles if possible.
+// Replaces the given triangles by about most_triangles larger triangles, which use the same vertices. Keeps the border
+// of the triangles if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};
@@ -145,8 +145,8 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   std::vector<std::uint32_t> result(triangles.size());
   std::size_t count = meshopt_simplify(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                        kStride, most, kAnyError, meshopt_SimplifyLockBorder);
-  // The topology or the borders of a mesh may prevent simplification. In this case another method keeps only the rough
-  // shape.
+  // Uses another method, which keeps only the rough shape, if the topology or the borders of the mesh prevent
+  // simplification.
   if (count > most + most / 2)
     count = meshopt_simplifySloppy(result.data(), triangles.data(), triangles.size(), positions.data(), vertices,
                                    kStride, most, kAnyError);
@@ -154,7 +154,7 @@ std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangle
   return result;
 }
 
-// Returns new numbers for the kept items, in their order, and kNone for all others.
+// Returns new indices for the kept items, in their order, and kNone for all other items.
 std::vector<std::uint32_t> numbers(const std::vector<bool>& kept) {
   std::vector<std::uint32_t> result(kept.size(), kNone);
   std::uint32_t count = 0;
@@ -220,7 +220,8 @@ void keep_truth(const Kept& kept, const std::vector<std::uint32_t>& vertex, cons
   }
 }
 
-// Stores for each vertex its number in the file, or its number in its primitive if there are several primitives.
+// Stores for each vertex the number by which the report names it: its number in the file, or in its primitive if there
+// are several primitives.
 void label(ModelPart& part) {
   if (!part.labels.empty()) return;
   for (const ModelPrimitive& primitive : part.primitives)
@@ -245,8 +246,8 @@ void make_coarse(ReportModel& model, std::size_t number, std::size_t most_vertic
     if (kept.faces[f] && !part.faces.empty())
       face_of_fine.insert(face_of_fine.end(), corners.size() / 3, part.faces[faces.first[f]]);
   }
-  // The limit is a number of triangles. They need about half as many vertices, because a closed mesh has twice as many
-  // triangles as vertices.
+  // Passes the limit of vertices as a limit of triangles. The triangles need about half as many vertices, because a
+  // closed mesh has twice as many triangles as vertices.
   part.coarse = simplified(rest, part.positions, most_vertices);
   part.triangles = std::move(fine);
   part.faces = std::move(face_of_fine);

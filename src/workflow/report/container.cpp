@@ -26,7 +26,7 @@ void pad(std::string& bytes, char with) {
   bytes.resize((bytes.size() + kAlignment - 1) / kAlignment * kAlignment, with);
 }
 
-// The bytes of the arrays that follow the JSON.
+// The bytes of the arrays that follow the JSON of a container.
 class Arrays {
  public:
   template <class T>
@@ -41,11 +41,13 @@ class Arrays {
   Json add_or_null(const std::vector<T>& values) {
     return values.empty() ? Json() : add(values);
   }
-  // Adds vectors, and returns {"indices", name}. The indices are null if all vertices have a vector.
+  // Adds vectors to the arrays, and returns a JSON object with the fields "indices" and `name`. The indices are null if
+  // all vertices have a vector.
   Json add(const ModelVectors& vectors, const char* name) {
     return {{"indices", vectors.is_dense ? Json() : add(vectors.vertices)}, {name, add(vectors.values)}};
   }
-  // Adds vectors. Returns a plain array if all vertices have a vector, and otherwise an object with their indices.
+  // Adds vectors to the arrays. Returns the array itself if all vertices have a vector, and otherwise an object with
+  // the indices of the vertices.
   Json add_keyframe(const ModelVectors& vectors) {
     return vectors.is_dense ? add(vectors.values) : add(vectors, "values");
   }
@@ -220,12 +222,12 @@ std::string gzipped(std::string_view bytes) {
   z_stream stream{};
   if (deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK)
     throw std::bad_alloc();
-  // The header of gzip names an operating system. The name is always Unix, so that all systems write the same bytes.
+  // Names Unix as the operating system in the header of gzip, so that all systems write the same bytes.
   gz_header header{};
   header.os = 3;
   deflateSetHeader(&stream, &header);
   std::string result;
-  // zlib counts bytes in 32 bits, so the text is compressed block by block.
+  // Compresses the text block by block, because zlib counts bytes in 32 bits.
   constexpr std::size_t kAtOnce = std::size_t{1} << 20;
   std::string block(kAtOnce, '\0');
   int state = Z_OK;

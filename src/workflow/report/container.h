@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Writes the container. `head` is the beginning of the JSON text. It has the fields that do not belong to the model,
-/// each followed by a comma.
+/// Returns the bytes of the container of a report. `head` is the beginning of the JSON text. It has the fields that do
+/// not belong to the model, each followed by a comma.
 [[nodiscard]] std::string write_container(const std::string& head, const ReportModel& model);
 
 /// Compresses the bytes with gzip.

@@ -9,8 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns only the vectors that are not zero, with their vertices. If no vector is zero, returns all vectors, without a
-// list of vertices.
+// Returns the vectors that are not zero, with the indices of their vertices. If no vector is zero, returns all vectors
+// without such a list.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {
@@ -22,8 +22,8 @@ ModelVectors without_zeros(const std::vector<float>& vectors) {
   return result;
 }
 
-// Returns the normals and deltas of a mesh as one viewer stores them. For the specification, these are the values of
-// the file.
+// Returns the normals and deltas of a mesh as one viewer stores them. A viewer that follows the specification stores
+// the values of the file.
 ModelShown shown_by(const GltfShading& shading, const Viewer& viewer) {
   ModelShown shown;
   shown.keeps_halves = viewer.keeps_halves();
@@ -48,9 +48,9 @@ bool show_alike(const Viewer& a, const Viewer& b) noexcept {
          a.octahedral_base == b.octahedral_base && a.least_weight == b.least_weight;
 }
 
-// Returns the normals of a mesh as viewers store them, with one entry for all viewers that store the same. The first
-// entry is the specification, with the names of all viewers that store the values of the file. The other entries are
-// for the other viewers in `viewers`.
+// Returns the normals of a mesh as viewers store them, with one entry for all viewers that store the same values. The
+// first entry is for the specification, with the names of all viewers that store the values of the file. The other
+// entries are for the other viewers in `viewers`.
 std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Viewer> viewers) {
   const Viewer specification{.name = "specification", .title = ""};
   std::vector<Viewer> firsts = {specification};
@@ -72,8 +72,8 @@ std::vector<ModelShown> shown_of(const GltfShading& shading, std::span<const Vie
   return result;
 }
 
-// Adds the polygons whose normals are added up. If elements add up other corners than their own, also adds the corners
-// of each element.
+// Adds the polygons whose normals are summed up to true normals. If elements sum up other corners than their own, also
+// adds the corners of each element.
 void add_sums(const AuthorTruth& truth, const GltfShading& shading, ModelTruth& result) {
   const AuthorSums& sums = truth.sums();
   result.first = {0};

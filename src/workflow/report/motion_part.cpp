@@ -28,7 +28,8 @@ bool same_normals(const Motion& motion, const StoredNormals& normals, std::size_
   return true;
 }
 
-// Returns the vectors that differ from those of keyframe 0, or all vectors if these take fewer bytes.
+// Returns the vectors that differ from those of keyframe 0, with their vertices. Returns all vectors if this takes
+// fewer bytes.
 ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
   ModelVectors result;
   const std::size_t vertices = now.size() / 3;
@@ -37,7 +38,8 @@ ModelVectors changes(const std::vector<float>& first, std::vector<float> now) {
     result.vertices.push_back(static_cast<std::uint32_t>(v));
     result.values.insert(result.values.end(), &now[3 * v], &now[3 * v] + 3);
   }
-  // A vector with the number of its vertex takes 16 bytes, and a vector without this number takes 12 bytes.
+  // Compares the bytes of both forms: a vector with the index of its vertex takes 16 bytes, and a vector without this
+  // index 12 bytes.
   result.is_dense = 4 * result.vertices.size() > 3 * vertices;
   if (result.is_dense) result = {true, {}, std::move(now)};
   return result;
@@ -81,7 +83,8 @@ void add_schemes(const Comparison& comparison, ModelMotion& motion) {
     ModelMotion::Scheme& scheme = motion.schemes.emplace_back();
     scheme.name = row.scheme;
     for (std::size_t i = 0; i < motion.at.size(); ++i) {
-      // Sample i of an audit is sample i % samples of its segment, because an audit judges segment after segment.
+      // Finds sample i of the audit in the comparison. It is sample i % samples of its segment, because an audit judges
+      // segment after segment.
       const Quality& quality = row.samples[motion.segments[i] * samples + i % samples];
       scheme.worst.push_back(static_cast<float>(quality.max * kDegreesPerRadian));
       scheme.mean.push_back(static_cast<float>(quality.mean() * kDegreesPerRadian));

@@ -19,8 +19,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// If a page is still too large, the size that its arrays may have is reduced again by the factor kShare. The smallest
-// size is kLeastShare of the first one.
+// The factor by which the size for the arrays is reduced again if a page is still too large, and the smallest share of
+// the first size.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {
@@ -131,17 +131,17 @@ std::string head_of(const Report& report) {
   return fields;
 }
 
-// Returns the size in bytes of a page with its template. The container has `packed` bytes after compression, and takes
-// more in base64.
+// Returns the size in bytes of a page: the template with the container inserted. The container has `packed` bytes after
+// compression, and takes more in base64.
 std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
   constexpr std::size_t kElement = 128;
   return options.template_bytes + kElement + (packed + 2) / 3 * 4;
 }
 
-// Writes the container. If the page would be too large, thins out the model first.
+// Returns the bytes of the container. If the page would be too large, thins out the model first.
 std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
-  // The whole model shows how well its arrays compress. Some of the arrays alone may compress worse.
+  // Measures on the whole model how well its arrays compress. Some of the arrays alone may compress worse.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
   if (packed <= options.most_bytes) return container;
   const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());
@@ -151,7 +151,7 @@ std::string write_within(const std::string& head, ReportModel& model, const Repo
   for (double share = kShare;; share *= kShare) {
     model = whole;
     const double most = share * static_cast<double>(room) / per_byte;
-    // The bytes that are not in arrays.
+    // The bytes of the container that are not in arrays.
     const std::size_t beside = container.size() - std::min(container.size(), bytes_of(whole));
     thin_out(model, static_cast<std::size_t>(std::max(0.0, most - static_cast<double>(beside))));
     std::string thinned = write_container(head, model);

@@ -39,7 +39,7 @@ namespace chronormal::inline internal {
 inline constexpr std::size_t kMostReportBytes = 30000000;  ///< in bytes; the size limit of a page with its template
 inline constexpr std::size_t kMostWorstPlaces = 20;
 inline constexpr double kLeastPlace = 0.001;  ///< in degrees; a vertex with a smaller error is not a worst place
-/// The smallest distance between worst places, as a share of the diagonal of the box around the mesh.
+/// The smallest distance between two of the worst places, as a share of the diagonal of the box around the mesh.
 inline constexpr double kPlaceDistance = 0.04;
 
 struct ReportOptions {
@@ -54,7 +54,7 @@ struct ReportOptions {
   std::function<void(std::string_view what, std::size_t done, std::size_t total)> progress = {};
 };
 
-/// A vertex at the moment of its largest error.
+/// One of the worst places of a report: a vertex at the moment of its largest error.
 struct ReportPlace {
   /// Indices of the part in Report::parts, of the motion in the part, of the sample in the motion, and of the vertex in
   /// the part.
@@ -64,7 +64,7 @@ struct ReportPlace {
   std::string moment;  ///< the moment as text, such as "jawOpen at 0.55" or "talk at 1.25 s"
 };
 
-/// A mesh in the report.
+/// A part of the report: one mesh with its motions.
 struct ReportPart {
   std::string name;
   std::size_t vertices = 0, triangles = 0, motions = 0, samples = 0;
@@ -88,14 +88,14 @@ struct Report {
 /// of audit(); kInvalidInput if no motion can be judged.
 [[nodiscard]] Result<Report> report(Input& input, const ReportOptions& options);
 
-/// The mark that a template contains exactly once, and that the data of the report replace.
+/// The mark that a page template contains exactly once. The data of the report replace the mark.
 inline constexpr std::string_view kReportMark = "<!--chronormal-data-->";
 
-/// Checks that a template contains the mark exactly once. Errors: kInvalidInput if it does not.
+/// Checks that a page template contains kReportMark exactly once. Errors: kInvalidInput if it does not.
 [[nodiscard]] Status check_report_template(std::string_view page_template);
 
-/// Fills a template. A script element with the container, compressed and in base64, replaces the mark. In base64, no
-/// name from a file can end the element. Errors: those of check_report_template().
+/// Returns the page: the template, in which a script element with the container replaces kReportMark. The container is
+/// compressed and in base64, so no name from a file can end the element. Errors: those of check_report_template().
 [[nodiscard]] Result<std::string> report_page(const Report& report, std::string_view page_template);
 
 /// Returns the contents of the report as JSON, for programs that do not read the page. `output` is the name of the

@@ -1,4 +1,4 @@
-/// A report before it becomes bytes. It has the parts, their motions and the worst places, in the form of
+/// The data of a report before they become bytes: the parts, their motions and the worst places, in the form of
 /// docs/formats.md. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
 #define CHRONORMAL_WORKFLOW_REPORT_REPORT_MODEL_H_
@@ -20,7 +20,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1);
 
-/// Vectors of some vertices, in ascending order of the vertices, or of all vertices if is_dense is true.
+/// Vectors of some vertices, in ascending order of the vertices. If is_dense is true, vectors of all vertices.
 struct ModelVectors {
   bool is_dense = false;
   std::vector<std::uint32_t> vertices;  ///< the vertices that have a vector; empty if is_dense is true
@@ -50,28 +50,30 @@ struct ModelShown {
 /// frame that moves with the surface (truth/offset_frame.h).
 struct ModelOffset {
   std::uint32_t element = 0;
-  /// True if the author shows the side opposite to the sum of face normals.
+  /// True if the stored normal points to the side of the surface opposite to the sum of face normals.
   bool is_other_side = false;
   std::vector<std::uint32_t> edges;            ///< (n, 2) vertices: each edge leads from the element to a neighbour
   std::uint32_t reference = kNoReportElement;  ///< the edge from which azimuths are measured
-  /// The directions z and x of the base (truth/offset_frame.h), if there is no reference.
+  /// The directions z and x of the frame in the base (truth/offset_frame.h). Only used if there is no reference edge.
   std::array<double, 6> turned = {};
   std::array<float, 2> base = {};
 };
 
-/// The data for the true normals of a glTF mesh, if these are more than sums over its triangles (truth/author_truth.h).
+/// The data for the true normals of a glTF mesh, if the true normals are more than sums over its triangles
+/// (truth/author_truth.h).
 struct ModelTruth {
-  /// The changes of offsets by a target at weight 1. Each change has an index in the list of offsets, and a vector in
-  /// the plane of the offset.
+  /// The changes of the author's offsets that a target makes at weight 1. Each change has an index in the list of
+  /// offsets, and a vector in the plane of the offset.
   struct Changes {
     std::vector<std::uint32_t> offsets;
     std::vector<float> values;  ///< (n, 2), the changes of these offsets
   };
 
-  /// The corners of polygons, and the first corner of each polygon; empty if triangles are added up.
+  /// The corners of the polygons whose normals are added up, and the first corner of each polygon. Both are empty if
+  /// triangles are added up.
   std::vector<std::uint32_t> first, corners;
-  /// (n, 2) Pairs of a corner of a polygon and the element that adds up this corner, in ascending order of corners.
-  /// Empty if each corner counts for its own vertex.
+  /// Pairs of a corner of a polygon and the element that adds up this corner, in ascending order of corners, (n, 2).
+  /// The list is empty if each corner counts for its own vertex.
   std::vector<std::uint32_t> terms;
   std::vector<ModelOffset> offsets;
   std::vector<Changes> changes;  ///< for each target, its changes of offsets; empty if there are no offsets
@@ -79,8 +81,8 @@ struct ModelTruth {
   [[nodiscard]] bool is_plain() const noexcept { return first.empty() && offsets.empty(); }
 };
 
-/// The weights that some viewers play at all samples, (S, n). Only the n targets whose weight is not always 0 are
-/// listed.
+/// The weights that some viewers play at all samples of a motion, (S, n). Only the n targets whose weight is not always
+/// 0 are listed.
 struct ModelWeights {
   std::vector<std::string> viewers;
   std::vector<std::uint32_t> targets;  ///< (n) the indices of the targets, in ascending order
@@ -96,7 +98,7 @@ struct ModelMotion {
   std::vector<ModelWeights> weights;    ///< the weights for glTF; the first entry is the specification
   std::vector<float> worst, mean;       ///< (S) errors in degrees
   std::vector<double> least;            ///< (E) the length below which an element's normal has no direction
-  /// The errors of a scheme other than the scheme that the audit judged.
+  /// The errors of a scheme, at the samples of a motion. The scheme that the audit judged is not listed.
   struct Scheme {
     std::string name;
     std::vector<float> worst, mean;  ///< (S) errors in degrees
@@ -109,7 +111,7 @@ struct ModelPrimitive {
   bool is_flat = false;
 };
 
-/// The largest error of a vertex, in degrees, and its motion and sample.
+/// The largest error of a vertex, in degrees, and the motion and the sample in which it occurs.
 struct ModelPeak {
   float degrees = 0;
   std::uint32_t motion = 0, sample = 0;
@@ -119,7 +121,7 @@ struct ModelPart {
   std::string name;
   std::optional<std::size_t> mesh;
   std::vector<ModelPrimitive> primitives;
-  /// (V) the number of each vertex in the file; empty if the report has the same numbers.
+  /// The number of each vertex in the file, (V). The list is empty if the report numbers vertices as the file does.
   std::vector<std::uint32_t> labels;
   std::vector<std::uint32_t> triangles, faces, coarse;
   std::vector<std::uint32_t> backs;  ///< the corners of triangles whose vertex shows the other side of a sheet
@@ -127,13 +129,13 @@ struct ModelPart {
   std::vector<std::uint32_t> element;  ///< (V) the element of each vertex
   Weighting weighting = Weighting::kArea;
   std::vector<float> positions, normals;  ///< (V, 3); normals are empty if the file has none
-  // The next members are for glTF files.
+  // Members that are only used for glTF files.
   std::vector<std::string> target_names;
   std::vector<ModelVectors> targets;  ///< deltas of positions, for each target
   std::optional<GltfBakeMark> mark;
   std::vector<ModelShown> shown;
   ModelTruth truth;
-  // The next members are for motions that are not glTF. A keyframe has values instead of deltas. A vertex that a
+  // Members that are only used for motions that are not glTF. A keyframe has values instead of deltas. A vertex that a
   // keyframe does not list is as in keyframe 0.
   std::vector<double> times;
   std::vector<std::size_t> keyframe_numbers;

@@ -20,8 +20,8 @@
 
 namespace chronormal::inline internal {
 
-/// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are the normals that the
-/// author intended, or sums by the requested weighting. Errors: those of GltfDocument.
+/// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are sums by the weighting
+/// `asked`. If no weighting is asked for, they follow the normals of the author. Errors: those of reading the document.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);
@@ -35,11 +35,11 @@ struct MotionVertices {
   std::size_t element_count = 0;
 };
 
-/// Finds the vertices of a report. Errors: those of NormalGroups.
+/// Finds the vertices that a report has for a motion. Errors: those of NormalGroups.
 [[nodiscard]] Result<MotionVertices> motion_vertices(const Motion& motion, const StoredNormals& normals);
 
-/// Builds the part of a motion that is not a glTF file. `comparison` has the errors of schemes in this motion. It must
-/// have been made with keep_samples, at the samples of the audit.
+/// Builds the part of a motion that is not a glTF file. `comparison` has the errors of schemes in this motion. The
+/// comparison must have been made with keep_samples, at the samples of the audit.
 [[nodiscard]] ModelPart motion_part(const Motion& motion, const StoredNormals& normals, const MotionVertices& vertices,
                                     const Comparison& comparison, WatchedPart watched);
 

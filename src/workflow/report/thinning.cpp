@@ -24,7 +24,7 @@ std::size_t bytes_of_keyframes(const ModelPart& part) {
   return bytes;
 }
 
-// Returns the bytes of the weights in all samples. All other data of a sample are small compared with the weights.
+// Returns the bytes of the weights in all samples. The other data of a sample are small.
 std::size_t bytes_of_samples(const ModelPart& part) {
   std::size_t bytes = 0;
   for (const ModelMotion& motion : part.motions)
@@ -76,7 +76,8 @@ std::vector<std::size_t> worst_samples(const ReportModel& model, std::size_t par
   return samples;
 }
 
-// Leaves out keyframes until they take about most_bytes. Returns the number of keyframes that are left.
+// Leaves out keyframes of the motion until the others take about most_bytes. Returns the number of keyframes that are
+// left.
 std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
   ModelPart& part = model.parts[0];
   const std::size_t keyframes = part.times.size(), segments = part.segments.size() / 2;
@@ -96,8 +97,8 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     if (s > 0) keep(s - 1);
   }
   const std::size_t have = static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
-  // In a sequence, a segment away from others needs two keyframes. In targets, all segments share the base, so each
-  // segment needs only one more keyframe.
+  // Counts the segments for which there is room. In a sequence, a segment away from others needs two keyframes. In
+  // targets, all segments share the base, so each segment needs only one more keyframe.
   const std::size_t room = left(most, have) / (model.kind == "sequence" ? 2 : 1);
   for (std::size_t n = 0; n < room; ++n) keep(n * segments / room);
 
@@ -118,7 +119,8 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
   return count;
 }
 
-// Keeps every `step`th sample, the first and last sample, and the samples of worst places. Leaves out all others.
+// Keeps every `step`-th sample, the first and last sample, and the samples of worst places. Leaves out all other
+// samples.
 void thin_samples(ReportModel& model, std::size_t step) {
   for (std::size_t p = 0; p < model.parts.size(); ++p) {
     for (std::size_t m = 0; m < model.parts[p].motions.size(); ++m) {
@@ -153,7 +155,7 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
   const auto note = [&](const std::string& sentence) { model.thinned.push_back(sentence); };
   if (const std::size_t all = bytes_of(model); model.kind != "gltf" && all > most_bytes) {
     const std::size_t of_keyframes = sum(model, bytes_of_keyframes), before = model.parts[0].times.size();
-    // Keyframes may take at least half of the page. If the page is still too large after this step, the mesh has too
+    // Lets keyframes take at least half of the page. If the page is still too large after this step, the mesh has too
     // many vertices.
     const std::size_t after = thin_keyframes(model, std::max(left(most_bytes, all - of_keyframes), most_bytes / 2));
     const bool is_sequence = model.kind == "sequence";

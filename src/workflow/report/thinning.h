@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the size of all arrays in bytes.
+/// Returns the size, in bytes, of all arrays of a report together.
 [[nodiscard]] std::size_t bytes_of(const ReportModel& model);
 
 /// Leaves out data of a model until its arrays have about this many bytes, or until only required data are left. Lists

@@ -80,7 +80,7 @@ void WatchedMotions::begin(const AuditSample& sample) {
   for (std::size_t e = 0; e < elements.size(); ++e) motion.least[elements[e]] = kVanished * sample.largest[e];
 }
 
-// Ends the last motion. Viewers that play the same weights get one common list of weights.
+// Ends the motion that was added last. Viewers that play the same weights get one common list of weights.
 void WatchedMotions::end() {
   if (now_ == nullptr || now_->motions.back().weights.empty()) return;
   std::vector<ModelWeights>& weights = now_->motions.back().weights;

@@ -15,7 +15,7 @@
 
 namespace chronormal::inline internal {
 
-/// The motions of one mesh.
+/// The motions of one mesh, and the largest errors of its vertices.
 struct WatchedPart {
   std::vector<ModelMotion> motions;
   std::vector<ModelPeak> peaks;  ///< the largest error of each vertex; empty if no vertex was judged
@@ -31,8 +31,8 @@ class WatchedMotions {
 
   void add(const AuditSample& sample);
 
-  /// Moves the parts out of this object. The key is the index of the mesh. An input that is not glTF has one part, with
-  /// the key nullopt.
+  /// Moves the parts (the motions of each mesh) out of this object. The key is the index of the mesh. An input that is
+  /// not glTF has one part, with the key nullopt.
   [[nodiscard]] std::map<std::optional<std::size_t>, WatchedPart> take();
 
  private:
@@ -41,7 +41,7 @@ class WatchedMotions {
   class Weights {
    public:
     void add(std::span<const double> of_sample);
-    // Returns the weights, and leaves this object empty.
+    // Returns the collected weights, and leaves this object empty.
     [[nodiscard]] ModelWeights take();
 
    private:

@@ -49,7 +49,7 @@ Vec3d value_at(const std::vector<float>& values, std::size_t i) {
           static_cast<double>(values[3 * i + 2])};
 }
 
-// Returns the vector of a vertex, or nothing if the vertex has no vector.
+// Returns the vector that a list has for a vertex, or nothing if it has none.
 std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex) {
   if (vectors.is_dense) return value_at(vectors.values, vertex);
   const auto found = std::lower_bound(vectors.vertices.begin(), vectors.vertices.end(), vertex);
@@ -57,7 +57,7 @@ std::optional<Vec3d> vector_of(const ModelVectors& vectors, std::uint32_t vertex
   return value_at(vectors.values, static_cast<std::size_t>(found - vectors.vertices.begin()));
 }
 
-// Returns the positions of a vertex at both ends of the straight path on which the vertex of a worst place moves.
+// Returns the positions of a vertex at both ends of its straight path, for the moment of a worst place.
 std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample,
                              std::uint32_t vertex) {
   if (motion.weights.empty()) {
@@ -80,7 +80,7 @@ std::array<Vec3d, 2> ends_of(const ModelPart& part, const ModelMotion& motion, s
   return {from, to};
 }
 
-// Returns a motion that consists only of this face.
+// Returns a motion of one segment that consists only of this face.
 Motion motion_of(const ModelPart& part, const ModelMotion& motion, std::size_t sample, const ReportFace& face) {
   const std::vector<std::uint32_t> corners = face.corners(part);
   const auto count = static_cast<std::uint32_t>(corners.size());

@@ -12,16 +12,16 @@
 
 namespace chronormal::inline internal {
 
-/// Limits for the figures of a page. If the program is not inside the page, the page can show no other figures. Eight
-/// figures take about 40 kB of the page.
+/// The number of figures in a page, and the samples of each figure. A page that does not contain the program can show
+/// no other figures. Eight figures take about 40 kB of the page.
 inline constexpr std::size_t kMostFigures = 8, kFigureSamples = 21;
 inline constexpr std::array<std::string_view, 7> kFigureSchemes = {
     "linear", "quadratic", "cubic", "slerp", "decasteljau:4", "quaternion:matrix", "quaternion:optimal"};
 
-/// Returns an array of figures, in the order of the worst places. A figure shows one of the faces around its place: the
-/// face for which the scheme `linear` has the largest error. Leaves out a face that an earlier figure shows. The face
-/// moves as in the segment of the place. In a glTF file, the face moves from the base to the moment of the place, or to
-/// weight 1 if the place is given by a weight.
+/// Returns an array of figures, in the order of the worst places. A figure shows one of the faces around a worst place:
+/// the face for which the scheme `linear` has the largest error. Leaves out a face that an earlier figure shows. The
+/// face moves as in the segment of the place. In a glTF file, the face moves from the base to the moment of the place,
+/// or to weight 1 if the place is given by a weight.
 [[nodiscard]] Json worst_figures(const ReportModel& model);
 
 }  // namespace chronormal::inline internal

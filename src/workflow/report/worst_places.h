@@ -8,9 +8,9 @@
 
 namespace chronormal::inline internal {
 
-/// Finds at most kMostWorstPlaces places, and returns the largest error first. Goes through all vertices from the
-/// largest error down, and skips vertices within kPlaceDistance of an earlier place. Parts and vertices have their
-/// numbers before thinning.
+/// Finds at most kMostWorstPlaces worst places, and returns them in descending order of their errors. Goes through all
+/// vertices from the largest error down, and skips vertices within kPlaceDistance of an earlier place. Indices of parts
+/// and vertices are those before thinning.
 [[nodiscard]] std::vector<ReportPlace> find_worst_places(const std::vector<ModelPart>& parts);
 
 }  // namespace chronormal::inline internal

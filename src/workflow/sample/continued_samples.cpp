@@ -1,4 +1,4 @@
-// Verifies the file of an interrupted run. Compares the header, and the checksum of each row.
+// Verifies the file that an interrupted run of `sample` left: compares the header, and the checksum of each row.
 #include "workflow/sample/continued_samples.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Reads a record of the journal: a checksum, and the number of normals that are zero.
+// Reads a record of the journal: the checksum of a row, and the number of its normals that are zero.
 std::optional<WrittenRow> read_row(std::string_view text) {
   WrittenRow row;
   const char* const last = text.data() + text.size();
@@ -24,7 +24,7 @@ std::optional<WrittenRow> read_row(std::string_view text) {
   return zeros.ec == std::errc{} && zeros.ptr == last ? std::optional(row) : std::nullopt;
 }
 
-// Returns true if the file has the bytes of this row from offset `at` on.
+// Returns true if the file has the bytes of a row from offset `at` on, judged by the checksum of the row.
 Result<bool> has_row(const PositionedFile& file, std::uint64_t at, std::size_t row_bytes, const WrittenRow& row,
                      std::string& block) {
   if (file.size() < at + row_bytes) return false;

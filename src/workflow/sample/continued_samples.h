@@ -18,8 +18,8 @@
 namespace chronormal::inline internal {
 
 /// Returns the names of the files to write for `count` moments, and checks that these files may be written. If the run
-/// is a shard, files of other shards may exist already. Errors: also kUsage for a shard that writes a .npz file, and
-/// for an output stream that several processes share.
+/// is a shard, files of other shards may exist already. Errors: those of a run that is not divided; kUsage for a shard
+/// that writes a .npz file, and for an output stream that several processes share.
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count, const SegmentRun& run);
 
@@ -40,7 +40,7 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<SampleSummary> write_samples(MotionStream& stream, const SampleOptions& options,
                                                   const Moments& moments, const SampleOutput& output, SegmentRun& run);
 
-/// A row of the output, as the journal records it.
+/// A row of normals in the output, as the journal records it.
 struct WrittenRow {
   std::uint32_t checksum = 0;
   std::size_t zeros = 0;  ///< the number of normals that are (0, 0, 0)
@@ -49,16 +49,16 @@ struct WrittenRow {
   [[nodiscard]] std::string text() const;
 };
 
-/// The rows that earlier runs wrote.
+/// The rows of the output that earlier runs wrote.
 struct WrittenRows {
   std::vector<WrittenRow> rows;
-  /// The bytes after the last row, if the output itself already has all rows. If these bytes are right, the output is
-  /// complete and only the journal remains to be removed.
+  /// The bytes that follow the last row, if the output itself already has all rows. If the file has these bytes, the
+  /// output is complete and only the journal remains to be removed.
   std::optional<std::string> end = {};
 };
 
-/// Finds the rows of the journal that are in the file. Removes all other records from the journal. Each row has
-/// row_bytes bytes, and the first row follows the header. `count` is the number of rows of the whole output.
+/// Finds the rows of the journal that are in the file. Removes all other rows from the journal. Each row has row_bytes
+/// bytes, and the first row follows the header. `count` is the number of rows of the whole output.
 [[nodiscard]] Result<WrittenRows> find_written_rows(const std::string& output, std::string_view header,
                                                     std::size_t row_bytes, std::size_t count, Journal& journal);
 

@@ -26,7 +26,7 @@ namespace chronormal {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-// A local t this near to a step counts as equal to the step. The command line allows at most a million steps, so
+// The distance up to which a local t counts as equal to a step. The command line allows at most a million steps, so
 // neighbouring steps are at least 1e-6 apart.
 constexpr double kLargestStepError = 1e-7;
 constexpr double kLargestFloat = std::numeric_limits<float>::max();
@@ -47,7 +47,8 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
-// Makes a keyframe from computed positions. Returns an error if a position is too large for float32.
+// Makes a keyframe from computed positions. Returns an error, which names `mover`, if a position is too large for
+// float32.
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))
@@ -179,7 +180,7 @@ std::vector<float> NormalSampler::unit_normals(const Segment& segment, const Loc
     segment_ = segment.index;
   }
   std::vector<float> normals(3 * element_count());
-  // The code that writes the normals counts the normals without a direction.
+  // Counts no normals without a direction here. The code that writes the normals counts them.
   curves_.unit_normals(t, VectorView<float>::packed(normals.data(), element_count()), Threads::kAll);
   return normals;
 }
@@ -204,7 +205,8 @@ Result<std::vector<float>> NormalSampler::scheme_normals(const Segment& segment,
   const auto expected = VectorView<float>::packed(at_random.data(), element_count());
   scheme_normals_->unit_normals(static_cast<double>(index) * (1 / static_cast<double>(steps)), expected);
   scheme_normals_->played_normals(index, steps, anchor_interval, result);
-  // Drift is never negative, so the first element is the worst until another element has more drift.
+  // The worst drift of an element so far. Drift is never negative, so the first element is the worst until another
+  // element has more drift.
   struct Worst {
     double angle = 0;
     std::size_t element = 0;

@@ -48,7 +48,7 @@ Result<Pose> pose_of(NormalSampler& sampler, MotionStream& stream, const Moments
   return sampler.at_rest();
 }
 
-// Checks all that can be checked of the moments before a normal is computed.
+// Checks the moments of a sampling before any normal is computed, as far as possible.
 Status check_moments(const Motion& motion, const SampleOptions& options, const Moments& moments) {
   assert(moments.times.empty() || moments.weights.empty());
   for (const double time : moments.times) {
@@ -82,14 +82,14 @@ class ArrayFile {
     if (format == SampleFormat::kNpz) npz_.emplace(*file_);
   }
 
-  // Begins the file, so that the row of the share's first moment comes next. With peers, the file is shared by all
-  // processes. `header` is the header of a .npy file.
+  // Begins the file, so that the row of the first moment of this process's share comes next. With peers, all processes
+  // write to the same file. `header` is the header of a .npy file.
   [[nodiscard]] Status begin(const Motion& motion, const Moments& moments, const SegmentRun& run, std::size_t outputs,
                              std::string_view header) {
     const IndexRange share = run.share();
     const bool is_first = is_first_process(run);
     const std::vector<std::uint64_t> shape = {run.peers ? moments.count() : share.count, outputs, 3};
-    // The number of bytes in the rows before the share, for each output.
+    // The number of bytes in the rows before the share of this process.
     const std::uint64_t before = std::uint64_t{share.first} * 3 * sizeof(float);
     if (!npz_) {
       checksum_ = checksum_of(header);
@@ -116,7 +116,7 @@ class ArrayFile {
     return Success{};
   }
 
-  // Appends a row. If there is a journal, a row of a .npy file also gets a record in the journal.
+  // Appends the row of one moment. If there is a journal, a row of a .npy file also gets a record in the journal.
   [[nodiscard]] Status append(const std::vector<float>& normals, const Pose& pose, std::size_t zeros,
                               Journal* journal) {
     if (!npz_) {
@@ -132,11 +132,11 @@ class ArrayFile {
                     : npz_->append(positions_, bytes_of(pose.positions));
   }
 
-  // Continues a .npy file. `checksum` is the checksum of the bytes that the file has.
+  // Continues the .npy file of an earlier run. `checksum` is the checksum of the bytes that the file already has.
   void go_on(std::uint32_t checksum) { checksum_ = checksum; }
-  // Returns the checksum of all bytes of a .npy file so far.
+  // Returns the checksum of the bytes that the .npy file has so far.
   [[nodiscard]] std::uint32_t checksum() const { return checksum_; }
-  // Writes the text of a part after the last row.
+  // Appends the text with which the file of a shard ends, after the last row.
   [[nodiscard]] Status append_end(std::string_view text) { return file_->append(text); }
 
   // Returns the checksums of the rows that this process wrote. To end the file, the first process needs the checksums
@@ -151,7 +151,7 @@ class ArrayFile {
     npz_->add_checksum(positions_, checksums[1], positions * 3 * (is_far() ? sizeof(double) : sizeof(float)));
   }
 
-  // Ends the file in a process that is not the first.
+  // Ends the work on the shared file in a process that is not the first.
   [[nodiscard]] Status seal() { return file_->seal(); }
   [[nodiscard]] Status finish_joined() { return file_->finish(); }
 
@@ -175,8 +175,8 @@ class ArrayFile {
   std::string storage_;
 };
 
-// A guard that removes a partial output at the end of the run if the output has no rows. A later run could not continue
-// anything in such a file.
+// A guard that removes a partial output at the end of the run if the output has no rows. A later run would find nothing
+// to continue in such a file.
 struct EmptyPartial {
   EmptyPartial() = default;
   EmptyPartial(const EmptyPartial&) = delete;
@@ -190,7 +190,7 @@ struct EmptyPartial {
   const Journal* journal = nullptr;
 };
 
-// Returns the text of a file with the mesh at one moment.
+// Returns the text of a .ply or .obj file with the mesh at one moment.
 std::string mesh_file(const Motion& motion, const NormalSampler& sampler, const Pose& pose,
                       const std::vector<float>& normals, ElementKind kind, SampleFormat format) {
   const Topology& topology = motion.topology;
@@ -280,7 +280,7 @@ Result<SampleSummary> finish_with_peers(const SegmentRun& run, Written own, Arra
   return own.summary;
 }
 
-// Returns the text at the end of a shard's part. `array` is the checksum of all bytes before this text.
+// Returns the text at the end of the file of a shard. `array` is the checksum of all bytes before this text.
 Result<std::string> end_of_part(const Motion& motion, const SampleOptions& options, const Moments& moments,
                                 const SegmentRun& run, const NormalSampler& sampler, std::uint32_t array,
                                 KeyframeChecksums& seen) {
@@ -368,7 +368,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  // Complete files get their names only at the end, since a name may be that of a keyframe's file.
+  // Files that are complete but do not have their names yet. They get them only at the end, since a name may be that of
+  // a file with a keyframe of the input.
   std::vector<OutputFile> meshes;
   run.skip(written);
   const auto keys = [&](std::size_t i) {
@@ -458,7 +459,7 @@ Result<std::vector<std::string>> internal::sample_files(const SampleOutput& outp
                      " meshes, but the standard output can only take one; name numbered files with -o, such as "
                      "mesh_%d.obj"};
   }
-  // Files of other shards may exist, so only the files of this shard are checked.
+  // Checks only the files of this shard, because files of other shards may exist.
   const IndexRange own = names.size() == count ? run.share_of(count) : IndexRange{0, names.size()};
   for (std::size_t i = own.first; i < own.end(); ++i) {
     if (Status status = check_output(names[i], output.force); !status) return status.error();

@@ -1,4 +1,4 @@
-// Writes and reads the text at the end of a part, and finds the keyframes on which the part depends.
+// Writes and reads the text at the end of the file of a shard, and finds the keyframes on which the file depends.
 #include "workflow/sample/sample_part.h"
 
 #include <limits>

@@ -19,7 +19,8 @@
 
 namespace chronormal::inline internal {
 
-/// The largest length of this text in bytes. A keyframe takes less than 40 bytes.
+/// The largest length, in bytes, of the text at the end of a shard's file. A keyframe takes less than 40 bytes of the
+/// text.
 inline constexpr std::uint64_t kLongestEndOfPart = std::uint64_t{1} << 28;
 
 struct SamplePart {
@@ -29,11 +30,12 @@ struct SamplePart {
   TaskChecksums checksums = {};
 
   [[nodiscard]] std::string text() const;
-  /// Reads the text at the end of a file. `name` is the name of the file for messages. Errors: kInvalidInput.
+  /// Reads the text at the end of a shard's file. `name` is the name of the file for messages. Errors: kInvalidInput if
+  /// the text is not what a shard writes.
   [[nodiscard]] static Result<SamplePart> read(std::string_view text, const std::string& name);
 };
 
-/// Returns a checksum of the options and the moments.
+/// Returns a checksum of the options and the moments of a sampling.
 [[nodiscard]] std::uint32_t checksum_of_options(const SampleOptions& options, const Moments& moments);
 
 /// Returns the keyframes on which the moments of a shard depend, and the keyframes with which the next shard begins.

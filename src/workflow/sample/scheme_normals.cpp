@@ -1,4 +1,4 @@
-// Prepares a scheme for each block of elements, and evaluates or plays all blocks.
+// Prepares a scheme for each block of elements, and evaluates it at any t or plays it in steps, for all blocks.
 #include "workflow/sample/scheme_normals.h"
 
 #include <algorithm>

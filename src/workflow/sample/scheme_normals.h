@@ -17,11 +17,11 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the scheme with this name. Errors: kUsage if no scheme has this name, or if the scheme needs edges and the
-/// elements are not faces.
+/// Returns the scheme with this name. Errors: kUsage if no scheme has this name, or if the scheme needs the edges of
+/// faces and the elements are not faces.
 [[nodiscard]] Result<std::unique_ptr<Scheme>> scheme_for(const std::string& name, ElementKind kind);
 
-/// The target of a segment, and the weight at which it is evaluated.
+/// The target that a segment leads to, and the weight of this target in a pose.
 struct TargetWeight {
   std::size_t target = 0;
   double weight = 0;
@@ -33,8 +33,8 @@ struct TargetWeight {
 
 class SchemeNormals {
  public:
-  /// Prepares the scheme on all cores. groups is nullptr if the elements are faces. The name must be the name of a
-  /// scheme. The positions, the topology and the groups must outlive the object.
+  /// Prepares the scheme for all elements of a segment, on all cores. groups is nullptr if the elements are faces. A
+  /// scheme with this name must exist. The positions, the topology and the groups must outlive the object.
   SchemeNormals(const Segment& segment, const NormalGroups* groups, const std::string& name);
   SchemeNormals(const SchemeNormals&) = delete;
   SchemeNormals& operator=(const SchemeNormals&) = delete;

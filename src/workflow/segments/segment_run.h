@@ -50,7 +50,8 @@ class Journal;
 struct SegmentRun {
   using Progress = std::function<void(std::size_t done, std::size_t total)>;
 
-  /// The share of the work. If there is no value, the run does all work, and writes no part for `merge`.
+  /// The share of the work that this run does. If there is no value, the run does all work, and writes no part for
+  /// `merge`.
   std::optional<Shard> shard = {};
   /// The processes that have the other shares, or nullptr if this process does not communicate with others.
   const Peers* peers = nullptr;
@@ -59,23 +60,23 @@ struct SegmentRun {
   Progress progress = {};
   /// The journal for rows of samples. A RecordedRun has `keep` instead.
   Journal* journal = nullptr;
-  /// The checksums of all data on which a shard depends, for its part.
+  /// The checksums of all data on which a shard depends. They are written into the part of the shard.
   TaskChecksums checksums = {};
 
-  /// Begins a run over this many segments. In reports of progress, each segment counts as this many steps.
+  /// Begins a run over `segments` segments. In reports of progress, each segment counts as `steps` steps.
   void begin(std::size_t segments, std::size_t steps = 1) noexcept {
     total_ = segments;
     steps_ = steps;
     done_ = 0;
   }
-  /// Counts this many segments as done, because an earlier run has done them.
+  /// Counts `segments` segments as done, because an earlier run has computed them.
   void skip(std::size_t segments) noexcept { done_ += segments; }
   /// Returns the segments that this process computes.
   [[nodiscard]] IndexRange share() const noexcept { return share_of(total_); }
-  /// Returns the range of items, among `total`, that belongs to this process.
+  /// Returns the range of items that belongs to this process, if there are `total` items in all.
   [[nodiscard]] IndexRange share_of(std::size_t total) const noexcept { return shard.value_or(Shard{}).of(total); }
-  /// Returns the items that this process examines for facts about all items. If peers examine the other items, these
-  /// are only the items of this process.
+  /// Returns the items that this process examines for facts about all items: all items or, if peers examine the others,
+  /// the items of this process.
   [[nodiscard]] IndexRange looked_at(std::size_t total) const noexcept {
     return peers != nullptr ? share_of(total) : IndexRange{0, total};
   }
@@ -84,14 +85,14 @@ struct SegmentRun {
     if (peers != nullptr) peers->maximize(numbers);
   }
 
-  /// Reports progress: this many more segments are done, and also this many steps of the segment after them.
+  /// Reports progress: `segments` more segments are done, and also `steps` steps of the next segment.
   void tell(std::size_t segments, std::size_t steps = 0) {
     done_ += segments;
     if (progress) progress(done_ * steps_ + steps, share().count * steps_);
   }
 
   /// Processes segments that are in memory, in order. Calls work(segments) for at most `at_once` segments at a time,
-  /// and reports progress after each call. Errors: as work returns them.
+  /// and reports progress after each call. Errors: those of work.
   template <class Work>
   [[nodiscard]] Status over(IndexRange segments, std::size_t at_once, const Work& work) {
     return in_waves(segments, at_once, [&](IndexRange some) -> Status {
@@ -100,8 +101,9 @@ struct SegmentRun {
       return status;
     });
   }
-  /// Processes the segments of a stream in the same way. Before each call of work, holds in memory all keyframes from
-  /// the first to the last that keys(segment) returns for these segments. Errors: also those of the stream.
+  /// Processes the segments of a stream, in order. Before each call of work, holds in memory all keyframes from the
+  /// first to the last that keys(segment) returns for the segments of this call. Calls work(segments) for at most
+  /// `at_once` segments at a time, and reports progress after each call. Errors: those of work and of the stream.
   template <class Keys, class Work>
   [[nodiscard]] Status over(MotionStream& stream, const Keys& keys, IndexRange segments, std::size_t at_once,
                             const Work& work) {
@@ -110,8 +112,8 @@ struct SegmentRun {
       return status ? work(some) : status;
     });
   }
-  /// Processes segments as over() does, but reports no progress. This is called before the run, to find facts about all
-  /// segments.
+  /// Processes the segments of a stream as over() does, but reports no progress. Called before the run, to find facts
+  /// about all segments.
   template <class Keys, class Work>
   [[nodiscard]] static Status look_over(MotionStream& stream, const Keys& keys, IndexRange segments,
                                         std::size_t at_once, const Work& work) {
@@ -142,21 +144,21 @@ struct SegmentRun {
 /// A run that keeps a result for each segment. The type Found must have a member `segment`, the index of its segment.
 template <class Found>
 struct RecordedRun : SegmentRun {
-  /// The results of the first segments of the share, if an earlier run has them.
+  /// The results of the first segments of the share, as an earlier run has kept them.
   std::vector<Found> known = {};
   /// A function that is called for each computed segment, in order; may be empty. The function stores the result, so
   /// that a later run can have the result among `known`. An error that the function returns ends the run.
   std::function<Status(const Found&)> keep = {};
-  /// The results of all segments of a shard, also of the known segments.
+  /// The results of all segments of a shard. Results that an earlier run has kept are among them.
   std::vector<Found> found = {};
 
   /// Returns true if this run cannot keep data of all segments at once. Commands then refuse options that need such
   /// data.
   [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
 
-  /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage if the known segments are
-  /// not the first of the share, or if fits(result) is false for one of them. The message names `task`, for example
-  /// "audit".
+  /// Begins the run as SegmentRun::begin() does, and calls add(result) for each known segment. Errors: kUsage if the
+  /// known segments are not the first of the share, or if fits(result) is false for one of them. The message names
+  /// `task`, for example "audit".
   template <class Fits, class Add>
   [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
                              const Add& add) {
@@ -175,13 +177,13 @@ struct RecordedRun : SegmentRun {
     skip(known.size());
     return Success{};
   }
-  /// Returns the segments of the share that are not known.
+  /// Returns the segments of the share whose results no earlier run has kept.
   [[nodiscard]] IndexRange rest() const noexcept {
     const IndexRange own = share();
     return {own.first + known.size(), own.count - known.size()};
   }
 
-  /// Takes the result of the next segment, and passes it to keep and to add(). Errors: those of keep.
+  /// Takes the result of the next segment, and passes it to the function `keep` and to add(). Errors: those of `keep`.
   template <class Add>
   [[nodiscard]] Status take(Found result, const Add& add) {
     if (Status kept = keep ? keep(result) : Success{}; !kept) return kept;
@@ -201,7 +203,7 @@ struct ShardOf {
 
 /// Sorts the results of all segments into the order of the motion. The shards may be in any order, and the motion has
 /// total(whole) segments. Errors: kUsage if are_of_one(a, b) is false, because the two shards then belong to different
-/// tasks; kUsage if a segment is not in exactly one shard. Messages use `tasks` as the plural name of the task.
+/// tasks; kUsage if a segment is not in exactly one shard. Messages name the tasks by the plural `tasks`.
 template <class Whole, class Found, class AreOfOne>
 [[nodiscard]] Result<std::vector<Found>> join(std::vector<ShardOf<Whole, Found>>& shards, std::size_t total,
                                               const AreOfOne& are_of_one, const char* tasks) {

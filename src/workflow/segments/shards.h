@@ -49,9 +49,9 @@ struct Peers {
 /// two shards of one task both have a checksum with some name, the two checksums are equal.
 ///
 /// A shard lists the keyframes that it has read. If the stream keeps all keyframes in memory
-/// (MotionStream::keeps_all()), these are all keyframes. Otherwise they are the keyframes of its segments, the first
-/// and the last keyframe, and the keyframe with which the next shard begins. For this reason two neighbouring shards
-/// have a keyframe in common.
+/// (MotionStream::keeps_all()), it lists all keyframes. Otherwise it lists the keyframes of its segments, the first and
+/// the last keyframe, and the keyframe with which the next shard begins. For this reason two neighbouring shards have a
+/// keyframe in common.
 using TaskChecksums = std::map<std::string, std::uint32_t, std::less<>>;
 
 }  // namespace chronormal::inline internal

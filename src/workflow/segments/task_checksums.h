@@ -1,5 +1,5 @@
-/// Computes checksums that show if two parts belong to the same task. They are computed while a shard reads keyframes.
-/// Private to workflow.
+/// Computes checksums that show whether two parts (files of shards) belong to the same task. They are computed while a
+/// shard reads keyframes. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 
@@ -26,7 +26,7 @@ namespace chronormal::inline internal {
 
 class KeyframeChecksums {
  public:
-  /// Creates an object for a stream. The stream must outlive the object.
+  /// Creates an object for the keyframes of a stream. The stream must outlive the object.
   explicit KeyframeChecksums(MotionStream& stream) : stream_(stream) {}
   KeyframeChecksums(const KeyframeChecksums&) = delete;
   KeyframeChecksums& operator=(const KeyframeChecksums&) = delete;
@@ -36,8 +36,8 @@ class KeyframeChecksums {
   /// stream, kFailed if a keyframe is read again with different positions.
   [[nodiscard]] Status begin();
 
-  /// Reads the needed keyframes that have not been read yet. Adds the checksums of the needed keyframes, and of all
-  /// other data of the motion, to the result. Errors: as the stream returns them.
+  /// Reads those keyframes in `needed` that have not been read yet. Adds the checksums of all keyframes in `needed`,
+  /// and of all other data of the motion, to the result. Errors: those of the stream.
   [[nodiscard]] Status finish(std::set<std::size_t> needed, TaskChecksums& result);
 
  private:
@@ -53,22 +53,22 @@ inline constexpr std::size_t kPartVersion = 6;
 inline constexpr std::string_view kDamagedPart =
     "the shard is damaged, since its checksum is wrong; run this shard again";
 
-/// Records an error if a part has another version.
+/// Records an error in `part` if the part has another version of the format than kPartVersion.
 void check_part_version(const JsonView& part);
 
-/// Reads the member "checksums" of a part.
+/// Returns the member "checksums" of a part (the file of a shard).
 [[nodiscard]] TaskChecksums read_task_checksums(const JsonView& part);
 
 /// The parts of one task that were read so far. Their checksums show that they belong together.
 class KnownParts {
  public:
-  /// Adds a part. Errors: kUsage if this part and an earlier part belong to different tasks; the place of the error is
-  /// the name of this part.
+  /// Adds a part by its name and its checksums. Errors: kUsage if this part and an earlier part belong to different
+  /// tasks; the place of the error is the name of this part.
   [[nodiscard]] Status add(const std::string& part, const TaskChecksums& checksums);
 
  private:
   std::vector<std::string> parts_;
-  // For each name, its first checksum and the index of that part.
+  // For each name of a checksum, the first checksum with this name, and the index of the part that has it.
   std::map<std::string, std::pair<std::uint32_t, std::size_t>> first_;
 };
 

@@ -51,8 +51,8 @@ class Block {
     groups_ = NormalGroups::of_vertices(topology_, separate_points(topology_.vertex_count()));
   }
 
-  // Returns for each stored normal the normal that its element has by a weighting, or (0, 0, 0) if the element has no
-  // normal.
+  // Returns for each stored normal the normal that its element gets by a weighting of faces, or (0, 0, 0) if the
+  // element has no normal.
   [[nodiscard]] std::vector<Vec3d> normals(Weighting weighting) const {
     const auto view = VectorView<const float>::packed(positions_.data(), topology_.vertex_count());
     const std::vector<Vec3d> all = all_weighted_normals_at({&topology_, view, view, 0, 1, 0}, groups_, weighting, 0);
@@ -76,7 +76,7 @@ bool differ(const Vec3d& a, const Vec3d& b) {
   return dot(across, across) > kTells * kTells * dot(a, a) * dot(b, b) || along < 0;
 }
 
-// The distances that are added up over blocks.
+// The angles between stored and computed normals, which are added up over blocks of elements.
 struct Distances {
   std::array<WeightingDistance, kAllWeightings.size()> of_weightings;
   std::array<std::vector<float>, kWeightings.size()> told;  // distances in degrees, only of normals that tell
@@ -118,7 +118,7 @@ Distances distances_of(const Block& block, Stored stored) {
     result.telling += tells ? 1U : 0U;
     for (std::size_t w = 0; w < normals.size(); ++w) {
       if (normals[w][i] == Vec3d{}) continue;
-      // An author may show the other side of a surface, so the distance ignores the side.
+      // Ignores the side of the surface, because an author may show the other side.
       const double angle = angle_between(stored[i].normal, normals[w][i]) * kDegreesPerRadian;
       const double degrees = std::fmin(angle, 180 - angle);
       result.add(w, stored[i], degrees);
@@ -146,7 +146,7 @@ AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<c
   Distances all;
   const Stored sorted(stored);
   const std::size_t blocks = (sorted.size() + kBlock - 1) / kBlock;
-  // The results of blocks take memory, so only kAtOnce blocks are examined at a time.
+  // The number of blocks that are examined at a time, because the results of blocks take memory.
   constexpr std::size_t kAtOnce = 64;
   for (std::size_t first = 0; first < blocks; first += kAtOnce) {
     std::vector<Distances> found(std::min(kAtOnce, blocks - first));

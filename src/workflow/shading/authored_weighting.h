@@ -31,7 +31,7 @@
 
 namespace chronormal::inline internal {
 
-/// A stored normal of a vertex, and the vertex's element in NormalGroups. The normal has any length except zero.
+/// A stored normal of a vertex, with the element of the vertex in NormalGroups. The normal has any length except zero.
 struct StoredNormal {
   std::uint32_t vertex = 0, element = 0;
   Vec3d normal;
@@ -53,21 +53,21 @@ struct AuthoredWeighting {
     return distances[static_cast<std::size_t>(weighting)];
   }
 
-  /// The distance of each weighting, in the order of kAllWeightings.
+  /// The distance of the stored normals from each weighting, in the order of kAllWeightings.
   std::array<WeightingDistance, kAllWeightings.size()> distances;
   std::size_t telling = 0;
   Weighting detected = Weighting::kArea;  ///< the weighting that fits best, one of kWeightings
 };
 
-/// Compares stored normals with all weightings. `groups` must belong to the topology, and have corners. Takes
-/// O(corners) for each of the seven weightings. Uses all cores, and little memory besides the stored normals. The
-/// result has the same bits on any number of threads.
+/// Compares stored normals with the normals of all weightings of faces. `groups` must belong to the topology, and have
+/// corners. Takes O(corners) for each of the seven weightings. Uses all cores, and little memory besides the stored
+/// normals. The result has the same bits on any number of threads.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const Topology& topology, VectorView<const float> positions,
                                                         const NormalGroups& groups, std::vector<StoredNormal> stored);
 
-/// Compares the base normals of a mesh in the same way. The groups of the mesh must have their corners. If the mesh has
-/// no base normals, the detected weighting is area. If there are more than `most` normals, compares only `most` of
-/// them, evenly spaced.
+/// Compares the base normals of a mesh with the normals of all weightings of faces. The groups of the mesh must have
+/// their corners. If the mesh has no base normals, the detected weighting is area. If there are more than `most`
+/// normals, compares only `most` of them, evenly spaced.
 [[nodiscard]] AuthoredWeighting find_authored_weighting(const GltfShading& shading,
                                                         std::size_t most = static_cast<std::size_t>(-1));
 

@@ -1,4 +1,5 @@
-/// Computes, by a weighting, the terms that corners of polygons add to the normals of elements. Private to workflow.
+/// Computes the terms that corners of polygons add to the normals of elements, by a weighting of faces. Private to
+/// workflow.
 ///
 /// Many corners are computed at once. If corners of the same polygon are close together in the list, the normal of the
 /// polygon is computed once. Lengths and angles are computed in SIMD lanes. The result has the same bits as a call of
@@ -18,8 +19,9 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the term that a corner of a polygon adds to a sum. n is the normal of the polygon, and its length is twice
-/// the area of the polygon. e and f are the edges from the corner to the next and to the previous corner.
+/// Returns the term that a corner of a polygon adds to the normal of its element. n is the normal of the polygon, and
+/// its length is twice the area of the polygon. e and f are the edges from the corner to the next and to the previous
+/// corner.
 [[nodiscard]] Vec3d corner_term(Weighting weighting, const Vec3d& n, const Vec3d& e, const Vec3d& f) noexcept;
 
 /// The number of elements that are computed together. It is large enough to fill SIMD lanes with their corners, and
@@ -28,8 +30,8 @@ inline constexpr std::size_t kElementsOfBlock = 128;
 
 class CornerTerms {
  public:
-  /// Returns an empty object that belongs to this thread and reuses its memory. The object is valid until the next call
-  /// of this function in this thread.
+  /// Returns an object without corners that belongs to this thread, so that its memory is reused. The object is valid
+  /// until the next call of this function in this thread.
   [[nodiscard]] static CornerTerms& emptied(Weighting weighting);
 
   /// Appends a corner of a polygon. `loop` has the vertices of the polygon. `polygon` is a number that all calls use
@@ -47,8 +49,8 @@ class CornerTerms {
   /// Computes the terms of all corners that were appended. Must be called once, after add() and before terms().
   void finish();
 
-  /// Return the terms of all corners, the lengths of these terms, and the length of the normal of a corner's polygon.
-  /// Corners are numbered in the order of add().
+  /// Return the terms of all corners, the lengths of these terms, and the length of the normal of a corner's polygon
+  /// (twice its area). Corners are numbered in the order of add().
   [[nodiscard]] std::span<const Vec3d> terms() const noexcept { return terms_; }
   [[nodiscard]] std::span<const double> lengths() const noexcept { return lengths_; }
   [[nodiscard]] double area(std::size_t corner) const noexcept { return areas_[face_of_corner_[corner]]; }
@@ -60,7 +62,7 @@ class CornerTerms {
   };
   static constexpr std::size_t kKnown = 512;
 
-  // Returns the index of a polygon in faces_. Computes its normal if the normal is not known.
+  // Returns the index of a polygon in faces_. Computes the normal of the polygon if it was not computed recently.
   template <class PositionOf>
   std::uint32_t face_of(std::uint32_t polygon, std::span<const std::uint32_t> loop, const PositionOf& position) {
     Known& known = known_[polygon % kKnown];
@@ -74,7 +76,7 @@ class CornerTerms {
   bool needs_edges_ = false;
   std::uint64_t use_ = 0;
   std::array<Known, kKnown> known_;
-  // Normals of polygons; finish() replaces them by the vectors that the weights of corners multiply.
+  // The normals of polygons. finish() replaces them by the vectors that are multiplied by the weights of corners.
   std::vector<Vec3d> faces_;
   std::vector<double> areas_;
   std::vector<std::uint32_t> face_of_corner_;

@@ -26,8 +26,8 @@ std::string mesh_place(const GltfDocument& document, std::size_t mesh) {
   return (document.name() + ", /meshes/").append(std::to_string(mesh));
 }
 
-// Appends an array of a primitive, with `width` numbers for each of `count` vertices, to the array of all primitives.
-// If the primitive has no values, appends zeros.
+// Appends an array of a primitive to the array of all primitives. The array has `width` numbers for each of `count`
+// vertices. If the primitive has no values, appends zeros.
 void append(std::vector<float> values, std::size_t first_vertex, std::size_t count, std::size_t width,
             std::vector<float>& all) {
   if (values.empty()) {
@@ -42,7 +42,7 @@ void append(std::vector<float> values, std::size_t first_vertex, std::size_t cou
   all.insert(all.end(), values.begin(), values.end());
 }
 
-// Appends the nonzero deltas of some vertices to a target.
+// Appends those deltas of a primitive's vertices that are not zero to a target.
 void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, BlendTarget& target) {
   const auto is_moved = [&](std::size_t v) { return deltas[v] != 0 || deltas[v + 1] != 0 || deltas[v + 2] != 0; };
   std::size_t count = 0;
@@ -58,7 +58,8 @@ void append_deltas(const std::vector<float>& deltas, std::size_t first_vertex, B
   }
 }
 
-// Reads the arrays of all primitives with faces, one after the other. Targets are read one at a time, to save memory.
+// Reads the arrays of all primitives with faces, one primitive after the other. Targets are read one at a time, to save
+// memory.
 Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& shading) {
   const GltfMesh& mesh = document.meshes()[shading.mesh];
   std::vector<std::uint32_t> corners;
@@ -118,8 +119,8 @@ Status read_parts(const GltfDocument& document, bool keep_deltas, GltfShading& s
   return Success{};
 }
 
-// Renumbers classes of vertices in the order of their first vertices. The numbers in class_of_vertex may have any
-// order.
+// Makes points from classes of vertices: numbers the classes in the order of their first vertices. The numbers in
+// class_of_vertex may have any order.
 Points to_points(const std::vector<std::uint32_t>& class_of_vertex, std::size_t class_count) {
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   std::vector<std::uint32_t> number(class_count, kNone);
@@ -163,13 +164,13 @@ Points set_apart(const Points& points, const std::vector<bool>& alone) {
   return to_points(classes, class_count);
 }
 
-// Groups vertices without stored normals by the crease angle. Each class of the result shares a normal. All other
-// vertices stay alone. `split` counts the vertices that a crease would split.
+// Groups vertices without stored normals by the crease angle. The vertices of each point of the result share a normal.
+// All other vertices stay alone. `split` counts the vertices that a crease would split.
 Result<Points> smooth_points(const Motion& base, const Points& points, const std::vector<bool>& has_normal,
                              double crease_angle, std::size_t& split) {
   const Result<NormalGroups> groups = NormalGroups::by_crease_angle(base, set_apart(points, has_normal), crease_angle);
   if (!groups) return groups.error();
-  // A vertex has one normal, so all elements at its corners are joined.
+  // Joins all elements at the corners of a vertex, because a vertex of a glTF file has one normal.
   const auto corners = base.topology.corners();
   const auto element_of_corner = groups.value().element_of_corner();
   std::vector<std::uint32_t> parent(groups.value().size());
@@ -207,7 +208,7 @@ Points joined(const Points& stored, const Points& smooth, const std::vector<bool
   return to_points(classes, stored.count + smooth.count);
 }
 
-// Groups vertices into points. The vertices of a point may share a normal.
+// Groups vertices into points. The vertices of a point are at the same place, and may share a normal.
 Result<Points> shading_points(const GltfShadingOptions& options, const std::vector<bool>& has_normal,
                               GltfShading& shading) {
   Motion base;  // the mesh at rest; borrows the arrays of `shading` until the end
@@ -232,7 +233,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
     has_none.flip();
     Result<Points> smooth = set_apart(points, has_none);
     if (options.smooth) smooth = smooth_points(base, points, has_normal, options.crease_angle, shading.split_by_crease);
-    // A vertex with a stored normal and a vertex without one never share a point, even at the same place.
+    // Keeps vertices with a stored normal apart from vertices without one, even at the same place.
     if (smooth)
       all = joined(set_apart(points, has_none), smooth.value(), has_normal);
     else
@@ -243,7 +244,7 @@ Result<Points> shading_points(const GltfShadingOptions& options, const std::vect
   return all;
 }
 
-// Splits points by the stored normals of their vertices. Uses the code of NormalGroups, which splits points by the
+// Splits points whose vertices have different stored normals. Uses the code of NormalGroups, which splits points by the
 // normals of face corners. For this purpose, each vertex that shares its point and has a face gets an invented face
 // with all corners at that vertex.
 Result<Points> split_by_normals(const Topology& topology, Points points, const std::vector<float>& normals) {
@@ -298,8 +299,8 @@ void number_by_corners(const Topology& topology, Points& points) {
   points.count = count;
 }
 
-// Polygons that lie back to back: they have the same vertices and face opposite sides. A polygon is a single triangle,
-// or two consecutive triangles that were cut from a quad.
+// The pairs of polygons that lie back to back: they have the same vertices and face opposite sides. A polygon is a
+// single triangle, or two consecutive triangles that were cut from a quad.
 struct Backs {
   std::vector<std::uint32_t> polygon;  // the polygon of each triangle, named by the first triangle of the polygon
   std::vector<std::uint32_t> back;     // for each triangle, the polygon on its back, or kNoFace
@@ -316,7 +317,7 @@ std::optional<Backs> backs_of_triangles(const GltfShading& shading) {
   const std::vector<BackToBack> triangles = find_backs(count, [&](std::uint32_t f, auto& loop) {
     for (const std::uint32_t v : topology.face(f)) loop.push_back(point(v));
   });
-  // A quad has the number of its first triangle.
+  // Finds quads that lie back to back. A quad is named by the index of its first triangle.
   const std::vector<BackToBack> quads = find_backs(count, [&](std::uint32_t f, auto& loop) {
     if (f + 1 == count) return;
     const auto a = topology.face(f), b = topology.face(f + 1);
@@ -347,7 +348,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
   std::vector<bool> result;
   if (!found) return result;
   const Backs& backs = *found;
-  // Collects the corners of each point whose vertices have corners on both sides of a sheet.
+  // Collects the corners of each point at which polygons lie back to back.
   std::vector<bool> may_be(points.count);
   for (std::uint32_t c = 0; c < corners.size(); ++c)
     if (backs.back[c / 3] != kNoFace) may_be[points.point_of_vertex[corners[c]]] = true;
@@ -373,7 +374,7 @@ std::vector<bool> corners_at_the_back(const GltfShading& shading, const Points& 
     if (apart.empty()) continue;
     const std::vector<std::uint32_t> side = split_sides(here.size(), std::move(edges), apart);
     const std::uint32_t sides = *std::max_element(side.begin(), side.end()) + 1;
-    // Finds the side to which the stored normals of the point's vertices face.
+    // Finds the side to which the stored normals of the vertices at this point face.
     std::vector<double> along(sides);
     for (std::size_t n = 0; n < here.size(); ++n) {
       const std::uint32_t c = here[n].second;

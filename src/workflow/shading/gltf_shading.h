@@ -36,7 +36,7 @@ namespace chronormal::inline internal {
 struct GltfShadingOptions {
   bool smooth = false;        ///< if true, primitives without NORMAL get vertex normals; otherwise they are flat
   double crease_angle = 180;  ///< degrees; if `smooth` is true, edges sharper than this in the base are hard
-  /// Tells whether to keep normal_deltas, tangents and tangent_deltas. If false, they are only checked.
+  /// If true, normal_deltas, tangents and tangent_deltas are kept. Otherwise they are only checked.
   bool keep_deltas = true;
   bool weld = true;  ///< if true, vertices at the same point in every pose are joined
 };
@@ -48,20 +48,22 @@ struct GltfShading {
   std::vector<GltfPart> parts;  ///< the primitives that have faces; `node` is empty
   BlendSet set;                 ///< all parts together, with all targets of the file, also correction targets
   NormalGroups groups;          ///< groups of set.topology; outputs are vertices, also those of flat primitives
-  /// (V) The element of each vertex, or kNoElement if the vertex has no face or its primitive is flat.
+  /// The element (group of corners with one normal) of each vertex, (V). It is kNoElement if the vertex has no face or
+  /// its primitive is flat.
   std::vector<std::uint32_t> element_of_vertex;
-  /// (V) The point of each vertex, a number below V. Vertices belong to one point if they have the same place in the
-  /// base and the same deltas in all targets. However, the two sides of a sheet are two points. Only the author's truth
-  /// (workflow/truth) needs points.
+  /// The point of each vertex, a number below V, as a list (V). Vertices belong to one point if they have the same
+  /// place in the base and the same deltas in all targets. However, the two sides of a sheet are two points. Only the
+  /// author's truth (workflow/truth) needs points.
   std::vector<std::uint32_t> point_of_vertex;
-  /// (V) The place of each vertex, numbered like points, except that both sides of a sheet are one place. The list is
-  /// empty if the mesh has no such sides.
+  /// The place of each vertex, (V). Places are numbered like points, except that both sides of a sheet are one place.
+  /// The list is empty if the mesh has no sheet with two sides.
   std::vector<std::uint32_t> place_of_vertex;
   /// For each corner, true if its face belongs to one side of a sheet, but its vertex shows the normal of the other
   /// side. Elements leave these corners out. The list is empty if no corner is on the back.
   std::vector<bool> at_the_back;
   std::vector<float> normals;  ///< (V, 3) N as stored; (0, 0, 0) if the primitive has no normals
-  /// The stored deltas of each target, (V, 3); empty if no primitive stores deltas for the target.
+  /// The normal deltas that the file stores for each target, as arrays (V, 3). An array is empty if no primitive stores
+  /// deltas for the target.
   std::vector<std::vector<float>> normal_deltas;
   /// For each target, true if any of its normal deltas is not zero, even if they are not kept.
   std::vector<bool> turns;
@@ -69,7 +71,7 @@ struct GltfShading {
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas, for tangents
   std::optional<GltfBakeMark> mark;
   /// The number of correction targets of an earlier bake that have lost their deltas, because another program has made
-  /// new normals. If this number is not 0, `mark` is empty.
+  /// new normals for the file. If this number is not 0, `mark` is empty.
   std::size_t emptied = 0;
   std::size_t split_by_crease = 0;  ///< the number of vertices that a crease would have split
 
@@ -95,7 +97,7 @@ struct GltfShading {
 [[nodiscard]] Result<GltfShading> read_gltf_shading(const GltfDocument& document, std::size_t mesh,
                                                     const GltfShadingOptions& options = {});
 
-/// Returns n(w) of one element. positions has the coordinates of all vertices at the weights w, (V, 3).
+/// Returns the normal n(w) of one element. positions has the coordinates of all vertices at the weights w, (V, 3).
 [[nodiscard]] Vec3d normal_from_positions(const GltfShading& shading, std::span<const double> positions,
                                           std::size_t element) noexcept;
 
@@ -104,9 +106,10 @@ struct GltfShading {
 /// O(corners), on all cores.
 [[nodiscard]] std::vector<Vec3d> normals_from_positions(const GltfShading& shading, std::span<const double> weights);
 
-/// Returns the true direction at a vertex: n(w) of its element, rotated as the author rotated the base. stored is N.
-/// base_normal and normal are n(0) and n(w) of the element, of any length. The result is zero if n(w) is zero. If n(0)
-/// or N is zero, nothing is rotated. If N faces away from n(0), -n(0) and -n(w) are used instead of n(0) and n(w).
+/// Returns the true direction at a vertex: n(w) of its element, rotated as the author rotated the base. stored is N,
+/// the base normal of the vertex in the file. base_normal and normal are n(0) and n(w) of the element, of any length.
+/// The result is zero if n(w) is zero. If n(0) or N is zero, nothing is rotated. If N faces away from n(0), -n(0) and
+/// -n(w) are used instead of n(0) and n(w).
 [[nodiscard]] Vec3d shown_direction(const Vec3d& stored, const Vec3d& base_normal, const Vec3d& normal) noexcept;
 
 /// A map with the same effect as shown_direction() for one vertex, for callers that apply it to many normals. The map
@@ -128,7 +131,7 @@ class ShownTurn {
 };
 
 /// Computes the weights of correction targets from the weights of the mesh's own targets. weights must have one value
-/// for each target. The values of correction targets are overwritten.
+/// for each target. The function overwrites those of correction targets.
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -1,4 +1,4 @@
-// Blends the joint matrices of vertices.
+// Blends the joint matrices of vertices, and transforms normals by them.
 #include "workflow/shading/mesh_skin.h"
 
 #include <algorithm>
@@ -77,7 +77,8 @@ Vec3d MeshSkin::carried(SkinRule rule, std::size_t vertex, const AffineTransform
   Vec3d sum;
   for (std::size_t i = shares_->first[vertex]; i < shares_->first[vertex + 1]; ++i) {
     const NormalMatrix of_joint = normal_matrix(matrices_[shares_->all[i].joint]);
-    // The cofactor matrix of a joint that mirrors gives normals that point to the wrong side, so their sign is changed.
+    // Changes the sign for a joint that mirrors, because its cofactor matrix gives a normal that points to the wrong
+    // side.
     sum = sum + (of_joint.mirrored ? -shares_->all[i].share : shares_->all[i].share) * unit(of_joint(normal));
   }
   return unit(sum);

@@ -6,8 +6,8 @@
 /// surface. No target can correct this. For this reason the error is measured between normals that L has transformed,
 /// and the error of L itself is reported separately.
 ///
-/// Copies     All copies share the data of the file. Each copy has its own pose.
-/// Threads    const functions may run at once.
+/// Copies     All copies share the data of the file. Each copy has its own pose. Threads    const functions may run at
+/// the same time.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 
@@ -31,8 +31,9 @@ namespace chronormal::inline internal {
 
 class MeshSkin {
  public:
-  /// Reads the skin of a node for the mesh of the shading, and poses the joints as the file does. If `of_same_mesh` is
-  /// given, reuses its joints and shares instead of reading them again. Errors: see GltfSkin
+  /// Reads the skin of a node for the mesh of the shading, and places the joints as in the file at rest. If
+  /// `of_same_mesh` is given, reuses the joints and shares of this skin instead of reading them again. Errors: those of
+  /// GltfSkin.
   [[nodiscard]] static Result<MeshSkin> read(const GltfDocument& document, const GltfShading& shading, std::size_t node,
                                              std::optional<std::size_t> animation,
                                              const MeshSkin* of_same_mesh = nullptr);
@@ -41,27 +42,27 @@ class MeshSkin {
   /// or just before the jump if just_before is true. Returns true if the pose may have changed.
   bool pose(double time, bool just_before);
 
-  /// Tells whether the joints move in the animation.
+  /// Tells whether the joints move in the animation for which the skin was read.
   [[nodiscard]] bool moves() const noexcept { return skin_->moves(); }
 
   /// Returns the times in seconds of all keys that move joints, in ascending order.
   [[nodiscard]] std::vector<double> key_times() const { return skin_->key_times(); }
 
-  /// Tells whether the blended matrix of each of these vertices only rotates and scales evenly in this pose.
+  /// Tells whether, in the present pose, the blended matrix of each of these vertices only rotates and scales evenly.
   /// Differences too small to matter are ignored. Such a matrix keeps the angle between any two normals of the vertex.
   [[nodiscard]] bool is_even(std::span<const std::uint32_t> vertices) const;
 
-  /// Returns the blended matrix of a vertex in the present pose.
+  /// Returns the blended joint matrix of a vertex in the present pose.
   [[nodiscard]] AffineTransform of_vertex(std::size_t vertex) const noexcept;
 
   /// Returns the direction in which a viewer renders a vertex's normal in the present pose. The normal has any length;
-  /// matrix must be of_vertex(vertex). The result is a unit vector, or zero, infinite or NaN if the rendered normal has
-  /// no direction.
+  /// matrix must be the result of of_vertex(vertex). The result is a unit vector, or zero, infinite or NaN if the
+  /// rendered normal has no direction.
   [[nodiscard]] Vec3d carried(SkinRule rule, std::size_t vertex, const AffineTransform& matrix,
                               const Vec3d& normal) const noexcept;
 
  private:
-  // The joints that each vertex follows, as indices into the list of a skin's joints.
+  // The joints that each vertex follows, with their weights. Joints are indices in the list of a skin's joints.
   struct Shares {
     std::vector<std::size_t> first;  // (V + 1), the first share of each vertex in `all`
     std::vector<JointShare> all;

@@ -1,6 +1,6 @@
-// Draws random poses. The names of targets are split into words. A word ends before a capital that follows a small
-// letter, and at each character that is not a letter. Words for a side (left, right) tell the two halves of a symmetric
-// pair.
+// Draws random poses of morph targets. The names of targets are split into words. A word ends before a capital that
+// follows a small letter, and at each character that is not a letter. Words for a side (left, right) tell the two
+// halves of a symmetric pair.
 #include "workflow/shading/rig_poses.h"
 
 #include <algorithm>
@@ -104,7 +104,7 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
   for (std::size_t p = 0; p < count && (n > 0 || !given_.empty()); ++p) {
     std::vector<double>& pose = poses.emplace_back(target_count_, 0.0);
     if (!given_.empty()) {
-      // The index given_.size() means the rest pose.
+      // Draws the two poses between which the result lies. The index given_.size() stands for the rest pose.
       const std::size_t from = random_below(random, given_.size()), to = random_below(random, given_.size() + 1);
       const double part = random_part(random);
       for (std::size_t i = 0; i < target_count_; ++i)
@@ -125,7 +125,8 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
         if (left < 0) break;
       }
       pose[targets_[drawn]] = 1 - random_part(random);
-      // The chance of the next target is the sum of its togetherness with all targets that are active already.
+      // Computes the chance of each target to be drawn next: the sum of its togetherness with all targets that are
+      // active already.
       for (std::size_t a = 0; a < n; ++a) {
         if (pose[targets_[a]] != 0)
           chances[a] = 0;

@@ -25,17 +25,18 @@
 
 namespace chronormal::inline internal {
 
-/// Returns how many times as likely two targets are to be active together as any two targets, judged by their names.
+/// Returns how many times as likely the targets with these names are to be active together as any two targets.
 [[nodiscard]] double togetherness(const std::string& a, const std::string& b);
 
 class RigPoses {
  public:
   /// Prepares to draw poses for target_count targets. Only the targets in `targets` may be active. `names` has
-  /// target_count names, or is empty. `given` holds poses of target_count weights each.
+  /// target_count names, or is empty. `given` has the poses between which poses are drawn, with target_count weights
+  /// each, or is empty.
   RigPoses(std::span<const std::string> names, std::vector<std::size_t> targets, std::size_t target_count,
            PoseList given);
 
-  /// Draws random poses. Different seeds give different poses.
+  /// Draws `count` random poses. Different seeds give different poses.
   [[nodiscard]] PoseList sample(std::size_t count, unsigned seed) const;
   /// Returns the poses given to the constructor.
   [[nodiscard]] const PoseList& given() const noexcept { return given_; }
@@ -47,11 +48,11 @@ class RigPoses {
   std::vector<double> together_;  // (targets, targets), the results of togetherness()
 };
 
-/// Returns the poses of a file that give weights to this mesh.
+/// Returns those of the given poses that have weights for a mesh, as weights of its targets.
 [[nodiscard]] PoseList poses_of_mesh(std::span<const RigPose> poses, const GltfMesh& mesh);
 
-/// Checks that the poses fit the file. Errors: kInvalidInput if a pose names a target that no mesh with targets has, or
-/// if its number of weights differs from the number of targets of the mesh.
+/// Checks that the given poses fit a glTF file. Errors: kInvalidInput if a pose names a target that no mesh with
+/// targets has, or if its number of weights differs from the number of targets of the mesh.
 [[nodiscard]] Status check_poses(std::span<const RigPose> poses, const GltfDocument& document);
 
 }  // namespace chronormal::inline internal

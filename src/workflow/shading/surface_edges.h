@@ -19,7 +19,7 @@
 
 namespace chronormal::inline internal {
 
-/// A pair of vertices, the lower number first.
+/// A pair of vertices on the surface. The lower index comes first.
 using SurfaceEdge = std::array<std::uint32_t, 2>;
 
 /// Lists the edges of all faces, and the pairs of vertices that share a point and a normal (texture seams). The list
@@ -31,7 +31,8 @@ using SurfaceEdge = std::array<std::uint32_t, 2>;
 struct TearCounts {
   static constexpr std::array<float, 3> kDegrees = {10, 20, 40};
 
-  /// The squared lengths of the difference of two error vectors at these angles, (2 sin(angle / 2))^2.
+  /// The limits of 10, 20 and 40 degrees as squared lengths of the difference of two error vectors: (2 sin(angle /
+  /// 2))^2.
   static constexpr std::array<float, 3> kSquares = {0.030384494F, 0.12061476F, 0.46791112F};
 
   std::array<std::size_t, 3> beyond{};
@@ -39,8 +40,8 @@ struct TearCounts {
   void add(const TearCounts& other) noexcept {
     for (std::size_t k = 0; k < beyond.size(); ++k) beyond[k] += other.beyond[k];
   }
-  /// Adds the tears between two vertices in some poses. a and b have their errors s - u as planes, (3, poses). A pose
-  /// in which an error is NaN adds no tear.
+  /// Adds the tears between two vertices in some poses. a and b have the errors of the two vertices (rendered minus
+  /// true unit normal) as planes of x, y and z, (3, poses). A pose in which an error is NaN adds no tear.
   void add(const float* a, const float* b, std::size_t poses) noexcept {
     std::array<std::uint32_t, 3> counts{};
     for (std::size_t p = 0; p < poses; ++p) {

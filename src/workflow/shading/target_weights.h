@@ -1,4 +1,4 @@
-/// Finds which morph targets are active at once, from the weights of a file. Private to workflow.
+/// Finds which morph targets are active at the same time, from the weights of a file. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_TARGET_WEIGHTS_H_
 #define CHRONORMAL_WORKFLOW_SHADING_TARGET_WEIGHTS_H_
 
@@ -13,10 +13,11 @@
 
 namespace chronormal::inline internal {
 
-/// A list of poses. A pose has one weight for each target.
+/// A list of poses. A pose has one weight for each target of a mesh.
 using PoseList = std::vector<std::vector<double>>;
 
-/// The keys of a track, and how weights are interpolated between them. A cubic spline with one key stays constant.
+/// The weight track of a mesh: its keys, and how weights are interpolated between them. A cubic spline with one key
+/// stays constant.
 struct WeightTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   GltfKeys keys;
@@ -40,7 +41,7 @@ class WeightUse {
  public:
   explicit WeightUse(std::size_t targets) : lowest_(targets, 0.0), highest_(targets, 0.0), moments_(targets) {}
 
-  /// Adds a track, which must have this many targets and outlive this object.
+  /// Adds a track. It must have as many targets as this object, and outlive this object.
   void add_track(const WeightTrack& track);
   void add_pose(std::vector<double> weights);
 
@@ -49,18 +50,19 @@ class WeightUse {
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const noexcept;
   /// Returns a bound of |w_i|, the size of the weight of target i.
   [[nodiscard]] double largest(std::size_t i) const { return std::fmax(-lowest_[i], highest_[i]); }
-  /// Return bounds of w_i: a lower bound of at most 0, and an upper bound of at least 0.
+  /// Return bounds of w_i, the weight of target i: a lower bound of at most 0, and an upper bound of at least 0.
   [[nodiscard]] double lowest(std::size_t i) const { return lowest_[i]; }
   [[nodiscard]] double highest(std::size_t i) const { return highest_[i]; }
   [[nodiscard]] std::size_t targets() const noexcept { return moments_.size(); }
 
-  /// Returns the largest number of poses that samples() can return.
+  /// Returns the largest number of poses that samples() can return for the added tracks and poses.
   [[nodiscard]] std::size_t sample_count() const noexcept;
   /// Returns poses that the tracks pass through: all keys, and fifteen poses between any two neighbouring keys. Also
-  /// returns the single poses. If there are more than `most` poses, returns `most` of them, evenly spaced.
+  /// returns the poses that add_pose() added. If there are more than `most` poses, returns `most` of them, evenly
+  /// spaced.
   [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
-  /// Returns poses like samples(), but keeps all keys as long as possible. For this purpose, fifteen poses between two
-  /// keys become seven, three, one or none.
+  /// Returns poses that the tracks pass through, like samples(), but keeps all keys as long as possible. For this
+  /// purpose, the fifteen poses between two keys become seven, three, one or none.
   [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:
@@ -70,7 +72,7 @@ class WeightUse {
   void note(std::size_t target, double weight, std::vector<std::size_t>& active);
 
   std::vector<double> lowest_, highest_;
-  // For each target, the numbers of the moments at which it is active, ascending.
+  // For each target, the indices of the moments at which it is active (has a weight), in ascending order.
   std::vector<std::vector<std::size_t>> moments_;
   std::size_t moment_count_ = 0;
   std::vector<std::size_t> last_;  // the argument of the last add_active()

@@ -12,27 +12,30 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The largest number of products of two weights that are tried. Each product takes a correction target.
+// The largest number of products w_i w_j of two weights for which correction targets are tried. Each product takes a
+// correction target.
 constexpr std::size_t kMostProducts = 48;
-// The number of attempts to get below the byte limit with fewer correction targets.
+// The number of attempts to get below the limit of bytes with fewer correction targets.
 constexpr int kTries = 5;
-// Mean errors count as equal if they differ by no more than this part of themselves.
+// The relative difference up to which two mean errors count as equal.
 constexpr double kAlike = 1e-3;
-// A skin may make errors so large that all candidates are beyond the tolerance. In this case candidates are made again
-// for a smaller tolerance, at most this many times.
+// The largest number of times that candidates are made again for a smaller tolerance. This is done if a skin makes
+// errors so large that all candidates are beyond the tolerance.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// A glance measures a candidate in only a few of the poses. If a candidate has kHopeless times the mean error of the
-// best candidate in a glance, the candidate is not examined further. If the best candidate meets all criteria except
-// the tolerance, a candidate that is also beyond the tolerance is given up at kFarther times the mean error.
+// Factors for a glance, which measures a candidate in only a few of the poses. If a candidate has kHopeless times the
+// mean error of the best candidate in a glance, the candidate is not examined further. If the best candidate meets all
+// criteria except the tolerance, a candidate that is also beyond the tolerance is given up at kFarther times the mean
+// error.
 constexpr double kHopeless = 2, kFarther = 1.25;
-// A file may grow by more bytes if it gets at most kFewExtras correction targets than if it gets more of them. A
-// correction target takes about kBytesOfExtra bytes for each vertex.
+// The number of correction targets up to which a file may grow by more bytes, and the bytes that a correction target
+// takes for each vertex, roughly.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
-// A candidate is better than the stored deltas if its mean error is at most this part of theirs.
+// The largest mean error of a candidate that is better than the deltas of the file, relative to the mean error of these
+// deltas.
 constexpr double kBetter = 0.95;
-// It is worth it to double the number of correction targets of a rig if the mean error then is at most this part of the
-// mean error before.
+// The largest part of the mean error that may remain after the number of correction targets of a rig is doubled. If
+// more remains, doubling is not worth it.
 constexpr double kWorthIt = 0.9;
 
 bool has_new_base(const DeltaSource& source) {
@@ -54,7 +57,7 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has grown more than is allowed, or if the number of torn edges has, beyond one of the first
+// Returns true if an error has grown more than is allowed, or if too many edges are torn by more than one of the first
 // `thresholds` angles. A mean error may grow up to the tolerance, and single normals may turn by the tolerance. For
 // each hundred torn edges, one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
@@ -76,7 +79,7 @@ struct Judged {
   double mean = 0, mean_of_spared = 0;  // mean error in the worst of the named viewers, and in the worst of the others
 };
 
-// The comparison of candidates. It takes them one after the other, and keeps the best.
+// The comparison of candidates. consider() takes the candidates one after the other, and the best one is kept.
 class Chooser {
  public:
   Chooser(const DeltaSource& source, const MeshWeights& weights, const BakeOptions& options, std::size_t tangent_bytes)
@@ -136,13 +139,13 @@ class Chooser {
     return bytes;
   }
 
-  // Returns true if a glance shows that a candidate is beyond the tolerance. A plan must measure all candidates, so the
-  // result is then always false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate is beyond the tolerance. A plan must
+  // measure all candidates, so the result is then always false.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     return !options_.plan && is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
   }
-  // Returns true if a glance shows that a candidate cannot be the best. A plan must measure all candidates, so the
-  // result is then always false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate cannot be the best. A plan must
+  // measure all candidates, so the result is then always false.
   [[nodiscard]] bool is_hopeless(const Candidate& candidate) const {
     if (!best_ || options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -155,19 +158,19 @@ class Chooser {
     const std::size_t most = options_.most_delta_bytes.value_or(std::numeric_limits<std::size_t>::max());
     return most - std::min(most, tangent_bytes_);
   }
-  // Returns the number of bytes that deltas may take. If the options give a tolerance or a limit, returns the limit.
-  // Otherwise the number is in proportion to the size of the file.
+  // Returns the number of bytes that deltas may take. If the options give a tolerance or a limit, this is the limit of
+  // bytes. Otherwise the number is in proportion to the size of the file.
   [[nodiscard]] std::size_t bearable_bytes(std::size_t extras) const {
     const bool is_asked = options_.tolerance || options_.most_targets || options_.most_delta_bytes;
     if (is_asked || options_.bytes_of_file == 0) return most_bytes();
     return extras > kFewExtras ? options_.bytes_of_file : options_.bytes_of_file + options_.bytes_of_file / 2;
   }
-  // Estimates how many correction targets for all vertices fit into the limit of bytes. The deltas of the mesh's own
-  // targets take bytes_of_own of these bytes.
+  // Estimates how many correction targets fit into the limit of bytes if each has deltas for all vertices. The deltas
+  // of the mesh's own targets take bytes_of_own of these bytes.
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    // If the additional target does not fit, fewer are tried.
+    // Allows one correction target more than fits. If it does not fit, fewer are tried.
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
@@ -180,8 +183,8 @@ class Chooser {
   [[nodiscard]] bool plans() const noexcept { return options_.plan; }
   [[nodiscard]] const Judged& of_best() const { return of_best_; }
 
-  // Reduces the tolerance for which candidates are made, if all of them are beyond the given tolerance because of
-  // skins. Returns false if a smaller tolerance cannot help.
+  // Reduces the tolerance for which candidates are made, if skins make all candidates miss the given tolerance. Returns
+  // false if a smaller tolerance cannot help.
   bool tighten() {
     if (!best_ || of_best_.choice.within || !weights_.skins.any()) return false;
     const double now = made_within_.value_or(tolerance_);
@@ -216,7 +219,8 @@ class Chooser {
  private:
   static bool is_rounding(const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; }
 
-  // Returns the errors in one viewer that decide which candidate is better.
+  // Returns the errors in one viewer that decide which candidate is better: the sum over the kinds of poses that
+  // decide.
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     JudgedErrors all;
     for (std::size_t k = 0; k < kPoseKinds; ++k)
@@ -236,7 +240,7 @@ class Chooser {
                        [&](const ErrorsOfKinds& of_viewer) { return of_viewer[0].spread.worst > tolerance_; });
   }
 
-  // Returns the mean error in the named viewer in which it is smallest, because a candidate may help some viewers and
+  // Returns the mean error in the named viewer in which it is smallest, because a candidate may help this viewer and
   // harm others.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
@@ -265,9 +269,9 @@ class Chooser {
         return choice.animations_only ? kinds[0].errors() : errors_of_all(kinds).errors();
       };
       const ShownErrors then = all_of(before_[v]), now = all_of(after[v]);
-      // If the caller has requested an encoding, a candidate is better under two conditions. Its mean error must be
-      // smaller, in the poses of the file or in all poses. In addition, it must not tear more edges, or none of its
-      // errors may have grown.
+      // If the caller has requested an encoding, a candidate is better than the deltas of the file under two
+      // conditions. Its mean error must be smaller, in the poses of the file or in all poses. In addition, it must not
+      // tear more edges, or none of its errors may have grown.
       const bool is_asked = source_.plan.encoding != BakeEncoding::kSmallest;
       const bool is_nearer = now.mean < then.mean || file_of(after[v]).mean < file_of(before_[v]).mean;
       change.is_better = is_asked ? is_nearer && (now.tears[0] <= then.tears[0] || !any_grows)
@@ -288,8 +292,8 @@ class Chooser {
   }
 
   [[nodiscard]] bool is_better(const Judged& judged, const Judged& than) const {
-    // The stored deltas lose to any candidate that is better in some viewer. There is one exception: stored deltas
-    // within the tolerance win if the smallest file is preferred.
+    // The deltas of the file lose to any candidate that is better in some viewer. There is one exception: they win if
+    // they are within the tolerance and the smallest file is preferred.
     const bool is_stored = judged.choice.name == stored_.name, was_stored = than.choice.name == stored_.name;
     if (was_stored && !is_stored)
       return judged.is_affordable && judged.better > 0 && !(than.choice.within && prefers_bytes_);
@@ -326,8 +330,8 @@ class Chooser {
   std::vector<BakedCandidate> candidates_;
 };
 
-// Tries correction targets of low rank (low_rank.cpp). Tries as many as the tolerance needs, within the bytes by which
-// the file may grow. If these take too many bytes, tries fewer.
+// Tries correction targets of low rank (low_rank.cpp): as many as the tolerance needs, within the bytes by which the
+// file may grow. If their deltas take too many bytes, tries fewer targets.
 void look_at_low_rank(const Making& making, const Candidate& own, std::size_t bytes_of_own, Chooser& chooser) {
   Making of_try = making;
   of_try.most_extras = std::min(of_try.most_extras, chooser.extras_within(bytes_of_own));
@@ -343,8 +347,8 @@ void look_at_low_rank(const Making& making, const Candidate& own, std::size_t by
   }
 }
 
-// Tries correction targets for a mesh that no animation drives. Tries more and more of them, as long as each step is
-// worth it (kWorthIt).
+// Tries correction targets for a mesh that no animation drives. Tries more and more of them, as long as the mean error
+// gets small enough with each step (kWorthIt).
 void look_at_quadratics(const Making& making, const Candidate& own, Chooser& chooser) {
   double mean = std::numeric_limits<double>::infinity();
   quadratics_candidates(making, own, [&](Candidate candidate) {
@@ -362,8 +366,8 @@ bool has_few_products(const Making& making, const MeshWeights& weights) {
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Makes own deltas of any length. The deltas are similar to those of own_candidate(), but the best lengths are not
-// searched.
+// Makes deltas of any length for the mesh's own targets. They are similar to those of own_candidate(), but the best
+// lengths are not searched.
 Candidate similar_to_own(const DeltaSource& source, const RightNormals& rights) {
   MeshPlan plan = source.plan;
   plan.is_line.assign(plan.is_line.size(), false);
@@ -375,7 +379,7 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   Candidate own = own_candidate(source, making.rights, making.lengths);
   own.animations_only = false;
   // If a glance finds the deltas of the mesh's own targets beyond the tolerance, and correction targets may help, these
-  // deltas are judged last.
+  // deltas are judged after the candidates with correction targets.
   const bool has_extras = source.plan.is_driven && source.plan.products_fit && making.most_extras > 0;
   const bool waits = has_extras && chooser.is_far(own);
   if (!waits) chooser.consider(own);
@@ -400,8 +404,8 @@ void look_at_all(const DeltaSource& source, const MeshWeights& weights, const Ma
   reach(40);
   if (weights.rig && !chooser.is_found() && source.plan.products_fit) look_at_quadratics(making, own, chooser);
   if (has_extras) {
-    // All viewers render the same normals if corrections are only across N (perpendicular to the stored normal). Such
-    // corrections may need more correction targets.
+    // All viewers render the same normals if corrections are perpendicular to the stored normal N. Such corrections may
+    // need more correction targets.
     Making across = making;
     across.keeps_across |= making.lengths == Lengths::kShort;
     look_at_low_rank(across, own, bytes, chooser);
@@ -428,8 +432,8 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     alone.lines = FittedLines();
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
-    // If the author's normals are known, keys of the file may be right as they are. Deltas that are fitted to
-    // animations would change these keys, so such deltas are not tried.
+    // If the author's normals are known, the deltas of the file may be right at its keys. Deltas that are fitted to
+    // animations would change the normals there, so such deltas are not tried.
     const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));

@@ -30,18 +30,18 @@ namespace chronormal::inline internal {
 /// The candidate that was chosen, and facts about all candidates that were tried.
 struct ChosenCandidate {
   Candidate candidate;
-  /// Errors in each viewer before and after the bake; first in the named viewers, then in the others.
+  /// The errors in each viewer before and after the bake: first in the named viewers, then in all other viewers.
   std::vector<ViewerChange> viewers;
   std::vector<BakedCandidate> candidates;  ///< all candidates that were tried
 };
 
-/// Chooses a candidate of the encoding in the plan. tangent_bytes is the number of bytes of new tangents, which is
-/// added to the size of every candidate.
+/// Chooses the best candidate for a mesh, in the encoding that the plan names. tangent_bytes is the number of bytes of
+/// new tangents, which is added to the size of every candidate.
 [[nodiscard]] ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& weights,
                                                const BakeOptions& options, std::size_t tangent_bytes);
 
-/// Judges a mesh that an earlier bake wrote, by the tolerance and the limits of the options. If nothing in the file
-/// drives its correction targets, they get the weights of their formulas.
+/// Judges a mesh that an earlier bake wrote, by the tolerance and the limits of the options. If no animation of the
+/// file drives the correction targets of the mesh, they get the weights of their formulas.
 [[nodiscard]] BakedCandidate judge_baked(const DeltaSource& source, const MeshWeights& weights,
                                          const BakeOptions& options);
 

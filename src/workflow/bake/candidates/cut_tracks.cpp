@@ -16,8 +16,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kMostPieces = 16, kMostKeys = 20000, kTurnBlock = 256;
-// The estimated error of a spline may be this many times the limit for straight pieces, because the estimate adds up
-// all errors as if they came at the same moment.
+// The factor by which the estimated error of a spline may exceed the limit for straight pieces. The estimate is too
+// high, because it adds up all errors as if they came at the same moment.
 constexpr double kPartOfSplines = 2;
 
 // Returns for each gap between keys an angle in radians. It is the angle by which normals turn in the middle of the
@@ -52,8 +52,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     return rows;
   };
   const std::vector<float> of_middles = rows_of(middles), of_lack = rows_of(lack);
-  // Calls visit(p, openness) for a vertex in each pose p. The openness measures an angle between two normals. The first
-  // is the rendered normal, and the second is the same normal after the missing part of the correction weights is
+  // Calls visit(p, openness) for the n-th vertex in each pose p. The openness grows with the angle between two normals.
+  // The first is the rendered normal, and the second is this normal after the missing part of the correction weights is
   // added.
   const auto turn = [&](std::size_t n, const auto& visit) {
     thread_local std::vector<WeightedVector> shown_terms, off_terms;
@@ -73,7 +73,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     };
     for (std::size_t p = 0; p < poses; ++p) visit(p, openness(at(shown, p), at(shown, p) + at(off, p)));
   };
-  // For each pose, the largest openness in the upper 32 bits, and the index of its vertex in the lower 32 bits.
+  // For each pose, the largest openness (a measure of the angle) in the upper 32 bits, and the index of its vertex in
+  // the lower 32 bits.
   std::vector<std::atomic<std::uint64_t>> worst(poses);
   const auto note = [&](std::size_t n, std::size_t p, float open) {
     const std::uint64_t found = std::uint64_t{bit_cast<std::uint32_t>(open)} << 32 | n;
@@ -82,9 +83,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   parallel_each(vertices.size(), kTurnBlock,
                 [&](std::size_t n) { turn(n, [&](std::size_t p, float open) { note(n, p, open); }); });
-  // A normal whose true normal has no direction does not count. Such normals are rare, so only the vertex with the
-  // largest error in each pose is checked. If its true normal has no direction, all vertices are measured again in this
-  // pose.
+  // Leaves out vertices whose true normal has no direction. They are rare, so only the vertex with the largest error in
+  // each pose is checked. If its true normal has no direction, all vertices are measured again in this pose.
   std::vector<std::size_t> again;
   PoseList poses_again;
   for (std::size_t p = 0; p < poses; ++p) {
@@ -115,8 +115,8 @@ std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTra
                                      const ExtrasAt& extras_at, std::span<const std::uint32_t> vertices,
                                      const VertexColumns& columns, double tolerance, double& left) {
   const std::vector<double> of_gaps = middle_errors(rights, track, extra_count, extras_at, vertices, columns);
-  // A gap gets at most `most` pieces. This number is reduced until the pieces of all gaps together are within the
-  // limit.
+  // Allows at most `most` pieces for each gap, and reduces this number until the pieces of all gaps together are within
+  // the limit.
   for (std::size_t most = kMostPieces;; --most) {
     std::vector<std::uint32_t> pieces;
     std::size_t keys = 1;
@@ -133,8 +133,8 @@ std::vector<std::uint32_t> pieces_of(const RightNormals& rights, const WeightTra
   }
 }
 
-// Sets the gain of each formula. The gain is the largest angle by which a normal turns if the weight has an error of 1
-// and the normal is as long as the stored normal.
+// Sets the gain of each formula for the weight of a correction target. The gain is the largest angle by which a normal
+// turns if this weight has an error of 1 and the normal is as long as the stored normal.
 void set_gains(const RightNormals& rights, std::span<const std::uint32_t> vertices, const VertexColumns& columns,
                ExtraDrivers& drivers) {
   const std::size_t own = rights.targets();

@@ -37,9 +37,9 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the error that 99.9 % of
-// all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that should remain after
-// least squares.
+// Parts of the tolerance in degrees. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the error that
+// 99.9 % of all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that should
+// remain after least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
 // If no tried number of correction targets reaches the tolerance, the first number is taken whose error is at most
@@ -50,14 +50,14 @@ constexpr std::size_t kManyMore = 2;
 // Positions in a gap between keys, from 0 to 1, at which a fit is checked. The fit does not use these positions.
 constexpr std::array<double, 2> kUnseen = {0.11, 0.63};
 constexpr int kFits = 4;
-// The angle by which a normal may turn if an entry of a delta is left out, as a part of the tolerance.
+// The largest angle by which a normal may turn if an entry of a delta is left out, relative to the tolerance.
 constexpr double kPartOfEntry = 1.0 / 2000;
 constexpr double kLeastRidge = 1e-9;
 constexpr std::array<std::size_t, 23> kCounts = {1,  2,  3,  4,  6,  8,  10, 12, 14, 16, 20, 24,
                                                  28, 32, 36, 40, 44, 48, 56, 64, 80, 96, 128};
 
-// A correction target that is made from another one, called `of`. Its weight is `factor` times the weight of `of`. If
-// above_zero is true, negative weights become 0.
+// A correction target that is made from another correction target, whose index is `of`. Its weight is `factor` times
+// the weight of that target. If above_zero is true, negative weights become 0.
 struct Share {
   std::size_t of = 0;
   double factor = 1;
@@ -65,7 +65,8 @@ struct Share {
   VertexVectors vectors;
 };
 
-// Properties of shares whose deltas are short, for viewers that limit the length of deltas.
+// The way in which deltas E of correction targets are shortened, for viewers that limit the length of deltas. N is the
+// stored normal.
 struct ShortShares {
   bool are_units = false;   // if true, N + E has the length of N, so that viewers that store directions keep E
   bool keep_along = false;  // if true, keeps the part of E along N
@@ -86,15 +87,15 @@ struct LowRankLimits {
   bool refits_own = false;    // if true, own deltas are fitted to the animations too, and to nothing else
 };
 
-// The instants to which a fit is made.
+// The rows of a fit: the instants of the file to which the weights and deltas are fitted.
 struct Rows {
   std::vector<std::size_t> instants;  // the indices of these instants in FileInstants, ascending
   std::vector<PlaceOfRows> places;    // instants half-way between neighbouring nodes of a piece
   std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };
 
-// Returns the tracks that fit into this many rows if each of them has at least the rows of its most telling piece
-// (telling_tracks() and telling_keys() in poses/played_poses.h).
+// Returns the tracks that are used if a fit may have at most `most` rows. Each of these tracks needs room for the rows
+// of its most telling piece (telling_tracks() and telling_keys() in poses/played_poses.h).
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -115,7 +116,8 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // A piece of a curve takes three rows if the pieces beside it are left out, and otherwise two rows.
+    // A piece of a curve takes three rows if its neighbours are left out, and otherwise two rows, because it shares its
+    // ends.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -148,15 +150,15 @@ PoseList poses_of(const FileInstants& all, std::span<const std::size_t> instants
   return poses;
 }
 
-// Returns the weights of the mesh's own targets in each row.
+// Returns the weights of the mesh's own targets in each row of a fit, (rows, targets).
 std::vector<float> own_weights(const PoseList& poses) {
   std::vector<float> result;
   for (const std::vector<double>& pose : poses) result.insert(result.end(), pose.begin(), pose.end());
   return result;
 }
 
-// Returns for each point a change of the deltas of the mesh's own targets, (3, targets). The change is found by least
-// squares over all rows.
+// Returns for each point (vertices with the same normal) a change of the deltas of the mesh's own targets, (3,
+// targets). The change is found by least squares over all rows (instants).
 std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   const std::vector<float> weights = own_weights(missing.poses());
   std::vector<double> matrix(targets * targets, 0.0);
@@ -323,7 +325,7 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   fit_few(fit, limits, limits.refits_own ? own_weights(missing.poses()) : std::vector<float>(), own_targets);
   found.worst = fit.worst();
 
-  // Collects the deltas. Fits have them point by point, but the file needs them vertex by vertex.
+  // Collects the deltas of all vertices. Fits have the deltas point by point, but the file needs them vertex by vertex.
   std::vector<FittedVertex> all;
   for (std::size_t p = 0; p < fitted.size(); ++p)
     for (const std::uint32_t v : fitted[p]) all.push_back({v, p});
@@ -382,8 +384,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
     }
   }
 
-  // Scales weights to at most 1, and multiplies deltas by the same factors. Entries of deltas that turn no normal
-  // noticeably become zero.
+  // Scales the weights of correction targets to at most 1, and multiplies deltas by the same factors. Entries of deltas
+  // that turn no normal noticeably become zero.
   std::vector<std::size_t> kept;
   std::vector<double> largest(extras, 0.0);
   for (std::size_t n = 0; n < curves.size(); ++n)
@@ -436,8 +438,8 @@ void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps
   }
 }
 
-// Returns deltas whose lengths are allowed by `lengths`, made from deltas of any length. Each delta becomes one share,
-// or two shares for kUnit: one for positive weights, and one for negative weights.
+// Makes correction targets whose deltas have lengths that `lengths` allows, from targets with deltas of any length.
+// Each target becomes one share, or two shares for kUnit: one for positive weights, and one for negative weights.
 std::vector<Share> shares_of(const RightNormals& rights, std::vector<VertexVectors> extras, Lengths lengths,
                              const ShortShares& how) {
   std::vector<Share> shares;

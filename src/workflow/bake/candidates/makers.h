@@ -24,24 +24,27 @@ namespace chronormal::inline internal {
 
 /// The lengths that N + D and the deltas E of correction targets may have.
 enum class Lengths {
-  /// N + D and N + E have the length of N, no component of D and E is beyond 1, and weights are from 0 to 1. Every
-  /// viewer renders such deltas right, after any compressor.
+  /// N is the stored normal, D an own delta, E a delta of a correction target. N + D and N + E have the length of N, no
+  /// component of D and E is beyond 1, and weights are from 0 to 1. Every viewer renders such deltas right, after any
+  /// compressor.
   kUnit,
-  /// N + D has the length of N. E is much shorter than N, and its weights are larger for this reason. A viewer that
-  /// keeps only the direction of N + E loses the part of E along N, and almost nothing else.
+  /// N is the stored normal, D an own delta, E a delta of a correction target. N + D has the length of N. E is much
+  /// shorter than N, and its weights are larger for this reason. A viewer that keeps only the direction of N + E loses
+  /// the part of E along N, and almost nothing else.
   kShort,
-  /// Any length is allowed. All viewers must add the deltas as stored.
+  /// Deltas of any length. All viewers must add the deltas as stored.
   kFree
 };
 
-/// Returns the choice of lengths that all of these viewers render with little or no loss, and that restricts deltas
-/// least.
+/// Returns the lengths of deltas that restrict deltas least, among those that all of these viewers render with little
+/// or no loss.
 [[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
 /// Returns the factor by which weights for these lengths are larger than weights for deltas of any length.
 [[nodiscard]] constexpr double weight_factor(Lengths lengths) noexcept { return lengths == Lengths::kShort ? 64 : 1; }
 
-/// A mesh and the requirements for a candidate. The members that are references must outlive this object.
+/// A mesh and the requirements for a candidate. The objects to which the references and spans refer must outlive this
+/// object.
 struct Making {
   const DeltaSource& source;
   const RightNormals& rights;
@@ -52,29 +55,30 @@ struct Making {
   double tolerance = 0;  ///< degrees: the largest error that the candidate should have
   std::size_t most_extras = 0;
   bool animations_only = false;
-  /// If true, correction targets have only deltas across N, because some viewers keep no lengths.
+  /// True if correction targets may have only deltas perpendicular to the stored normal, because some viewers keep no
+  /// lengths.
   bool keeps_across = false;
 
   [[nodiscard]] std::size_t targets() const { return source.shading.set.targets.size(); }
 };
 
-/// The part of the tolerance that errors of straight pieces between keys may use.
+/// The part of the tolerance that may be used up by straight pieces of weight curves between two keys.
 inline constexpr double kPartOfTracks = 0.2;
 
-// Candidates without correction targets (own.cpp).
+// Makers of candidates without correction targets (own.cpp).
 
 /// Makes a candidate that has the deltas of the file.
 [[nodiscard]] Candidate stored_candidate(const DeltaSource& source);
 
-/// Makes deltas of the mesh's own targets that are right at weight 1 of each target alone. If lengths are free, makes
-/// the deltas that the plan of the source requires instead, whose errors are also small between the weights 0 and 1.
-/// The deltas include the lines that were fitted by least squares to the weights of the file.
+/// Makes a candidate with deltas of the mesh's own targets that are right at weight 1 of each target alone. If lengths
+/// are free, makes the deltas that the plan of the source requires instead, whose errors are also small between the
+/// weights 0 and 1. The deltas include the lines that were fitted by least squares to the weights of the file.
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
-// Correction targets that products of weights drive (products.cpp).
+// Makers of correction targets whose weights are products of own weights (products.cpp).
 
-/// Returns the own deltas that are right at weight 1 of each target. The deltas of a target are for the vertices of all
-/// elements that the target moves.
+/// Returns deltas of the mesh's own targets that make normals right at weight 1 of each target. The deltas of a target
+/// are for the vertices of all elements that the target moves.
 [[nodiscard]] std::vector<VertexVectors> end_deltas(const GltfShading& shading, const NormalTerms& terms,
                                                     const RightNormals& rights, Lengths lengths);
 
@@ -82,24 +86,26 @@ inline constexpr double kPartOfTracks = 0.2;
 /// Stops counting at `most` + 1.
 [[nodiscard]] std::size_t count_products(const Making& making, std::size_t most);
 
-/// Makes the candidate with products of weights, for the poses of the file or of the rig. Vertices whose error is at
-/// most half the tolerance get no deltas of correction targets. If the limit allows fewer correction targets than were
-/// made, keeps those that help most.
+/// Makes the candidate whose correction targets have products of weights, for the poses of the file or of the rig.
+/// Vertices whose error is at most half the tolerance get no deltas of correction targets. If the limit allows fewer
+/// correction targets than were made, keeps those that help most.
 [[nodiscard]] Candidate products_candidate(const Making& making);
 
-// Correction targets that animations drive (low_rank.cpp).
+// Makers of correction targets whose weights animations set directly (low_rank.cpp).
 
-/// Fits correction targets to the errors that new own deltas leave. Makes as many as the tolerance needs, within the
-/// limit. Vertices whose error is a small part of the tolerance are left out. If only animations count and lengths are
-/// free, own deltas are fitted to the animations too. Computes the true normals at all nodes of the curves; at most 480
-/// nodes are fitted, and their normals take at most about 700 MB of memory.
+/// Fits correction targets to the errors that new deltas of the mesh's own targets leave. Makes as many as the
+/// tolerance needs, but at most making.most_extras. Vertices whose error is a small part of the tolerance are left out.
+/// If only animations count and lengths are free, own deltas are fitted to the animations too. Computes the true
+/// normals at all nodes of the weight curves; at most 480 nodes are fitted, and their normals take at most about 700 MB
+/// of memory.
 [[nodiscard]] Candidate low_rank_candidate(const Making& making, Candidate own);
 
-// Correction targets whose weights are quadratics of the weights, for a mesh that nothing drives (quadratics.cpp).
+// Makers of correction targets whose weights are quadratics of own weights, for a mesh that no animation drives
+// (quadratics.cpp).
 
-/// Adds correction targets to a candidate that has none. Calls take(candidate) for larger and larger numbers of them,
-/// until take() returns false. As long as no program drives the correction targets, a viewer renders the deltas of
-/// `own` alone. making.weights must have a rig.
+/// Adds correction targets to `own`, a candidate that has none. Calls take(candidate) for larger and larger numbers of
+/// correction targets, until take() returns false. As long as no program drives the correction targets, a viewer
+/// renders the deltas of `own` alone. making.weights must have a rig.
 void quadratics_candidates(const Making& making, const Candidate& own,
                            const std::function<bool(Candidate candidate)>& take);
 

@@ -1,4 +1,4 @@
-// New deltas for the targets of a mesh, without correction targets.
+// Makes new deltas for the targets of a mesh, without correction targets.
 #include "workflow/bake/candidates/makers.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, L
   Candidate result;
   result.name = "own deltas";
   // If the true normals are not quadratic in the weight, the terms of n(w) are only fitted to them. The true normal at
-  // weight 1 is more exact, so deltas lead to this normal.
+  // weight 1 is more exact, so deltas are computed from this normal.
   const bool is_of_truth = source.plan.encoding == BakeEncoding::kSmallest && !rights.are_by_area();
   if (lengths != Lengths::kFree || is_of_truth) {
     // The deltas give the normal at weight 1 the length of N. The stored normals of an author have that length too, so

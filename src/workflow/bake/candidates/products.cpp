@@ -35,28 +35,28 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kProductsBlock = 64;
-// Lengths that are tried for a sum of unit normals, from the longest down. Each length is kNextSum times the one
-// before.
+// The lengths that are tried for a sum of unit normals. The first is kLongestSum, and each next length is kNextSum
+// times the length before.
 constexpr double kLongestSum = 2.5, kNextSum = 0.9;
 constexpr int kTriedSums = 31;  // the shortest sum has a length of a tenth
-// kPartOfPairs is the error that a single correction target of a pair may leave half-way to its pose, as a part of the
-// tolerance. kAsGood is the factor by which the squared error of one target may exceed the squared error of two
-// targets.
+// Limits for the correction targets of a pair of targets. kPartOfPairs is the error that a single correction target may
+// leave half-way to the pose of the pair, relative to the tolerance. kAsGood is the factor by which the squared error
+// of one correction target may exceed the squared error of two.
 constexpr double kPartOfPairs = 0.25, kAsGood = 1.1;
-// The length of the shortest correction that is kept, relative to N. Shorter corrections turn no normal by an angle
-// that matters.
+// The length of the shortest correction that is kept, relative to the stored normal N. Shorter corrections turn no
+// normal by an angle that matters.
 constexpr double kLeastCorrection = 1e-5;
 // The error in radians below which a normal needs no correction.
 constexpr double kRight = 1e-5;
-// Limits for the length that a delta of any length gives the normal at weight 1, relative to n(0).
+// Limits for the length of the normal at weight 1, relative to n(0), if deltas may have any length.
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
 // The product of both weights of a pair drives its correction target. At unit lengths the product is multiplied by a
 // scale, so that its largest value in the file becomes kStrongest. The scale is at most kMostScale.
 constexpr double kMostScale = 4, kStrongest = 0.95;
-// Weights and products of pairs below this count as zero.
+// The weight, or product of two weights, below which a pair of targets counts as not active.
 constexpr double kLeastProduct = 1e-6;
 // kMostActive is the largest number of targets whose pairs are all examined. kMostHarmlessPairs is the largest number
-// of pairs that are kept. kMostHarmlessPoses is the largest number of poses in which the worth of pairs is measured.
+// of pairs that are kept. kMostHarmlessPoses limits the number of poses in which the worth of pairs is measured.
 constexpr std::size_t kMostSampled = 400;
 constexpr unsigned kRigSeed = 4;
 constexpr std::size_t kMostActive = 512, kMostHarmlessPairs = 6000, kMostHarmlessPoses = 96, kMeasured = 6000000;
@@ -67,7 +67,8 @@ struct ProductLimits {
   double tolerance = 0;  // degrees: the largest error that should be left
 };
 
-// A candidate before its correction targets have drivers.
+// The deltas and correction targets of a candidate, before the weights of the correction targets are connected to
+// tracks.
 struct Products {
   std::vector<VertexVectors> own;    // deltas of each target of the mesh
   std::vector<ExtraWeight> weights;  // weights of the correction targets, without gains
@@ -103,7 +104,7 @@ struct Asked {
   Vec3d of_element;
 };
 
-// Returns the vertices of some elements, in ascending order, with the normals of their elements in a pose.
+// Returns the vertices of some elements, in ascending order, with the normals of their elements in `pose`.
 std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNormals& rights,
                                   const std::vector<double>& pose, std::span<const std::uint32_t> elements) {
   const std::vector<Vec3d> normals = rights.of_elements(pose, elements);
@@ -131,7 +132,7 @@ VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
 
 bool is_active(const std::vector<double>& pose, std::size_t i) { return std::fabs(pose[i]) > kLeastProduct; }
 
-// The maker of corrections. It makes one correction after the other, and adds them to the Products.
+// The maker of correction targets. It makes them one after the other, and adds them to the Products.
 class Corrector {
  public:
   Corrector(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
@@ -144,7 +145,7 @@ class Corrector {
         form_(form),
         of_target_(form.own.size()) {}
 
-  // Adds a correction target with this weight. Its deltas give the normals the right direction in a pose.
+  // Adds a correction target with this weight. Its deltas give each normal the right direction in `pose`.
   void add(const ExtraWeight& weight, const std::vector<double>& pose) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -176,9 +177,9 @@ class Corrector {
     append_parts(weight, asked, vectors);
   }
 
-  // Adds a correction for a pair of targets. The correction makes normals right in a pose, and as good as possible
-  // half-way to this pose. It has two correction targets with the same weight. If one correction target is nearly as
-  // good as two, or leaves an error that is a small part of the tolerance (radians), it has only one.
+  // Adds a correction for a pair of targets. The correction makes normals right in `pose`, and as good as possible
+  // half-way to this pose. It has two correction targets with the same weight. A single correction target is used if it
+  // is nearly as good as two, or if its error is a small part of `tolerance` (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -205,7 +206,7 @@ class Corrector {
   }
 
  private:
-  // Returns the elements that every target of a weight moves and that need a correction.
+  // Returns the elements that need a correction and that both targets of a product of weights move.
   [[nodiscard]] std::vector<std::uint32_t> elements_of(const ExtraWeight& weight) const {
     std::vector<std::uint32_t> elements = terms_.elements(weight.i);
     if (weight.i != weight.j) {
@@ -227,7 +228,8 @@ class Corrector {
     form_.extras.push_back(std::move(vectors));
   }
 
-  // Appends the first and the second vectors as two correction targets. Leaves out a target that has only zeros.
+  // Appends two correction targets: the first has the first vector of each vertex, and the other the second. Leaves out
+  // a correction target that has only zeros.
   void append_parts(const ExtraWeight& weight, std::span<const Asked> asked,
                     const std::vector<std::array<Vec3d, 2>>& vectors) {
     for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) {
@@ -272,8 +274,8 @@ class Corrector {
       if (u) result.one = base.length * (*u - base.direction);
       result.error_of_one = error_with((1 / base.length) * result.one);
     }
-    // In that pose, the sum may have any length that two unit vectors can reach. The length with the smallest error is
-    // chosen.
+    // Tries lengths of the corrected normal in the pose, up to what two unit vectors can reach. Chooses the length with
+    // the smallest error half-way.
     std::optional<Vec3d> best;
     double size = kLongestSum;
     for (int n = 0; n < kTriedSums; ++n, size *= kNextSum) {
@@ -310,8 +312,8 @@ class Corrector {
     return max_abs(vector) > kLeastCorrection * base.length ? vector : Vec3d{};
   }
 
-  // Returns the sum of the deltas that target i and the correction targets which it alone drives add to a normal in a
-  // pose.
+  // Returns the sum of deltas in a pose, for the normal of one vertex: those of target i, and those of the correction
+  // targets that target i alone drives.
   [[nodiscard]] Vec3d sum_of(std::size_t i, std::size_t vertex, const std::vector<double>& pose) const {
     Vec3d sum = pose[i] * to_double(form_.own[i].at(vertex));
     for (const std::size_t k : of_target_[i])
@@ -379,7 +381,7 @@ struct Worth {
   double worst = 0;    // the largest angle in degrees
 };
 
-// Measures the worth of correction targets, in poses and at vertices that need corrections.
+// Measures by which angles correction targets turn normals, in some of the poses, at vertices that need corrections.
 std::vector<Worth> worths(const RightNormals& rights, const Products& form, std::span<const std::uint32_t> vertices,
                           const PoseList& all_poses) {
   const std::size_t most = std::clamp(kMeasured / (vertices.size() + 1), std::size_t{8}, kMostHarmlessPoses);
@@ -397,8 +399,8 @@ std::vector<Worth> worths(const RightNormals& rights, const Products& form, std:
   for (const VertexVectors& column : form.own) own_columns.push_back(&column);
   for (const VertexVectors& column : form.extras) extra_columns.push_back(&column);
   const VertexColumns own = by_vertex(own_columns, vertices), extra = by_vertex(extra_columns, vertices);
-  // The sum of squared angles and the largest angle of each entry of `extra`. These numbers are added up afterwards in
-  // a fixed order, so that the result does not depend on threads.
+  // For each entry of `extra`, the sum of squared angles and the largest angle. These numbers are added up afterwards
+  // in a fixed order, so that the result does not depend on threads.
   std::vector<std::pair<float, float>> of_entries(extra.entries.size());
   rights.for_each(vertices, poses, [&](std::size_t n, std::size_t first, std::span<const Vec3f> right) {
     const Vec3f normal = to_float(rights.stored(vertices[n]));
@@ -462,8 +464,8 @@ void keep_the_worthiest(const std::vector<Worth>& worths, const ProductLimits& l
   form.extras = std::move(kept.extras);
 }
 
-// Adds correction targets for some poses. Only vertices that need corrections get deltas; `worst` has the error of each
-// vertex in degrees.
+// Adds correction targets that correct normals in some poses. Only vertices that need corrections get deltas; `worst`
+// has the error of each vertex in degrees.
 void add_corrections(const GltfShading& shading, const NormalTerms& terms, const RightNormals& rights,
                      const PoseList& poses, std::span<const std::uint32_t> vertices, std::span<const float> worst,
                      const ProductLimits& limits, Products& form) {

@@ -26,7 +26,8 @@ GltfExtraTarget scaled(GltfExtraTarget weight, double factor) {
   return weight;
 }
 
-// Returns the terms of one sign. Their factors are multiplied by this sign, so that all factors are positive.
+// Returns the terms of a weight whose factors have the given sign. Multiplies these factors by the sign, so that all of
+// them are positive.
 GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   GltfExtraTarget result;
   for (const auto& term : weight.linear)
@@ -36,7 +37,7 @@ GltfExtraTarget terms_of_sign(const GltfExtraTarget& weight, double sign) {
   return result;
 }
 
-// Returns correction targets whose vectors have the lengths that viewers keep, with weights to match.
+// Returns correction targets whose vectors have lengths that viewers keep (`lengths`). Scales their weights to match.
 QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses& rig, QuadraticFit::Extras extras,
                                      Lengths lengths) {
   QuadraticFit::Extras result;
@@ -67,8 +68,8 @@ QuadraticFit::Extras kept_by_viewers(const RightNormals& rights, const RigPoses&
   return result;
 }
 
-// Makes drivers whose weights are sums of terms. The tracks of such a mesh move nothing, so correction targets have
-// weight 0 in all tracks.
+// Makes drivers of correction targets whose weights are sums of terms. The tracks of such a mesh move nothing, so
+// correction targets have weight 0 in all tracks.
 ExtraDrivers drivers_of(const MeshWeights& weights, std::vector<GltfExtraTarget> sums) {
   ExtraDrivers drivers;
   const std::size_t extras = sums.size();

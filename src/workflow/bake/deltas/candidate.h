@@ -49,8 +49,8 @@ struct Candidate {
                                                                          const std::vector<VertexVectors>& stored,
                                                                          std::span<const std::uint32_t> vertices);
 
-/// Returns the deltas of a target of the mesh as the file will store them. Returns nothing if all of these deltas stay
-/// as they are.
+/// Returns the deltas of a target of the mesh as the file will store them. Returns nothing if the deltas in the file
+/// stay as they are.
 [[nodiscard]] std::optional<TargetDeltas> own_deltas(const GltfShading& shading, const Candidate& candidate,
                                                      std::size_t target);
 /// Returns the deltas of a correction target.

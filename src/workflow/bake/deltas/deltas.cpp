@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kDeltasBlock = 1024;
 // The length of the shortest stored base normal that can get deltas. A stored normal should have length 1, and no
-// viewer renders shorter normals than this right.
+// viewer renders a normal shorter than kShortest right.
 constexpr double kShortest = 1e-3;
 // The length of the longest stored normal that stays as it is. If the deltas of such a normal are up to 1e6 times as
 // long, float32 can still hold the squared length of the sum, and the inverse of this square.
@@ -29,8 +29,8 @@ VertexTerms terms_of_vertex(const DeltaSource& source, std::uint32_t element, st
   return {source.terms.base_of(element), source.plan.largest[element], stored_normal(source.base_normals, vertex)};
 }
 
-// Returns the largest angle, in radians, between the true normal and the normal that the best single delta gives, over
-// all weights in a range.
+// Returns the largest angle, in radians, between the true normal and the normal that the best single delta gives. Takes
+// the largest angle over all weights in `range`.
 double error_within(const WeightRange& range, const ControlNormals& normals, const EndDelta& best) {
   if (range.low == 0 && range.high == 1) return best.error;
   const Vec3d base = unit_normal_at(normals, 0).vector;
@@ -39,7 +39,7 @@ double error_within(const WeightRange& range, const ControlNormals& normals, con
   return largest_line_error(normals_between(normals, range.low, range.high), from, to);
 }
 
-// The results for a block of vertices: true if any delta is not zero, and the largest error of a normal in radians.
+// The results for a block of vertices: whether any delta is not zero, and the largest error of a normal in radians.
 struct Found {
   bool any = false;
   double error = 0;

@@ -32,10 +32,11 @@ struct NewBaseNormals {
   std::size_t rescaled = 0;       ///< the number of vertices whose normal was scaled to length 1
 };
 
-/// Replaces the base normals of some parts by the normals of the geometry. A vertex without a normal by geometry keeps
-/// its stored normal. If the stored normal is zero, it becomes (0, 0, 1), because a file cannot say that a vertex has
-/// no normal. In other parts, only normals longer than 1e10 or shorter than 1e-10 change. They get length 1, because no
-/// viewer can square such normals in float32, nor add deltas to them. is_recomputed has one entry for each part.
+/// Replaces the base normals of some parts by the normals of the geometry. A vertex for which the geometry has no
+/// normal keeps its stored normal. If the stored normal is zero, it becomes (0, 0, 1), because a file cannot say that a
+/// vertex has no normal. In other parts, only normals longer than 1e10 or shorter than 1e-10 change. They get length 1,
+/// because no viewer can square such normals in float32, nor add deltas to them. is_recomputed has one entry for each
+/// part.
 [[nodiscard]] NewBaseNormals new_base_normals(const GltfShading& shading, const NormalTerms& terms,
                                               const std::vector<bool>& is_recomputed);
 
@@ -49,14 +50,14 @@ struct BaseFaults {
 
 /// The deltas that one target adds to the normals of a mesh, as arrays for the file.
 struct TargetDeltas {
-  /// The deltas of each part, (vertices, 3). An array is empty if no normal of its part changes.
+  /// The deltas of each part of the mesh, as arrays (vertices, 3). An array is empty if no normal of its part changes.
   std::vector<std::vector<float>> of_parts;
   double error = 0;  ///< radians: a bound of the error of normals that is left at the weights of the file
 };
 
 /// Returns the deltas of one of the mesh's own targets. A delta is the sum of the linear and the square term of the
 /// target, or the best single delta if the plan requires this (MeshPlan::is_line). If the target moves no vertex, there
-/// are no deltas. The error does not include the error of fitted lines (FittedLines::largest_error()).
+/// are no deltas. The error in the result does not include the error of fitted lines (FittedLines::largest_error()).
 [[nodiscard]] TargetDeltas own_target_deltas(const DeltaSource& source, std::size_t target);
 
 /// Returns the deltas of the correction target for the pair of targets in `extra`. If both are the same target, the

@@ -18,27 +18,28 @@ namespace {
 // The largest number of rounds of a fit. A viewer scales the sum of a normal and its deltas to length 1, so the sum may
 // have any length. Each round fits the sum to the length that is nearest to the length after the last round.
 constexpr int kRounds = 12;
-// A round is the last one if its squared error is more than this part of the squared error of the round before.
+// The part of the squared error of the round before. If a round leaves more than this part, it is the last round.
 constexpr double kStandstill = 0.99;
-// If a sum points away from the true normal, the next round fits it to a vector along the true normal. The vector has
-// this part of the length of the sum.
+// The length of the vector to which a sum is fitted if the sum points away from the true normal, relative to the length
+// of the sum. The vector has the direction of the true normal.
 constexpr double kLeastPart = 0.1;
-// If the length of a normal is below this part of its longest term, the normal is not judged.
+// The smallest length of a normal that is judged, relative to its longest term.
 constexpr double kLeastLine = 1e-4;
 // A fit pulls each delta towards the best delta that its target has alone. kRidge is the strength of this pull,
 // relative to the mean diagonal entry of the normal equations. The pull decides where the weights of two targets differ
 // by only a thousandth in all poses, because the poses then do not tell the two deltas apart. Weights below
 // kLeastWeight tell nothing about a delta.
 constexpr double kRidge = 1e-4, kLeastWeight = 1e-3;
-// An element whose error is below this, in radians, is not fitted. Directions are rounded to a third of this error.
+// The error in radians up to which an element is not fitted. Directions are rounded to a third of this error.
 constexpr double kLeastError = 1e-4;
-// If more targets than this move an element, each target keeps the best delta that it has alone.
+// The largest number of targets that are fitted together. If more targets move an element, each target keeps the best
+// delta that it has alone.
 constexpr std::size_t kMostTargets = 64;
 // kSums is the largest number of weighted deltas that a round adds up, over all elements and poses. The other constants
-// limit the number of poses.
+// limit the number of poses to which deltas are fitted.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
-// The largest number of poses in which the final error is measured. If there are few elements, these poses include all
-// keys.
+// The largest number of poses in which the error that is left is measured. If there are few elements, these poses
+// include all keys.
 constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kLineBlock = 64;
 
@@ -79,7 +80,7 @@ double angle_to(const Vec3d& shown, const Vec3d& right) {
   return max_abs(shown) > 0 ? angle_between(shown, right) : std::numbers::pi;
 }
 
-// The fit of the deltas of one element.
+// The fit of the deltas of one element, over all poses.
 class Fit {
  public:
   Fit(const Element& alone, const Matrix& poses, std::span<const Rounded> right) : alone_(alone) {
@@ -100,8 +101,8 @@ class Fit {
     worst_ = before_.worst;
   }
 
-  // Searches for deltas with a smaller error than the best delta of each target alone. If some round finds such deltas,
-  // writes the best ones to `deltas` and returns true.
+  // Searches for deltas with a smaller error than the best delta of each target alone. If some round finds deltas with
+  // a smaller error, writes the deltas of the best round to `deltas` and returns true.
   bool improve(std::vector<Vec3d>& deltas) {
     if (!(before_.worst > kLeastError) || deltas.size() > kMostTargets || !take_matrix()) return false;
     Misfit best = before_, last = before_;
@@ -119,11 +120,11 @@ class Fit {
     }
     return best.squares < before_.squares;
   }
-  /// Returns the largest angle that is left between a rendered and a true normal, in radians.
+  /// Returns the largest angle that the best round leaves between a rendered and a true normal, in radians.
   [[nodiscard]] double worst() const noexcept { return worst_; }
 
  private:
-  // The index of an active target in its element, and its weight in a pose.
+  // A target of the element that has a weight in a pose: its index in the element, and the weight.
   struct Active {
     std::size_t k;
     double w;
@@ -212,7 +213,8 @@ class Together {
     }
   }
 
-  // Returns these elements, with the best delta of each of their targets alone.
+  // Returns the shown elements at which at least one pair of targets meets. Each has, for each of its targets, the
+  // delta that is best for this target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {
@@ -246,7 +248,8 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // If the base has no normal, the sum cannot begin at this normal and should be right at weight 1.
+    // An element without a normal in the base has no normal from which deltas start. Its delta is then the true normal
+    // at weight 1.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }
@@ -265,7 +268,8 @@ FittedLines::FittedLines(const GltfShading& shading, const NormalTerms& terms, c
   const Together together(shading, terms, use);
   std::vector<Element> elements = together.elements(is_shown);
   if (elements.empty()) return;
-  // Calls body(n, direction) for each element that is judged in a pose, on all cores.
+  // Calls body(n, direction), on all cores, for each element whose normal is judged in the pose. n is the index of the
+  // element in the list.
   const auto judge = [&](const std::vector<double>& pose, const auto& body) {
     const std::vector<Vec3d> by_area = terms.by_area_at(pose);
     const std::vector<Vec3d> weighted = terms.is_fitted() ? terms.exact_at(pose) : std::vector<Vec3d>();

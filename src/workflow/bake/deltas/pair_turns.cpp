@@ -1,7 +1,8 @@
-// Measures pairs. An entry of a term, which belongs to one element, turns the normal of this element by at most a
-// bound. The bound is the length of the entry divided by the shortest normal of the element in any pose. A heap returns
-// the entries from the largest bound down. The search ends when the bound is below the largest turn that was found.
-// Angles are compared by their tangents, and only the largest tangent is converted to an angle.
+// Measures how the correction target of each pair of targets turns normals. An entry of a term, which belongs to one
+// element, turns the normal of this element by at most a bound. The bound is the length of the entry divided by the
+// shortest normal of the element in any pose. A heap returns the entries from the largest bound down. The search ends
+// when the bound is below the largest turn that was found. Angles are compared by their tangents, and only the largest
+// tangent is converted to an angle.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <algorithm>
@@ -20,14 +21,15 @@ namespace {
 constexpr std::size_t kHeldNormals = std::size_t{1} << 22, kSomeElements = std::size_t{1} << 12;
 // The number of entries of terms that are in memory at a time.
 constexpr std::size_t kHeldEntries = 1000000;
-// The direction of a normal is not judged if the length of the normal is below this part of its largest term.
+// The smallest length of a normal whose direction is judged, relative to the largest term of its element.
 constexpr double kLeastLength = 1e-4;
-// Bounds are multiplied by this factor. It is larger than any rounding error, so a bound stays a bound.
+// The factor by which bounds are multiplied. It is larger than any rounding error, so rounding cannot make a bound too
+// small.
 constexpr double kSlack = 1 + 1e-9;
 constexpr std::size_t kPairBlock = 1024, kElements = 16;
 
-// Returns the correction target of a pair. If both targets are the same, the correction target has weight 0 where this
-// target has weight 1, and removes the part by which the square term is too large between the weights 0 and 1.
+// Returns the weight of the correction target for targets i and j. If i = j, this weight is 0 where target i has weight
+// 1, and the correction target removes the part by which the square term is too large between the weights 0 and 1.
 ExtraWeight extra_weight(std::size_t i, std::size_t j) { return i == j ? ExtraWeight{i, i, 1, -1} : ExtraWeight{i, j}; }
 
 // Returns the factor of a correction target's term in a pose.
@@ -44,14 +46,14 @@ double tangent_between(const Vec3d& unit, const Vec3d& other) {
 }
 
 // Returns a bound of the tangent of the angle between a unit vector and another vector. `difference` is the length of
-// the difference of the two vectors.
+// the vector between them.
 double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
 
 double angle_of_tangent(double tangent) { return std::isfinite(tangent) ? portable::atan(tangent) : std::numbers::pi; }
 
-// Returns the term of a pair without zeros, and without elements that no vertex shows.
+// Returns the term of the pair (i, j). Leaves out zeros, and elements that no vertex shows.
 BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, const std::vector<bool>& is_shown) {
   BlendTerm term = terms.pair(i, j);
   std::size_t kept = 0;
@@ -67,7 +69,7 @@ BlendTerm shown_term(const NormalTerms& terms, std::size_t i, std::size_t j, con
   return term;
 }
 
-// The range of the entries of a term whose elements are in [first, last).
+// The entries of a term that belong to a range of elements, as indices from `begin` up to `end`, without `end`.
 struct Entries {
   std::size_t begin = 0, end = 0;
 };
@@ -117,14 +119,15 @@ void PosedNormals::hold(std::size_t first) {
   });
 }
 
-// A pair while it is measured.
+// A pair of targets while it is measured.
 struct PairMeter::Candidate {
   ExtraWeight extra;
   BlendTerm term;      // without elements that no vertex shows; freed after the measurement
   double aside = 0;    // length of the largest part of the term across a normal, relative to the normal
   double size = 0;     // length of the largest value of the term, relative to the normal
   double tangent = 0;  // the tangent of the largest angle by which a normal turns without the term
-  // The factor of the term in each pose, and the index of the pose; the largest factors come first.
+  // For each pose, the factor by which the term is multiplied, and the index of the pose; the largest factors come
+  // first.
   std::vector<std::pair<double, std::uint32_t>> poses;
 };
 
@@ -137,8 +140,8 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       longest_base_(longest_base_normal(shading, terms)),
       normals_(shading, terms, poses) {}
 
-// Returns true if a normal of this length is long enough to have a direction that counts. The first test takes little
-// time, and its limit is at least as high as the limit of the second test. It decides for most normals.
+// Returns true if a normal of this length is long enough for its direction to be judged. The first test takes less
+// time. Its limit is at least as high as that of the second test, and it decides for most normals.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -195,7 +198,7 @@ void PairMeter::measure(std::span<Candidate> candidates) {
   }
   for (std::size_t first = 0; first < elements && !candidates.empty(); first += normals_.chunk()) {
     normals_.hold(first);
-    // Finds for each element the inverse length of its shortest judged normal.
+    // Finds for each element the inverse length of its shortest normal that is judged.
     std::vector<double> inverse(std::min(normals_.chunk(), elements - first), 0.0);
     parallel_each(inverse.size(), kElements, [&](std::size_t n) {
       const auto e = static_cast<std::uint32_t>(first + n);
@@ -254,7 +257,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // The vectors that must be added to the normals of these elements in all poses if the terms are left out,
+      // The vectors by which the normals of these elements differ if the terms are left out, in all poses, as an array
       // (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);

@@ -1,5 +1,5 @@
-/// Measures the angles by which normals turn if the correction target of a pair is left out, in poses of the file.
-/// Private to workflow.
+/// Measures the angles by which normals turn if the correction target of a pair of targets is left out, in poses of the
+/// file. Private to workflow.
 ///
 /// A pair with the term T turns the normal n(w) of an element by the angle between n(w) and n(w) - weight(w) T. Only
 /// the largest angle over all elements and poses is needed. An angle is at most asin(|weight| |T| / |n|). Elements are
@@ -41,10 +41,10 @@ class PosedNormals {
   PosedNormals(const GltfShading& shading, const NormalTerms& terms, const PoseList& poses);
 
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the number of elements whose normals are in memory at a time. hold(first) computes the normals of the
-  /// elements [first, first + chunk()).
+  /// Returns the number of elements whose normals are in memory at a time. hold(first) computes the normals of chunk()
+  /// elements, from element `first` on.
   [[nodiscard]] std::size_t chunk() const noexcept { return chunk_; }
-  /// Computes the normals of the elements from `first` on, unless they are in memory already.
+  /// Computes the normals of chunk() elements from `first` on, in all poses, unless they are in memory already.
   void hold(std::size_t first);
   /// Returns the normals of one element in all poses. The element must be in memory.
   [[nodiscard]] std::span<const Normal> of(std::uint32_t element) const {

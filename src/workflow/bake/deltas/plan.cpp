@@ -40,7 +40,7 @@ struct MeshUse {
   }
 };
 
-// Returns true if float32 can hold the products of two weights, also after a multiplication by deltas of any size.
+// Returns true if float32 can hold the products of two weights of the mesh, even if a delta multiplies them.
 bool products_fit(const MeshUse& mesh) {
   constexpr double kLargestProduct = 1e30;
   double largest = 0;
@@ -49,7 +49,7 @@ bool products_fit(const MeshUse& mesh) {
   return largest * largest <= kLargestProduct;
 }
 
-// The poses in which pairs are measured.
+// The poses of the file in which pairs of targets are measured.
 struct Poses {
   std::vector<std::vector<double>> weights;
   bool are_all = false;  // true if these are all poses of the file
@@ -69,8 +69,9 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
   return ranges;
 }
 
-// Tells for each target if it gets the best single delta. For the encoding exact, a target gets this delta if it moves
-// but no animation drives it. For other encodings, every target that moves gets it.
+// Tells for each target if it gets the best single delta, instead of two terms. For the encoding exact, a target gets
+// this delta if it moves vertices but no animation drives it. For other encodings, every target that moves vertices
+// gets this delta.
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)
@@ -101,7 +102,7 @@ std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<boo
 
 using Pairs = std::vector<PairMeter::Pair>;
 
-// Lists the pairs of targets that can move the same normal at the same time.
+// Lists the pairs of targets that can move the same normal in some pose of the file.
 Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
   Pairs pairs;
   for (std::size_t i = 0; i < mesh.use.targets(); ++i) {

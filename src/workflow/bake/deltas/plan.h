@@ -13,7 +13,7 @@
 
 namespace chronormal::inline internal {
 
-/// The range of the weights that a file gives a target, extended to contain 0 and 1.
+/// The range of the weights that a file gives one target. The range is extended to contain 0 and 1.
 struct WeightRange {
   double low = 0, high = 1;
 };

@@ -10,8 +10,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kRightBlock = 256;
-// The direction of a normal is not judged if the length of the normal is below this part of its largest term. The limit
-// in audits is five times as high.
+// The smallest length of a normal whose direction is judged, relative to its largest term. Audits use a limit that is
+// five times as high.
 constexpr double kLeastTerms = 2e-5;
 
 }  // namespace

@@ -31,14 +31,15 @@ class RightNormals {
   [[nodiscard]] std::size_t targets() const noexcept { return shading_.set.targets.size(); }
   /// Returns true if normals are weighted by area, which makes them quadratic in the weights.
   [[nodiscard]] bool are_by_area() const noexcept { return !terms_.is_fitted(); }
-  /// Returns the stored normal of a vertex.
+  /// Returns the stored base normal of a vertex.
   [[nodiscard]] Vec3d stored(std::size_t vertex) const noexcept;
-  /// Return the normals of all elements, or of some elements, in a pose. These normals do not have the rotation that
-  /// the author's own base normals add. Take O(vertices + elements).
+  /// Return the normals of all elements, or of some elements, in a pose. These normals are not yet rotated as the
+  /// author's base normals are rotated from the geometry. Take O(vertices + elements).
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose) const;
   [[nodiscard]] std::vector<Vec3d> of_elements(std::span<const double> pose,
                                                std::span<const std::uint32_t> elements) const;
-  /// Returns the right normal of a vertex. of_element is the normal of its element in the same pose.
+  /// Returns the right normal of a vertex in a pose. of_element is the normal of the vertex's element in this pose,
+  /// from of_elements().
   [[nodiscard]] Vec3d of_vertex(std::size_t vertex, const Vec3d& of_element) const noexcept;
 
   /// Calls visit(n, first, right) for each vertex and each batch of poses. n is the index of the vertex in the list,
@@ -54,7 +55,7 @@ class RightNormals {
     std::vector<Vec3d> of_elements_in_poses(elements * std::min(batch, poses.size()));
     for (std::size_t first = 0; first < poses.size(); first += batch) {
       const std::size_t count = std::min(batch, poses.size() - first);
-      // Several poses are written together, so that they fill whole cache lines.
+      // Writes the normals of several poses together, so that whole cache lines are filled.
       parallel_blocks(count, std::min(batch, kTogether), [&](IndexRange some) {
         std::vector<std::vector<Vec3d>> directions;
         for (std::size_t p = some.first; p < some.end(); ++p)

@@ -17,7 +17,7 @@ bool have_same(const std::vector<float>& all, std::size_t width, const GltfPart&
   return all.empty() || std::equal(begin(a), begin(a) + static_cast<std::ptrdiff_t>(width * a.vertex_count), begin(b));
 }
 
-// The range [first, last) of the entries of a target that belong to a part.
+// The entries of a target that belong to one part, as indices from `first` up to `last`, without `last`.
 struct PartEntries {
   std::size_t first = 0, last = 0;
 };

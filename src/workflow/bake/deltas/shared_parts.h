@@ -20,14 +20,15 @@ namespace chronormal::inline internal {
 
 class SharedParts {
  public:
-  /// Finds the parts that share arrays. The shading must have its deltas, and must outlive this object. Takes O(bytes
-  /// of all arrays) if there are several parts.
+  /// Finds the parts that share arrays. The shading must have been read with its deltas, and must outlive this object.
+  /// Takes O(bytes of all arrays) if there are several parts.
   explicit SharedParts(const GltfShading& shading);
 
-  /// Gives parts with the same vertices the same array of deltas, unless some vertex has different deltas in two parts.
+  /// Gives parts with the same vertices one shared array of deltas, unless some vertex has different deltas in two
+  /// parts.
   void join(TargetDeltas& deltas) const;
-  /// Returns the bytes that the arrays for these deltas take, sparse or dense. Counts a shared array once. join() must
-  /// have been called for the deltas.
+  /// Returns the bytes that the arrays for these deltas take in the file, sparse or dense, whichever is smaller. Counts
+  /// a shared array once. join() must have been called for the deltas.
   [[nodiscard]] std::size_t bytes_of(const TargetDeltas& deltas) const;
   /// Returns the bytes that the deltas of some vertices take in the file. join() need not have been called.
   [[nodiscard]] std::size_t bytes_of(const VertexVectors& deltas) const;

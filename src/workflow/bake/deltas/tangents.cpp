@@ -42,8 +42,8 @@ std::vector<Vec3d> right_normals(const DeltaSource& source, std::size_t target) 
   return result;
 }
 
-// Moves a vector in the plane of two edges with these edges, as they change from `from` to `to`. Returns zero if the
-// face between the edges is too thin.
+// Moves a vector that lies in the plane of two edges. The edges change from `from` to `to`, and the vector keeps its
+// coordinates in terms of the edges. Returns zero if the face between the edges is too thin.
 Vec3d carried(const Vec3d& vector, const std::array<Vec3d, 2>& from, const std::array<Vec3d, 2>& to) {
   const double aa = dot(from[0], from[0]), ab = dot(from[0], from[1]), bb = dot(from[1], from[1]);
   const double determinant = aa * bb - ab * ab;

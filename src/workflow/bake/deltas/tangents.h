@@ -24,8 +24,9 @@
 
 namespace chronormal::inline internal {
 
-/// Returns for each target if its stored tangents are stale. If no viewer adds up tangents, all results are false. The
-/// shading must have its deltas. Takes O(corners) for each target that moves a vertex.
+/// Returns for each target if its stored tangents are stale (no longer nearly perpendicular to the normal). If no
+/// viewer adds up tangents, all results are false. The shading must have been read with its deltas. Takes O(corners)
+/// for each target that moves a vertex.
 [[nodiscard]] std::vector<bool> find_stale_tangents(const DeltaSource& source, std::span<const Viewer> viewers);
 
 /// Returns the deltas of tangents for a target, as arrays (vertices, 3) for each part. The array of a part without

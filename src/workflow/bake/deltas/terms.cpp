@@ -15,8 +15,8 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kTermsBlock = 256;
-// The number of weights of a target, up to 1, at which true normals are computed. The terms are fitted at the weights
-// 1/2 and 1, and the fit is checked at the other weights.
+// The number of weights from 1/8 to 1 at which the true normals of a target are computed. Terms are fitted at the
+// weights 1/2 and 1, and the fit is checked at the other weights.
 constexpr std::size_t kSamples = 8;
 
 void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
@@ -25,8 +25,8 @@ void add_deltas(const BlendTarget& moved, std::vector<float>& positions) {
   }
 }
 
-// Returns a function that returns the position of a vertex at t. At t = 0 the vertex is where the base has it, and at t
-// = 1 where `to` has it.
+// Returns a function that returns the position of a vertex at t, on the straight line from its position in the base (t
+// = 0) to its position in `to` (t = 1).
 auto on_the_way(const BlendSet& set, const std::vector<float>& to, double t) {
   return [&set, &to, t](std::uint32_t v) {
     const float* const from = set.base.data() + 3 * std::size_t{v};
@@ -76,7 +76,7 @@ void NormalTerms::fit_targets() {
     if (fit.elements.empty()) continue;
     std::vector<float> to = set.base;
     add_deltas(set.targets[i], to);
-    // The true normals at each eighth of the weight, except at 0.
+    // The true normals at the weights 1/8, 2/8 and so on up to 1. Entry 0 is not used.
     std::array<std::vector<Vec3d>, kSamples + 1> right;
     for (std::size_t s = 1; s <= kSamples; ++s) {
       const double weight = static_cast<double>(s) / kSamples;
@@ -208,7 +208,7 @@ ControlNormals of_powers(const Vec3d& base, const Vec3d& linear, const Vec3d& sq
 }
 
 ControlNormals normals_between(const ControlNormals& normals, double from, double to) noexcept {
-  // The polar form of the quadratic, whose values are the control normals on a part of the interval.
+  // The polar form of the quadratic n(t). Its values are the control normals of n(t) between `from` and `to`.
   const auto at = [&normals](double s, double t) {
     return ((1 - s) * (1 - t)) * normals.n0 + ((1 - s) * t + s * (1 - t)) * normals.m + (s * t) * normals.n1;
   };

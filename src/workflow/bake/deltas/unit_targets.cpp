@@ -15,10 +15,11 @@ constexpr int kDirections = 16;
 constexpr int kSteps = 24;                 // the steps of a bisection, which finds a point to 1e-7 of an arc
 constexpr double kShortestSum = 1.0 / 16;  // the shortest sum; rounding turns shorter ones too far
 
-// The largest component that fits. It is slightly below 1, since differences are rounded to float32.
+// The largest component that a delta may have. It is slightly below 1, since deltas are rounded to float32.
 constexpr double kMost = 1 - 1e-6;
 
-// Returns the point of the arc at this part of its length. If the two ends are opposite, uses any arc between them.
+// Returns the unit vector on the arc between two unit vectors, at `part` of the arc's length. If the ends of the arc
+// are opposite, uses any arc between them.
 Vec3d on_arc(const Vec3d& from, const Vec3d& to, double part) {
   const Vec3d aside = to - dot(from, to) * from;
   const Vec3d across = length(aside) > 1e-9 ? unit(aside) : any_perpendicular(from);

@@ -33,25 +33,27 @@ struct BaseNormal {
   }
 };
 
-/// Returns true if no component of u - base is beyond 1.
+/// Returns true if each component of u - base is from -1 to 1, so that u fits.
 [[nodiscard]] bool fits(const Vec3d& base, const Vec3d& u) noexcept;
 
-/// Returns the last unit vector on the arc from base to u that fits.
+/// Returns the last unit vector on the arc from base to u whose difference from base has no component beyond 1.
 [[nodiscard]] Vec3d farthest_that_fits(const Vec3d& base, const Vec3d& u) noexcept;
 
-/// Returns a unit vector u that fits, for which shown + weight (u - base) has the direction `right`. `right` must have
-/// length 1, and weight must not be 0. The sum may have any length, so two vectors u are possible. Returns the u with
-/// the longer sum if this u fits (eq. 46 of docs/theory.md), and otherwise the other u if it fits. If neither fits,
-/// returns the nearest vector that fits. Returns nothing if the sum would be nearly zero.
+/// Returns a unit vector u that fits (no component of u - base is beyond 1), for which shown + weight (u - base) has
+/// the direction `right`. `right` must have length 1, and weight must not be 0. The sum may have any length, so two
+/// vectors u are possible. Returns the u with the longer sum if this u fits (eq. 46 of docs/theory.md), and otherwise
+/// the other u if it fits. If neither fits, returns the nearest vector that fits. Returns nothing if the sum would be
+/// nearly zero.
 [[nodiscard]] std::optional<Vec3d> turning_unit(const Vec3d& base, const Vec3d& shown, const Vec3d& right,
                                                 double weight) noexcept;
 
-/// Returns the delta u - base of a unit vector u that fits. The part of u across base is `vector`, or as near to
-/// `vector` as possible.
+/// Returns the delta u - base of a unit vector u that fits (no component of the delta is beyond 1). The part of this
+/// delta perpendicular to base is `vector`, or as near to `vector` as possible.
 [[nodiscard]] Vec3d unit_delta(const Vec3d& base, const Vec3d& vector) noexcept;
 
-/// Returns two unit vectors u and v that fit, for which u + v - 2 base is `vector` (eq. 47 of docs/theory.md). Returns
-/// nothing if there are no such vectors. For example, u and v cannot make a normal longer.
+/// Returns two unit vectors u and v that fit (no component of u - base and v - base is beyond 1), for which u + v - 2
+/// base is `vector` (eq. 47 of docs/theory.md). Returns nothing if there are no such vectors. For example, u and v
+/// cannot make the normal `base` longer.
 [[nodiscard]] std::optional<std::array<Vec3d, 2>> two_units(const Vec3d& base, const Vec3d& vector) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -13,8 +13,8 @@ Vec3f VertexVectors::at(std::size_t vertex) const noexcept {
 VertexColumns by_vertex(std::span<const VertexVectors* const> columns, std::span<const std::uint32_t> vertices) {
   VertexColumns result;
   result.first.assign(vertices.size() + 1, 0);
-  // Calls visit(n, k) for each vector of a column that is not zero and belongs to one of `vertices`. n is the index in
-  // `vertices`, and k the index in the column. Both lists of vertices are ascending.
+  // Calls visit(n, k) for each vector of a column that is not zero and belongs to one of `vertices`. n is the index of
+  // the vertex in `vertices`, and k the index of the vector in the column. Both lists of vertices are ascending.
   const auto walk = [&](const VertexVectors& column, const auto& visit) {
     std::size_t n = 0;
     for (std::size_t k = 0; k < column.vertices.size(); ++k) {

@@ -1,5 +1,6 @@
-/// Stores vectors of vertices in columns. Each column belongs to a target, and has one weight in a pose. Files store
-/// vectors column by column, but the sum of a vertex needs them vertex by vertex. Private to workflow.
+/// Stores vectors of vertices in columns. Each column belongs to a target, and is multiplied by the weight of this
+/// target in a pose. Files store vectors column by column, but the sum at a vertex needs them vertex by vertex. Private
+/// to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
 #define CHRONORMAL_WORKFLOW_BAKE_DELTAS_VERTEX_COLUMNS_H_
 
@@ -20,7 +21,8 @@ struct VertexVectors {
   [[nodiscard]] Vec3f at(std::size_t vertex) const noexcept;
 };
 
-/// The deltas of each vertex in one candidate that are not zero, with the columns to which they belong.
+/// The deltas of a candidate that are not zero, vertex by vertex. Each delta has the index of its column, which is a
+/// target.
 struct VertexColumns {
   struct Entry {
     std::uint32_t column = 0;
@@ -36,8 +38,8 @@ struct VertexColumns {
   }
 };
 
-/// Reorders vectors. Each input column has its own vertices, and the result has a list of columns for each of
-/// `vertices`.
+/// Reorders vectors from columns to vertices. Each column has its own list of vertices. The result has, for each vertex
+/// in `vertices`, the vectors of all columns.
 [[nodiscard]] VertexColumns by_vertex(std::span<const VertexVectors* const> columns,
                                       std::span<const std::uint32_t> vertices);
 

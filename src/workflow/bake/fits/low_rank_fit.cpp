@@ -1,4 +1,4 @@
-// Finds the leading singular vectors, and fits deltas to angles by least squares.
+// Fits correction targets of low rank: finds the leading singular vectors, and fits deltas to angles by least squares.
 #include "workflow/bake/fits/low_rank_fit.h"
 
 #include <algorithm>
@@ -18,20 +18,20 @@ namespace {
 
 constexpr std::size_t kPointBlock = 16;  // the number of points that one task handles
 constexpr std::size_t kSampledPoints = 1500;
-// A point counts in the fit by the factor 1 / length. The length is the 2 % quantile of the lengths of its normals, but
-// at least kShortest, and at least kPartOfLack times the length of its missing vectors. Without the two limits, a few
-// points with very short normals would dominate all others.
+// A point (vertices with the same normal) counts in the fit by the factor 1 / length. The length is the 2 % quantile of
+// the lengths of its normals, but at least kShortest, and at least kPartOfLack times the length of its missing vectors.
+// Without the two limits, a few points with very short normals would dominate all others.
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Parts of the tolerance. Points with an error beyond kPartThatCounts count more. Points with an error beyond
-// kPartToRefit get a fit of their own.
+// Parts of the tolerance in degrees. Points with an error beyond kPartThatCounts count more. Points with an error
+// beyond kPartToRefit get a fit of their own.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
 // The limit of multiplications in the fits of all single points. If there are many correction targets, each fit takes
 // more multiplications, so fewer points are fitted.
 constexpr double kRefitWork = 1e10;
-// A normal that is shorter than this, relative to n(0), is not used in a fit of directions.
+// The length below which a normal is not used in a fit of directions, relative to n(0).
 constexpr float kLeastLength = 1e-3F;
 constexpr int kRefits = 4;
 // A dip is a place between nodes where a normal is much shorter than at the nodes. A piece is searched for dips in
@@ -41,12 +41,12 @@ constexpr int kDipSteps = 32;
 constexpr double kNearDip = 0.25, kDip = 0.5;
 constexpr double kRidgeOfRefit = 1e-4, kLeastSquare = 1e-6;
 
-// Returns the place at t in a piece. The three nodes of the piece are at t = 0, 1/2 and 1.
+// Returns the place at t, from 0 to 1, in a piece of a curve. `nodes` are the rows at t = 0, 1/2 and 1.
 PlaceOfRows place_at(const std::array<std::size_t, 3>& nodes, double t) {
   return {nodes, {(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)}};
 }
 
-// Returns the value at a place, interpolated between the values of three rows.
+// Returns the value at a place between rows, interpolated from the values of its three rows.
 float at_place(const PlaceOfRows& place, const float* of_rows) {
   double sum = 0;
   for (std::size_t n = 0; n < 3; ++n) sum += place.factors[n] * static_cast<double>(of_rows[place.nodes[n]]);
@@ -197,14 +197,14 @@ LowRankFit::Course LowRankFit::course_of(std::size_t point, std::span<const Plac
   return course;
 }
 
-// Measures the largest error of each point at the rows, in degrees.
+// Measures for each point its largest error over all rows (fitted instants), in degrees.
 void LowRankFit::measure_rows() {
   const Basis basis = basis_of({}, {});
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// Measures the largest error of these points at rows, places, unseen places and dips, in degrees. If the own deltas of
-// the mesh are corrected as well, own_weights has the weights by which these corrections are multiplied.
+// Measures the largest error of each listed point over rows, places, unseen places and dips, in degrees. If the own
+// deltas of the mesh are corrected as well, own_weights has the weights by which these corrections are multiplied.
 void LowRankFit::measure(std::span<const float> own_weights, std::span<const std::size_t> points) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());
@@ -242,8 +242,8 @@ float LowRankFit::error_of(std::size_t point, const Basis& basis, std::span<cons
   return static_cast<float>(degrees_of(largest_openness(planes(course.shown), planes(course.right), basis.stride)));
 }
 
-// Returns the dips of a point. A dip is a place between nodes where the right normal is much shorter than at these
-// nodes, but still has a direction. The normal turns fastest there, so errors are largest there.
+// Returns the dips of a point. A dip is an instant between nodes at which the right normal is much shorter than at the
+// nodes, but still has a direction. The normal turns fastest at a dip, so errors are largest there.
 std::vector<PlaceOfRows> LowRankFit::dips_of(std::size_t point) const {
   const std::size_t stride = missing_.stride();
   const float *const shown = missing_.shown(point), *const lack = missing_.missing(point);

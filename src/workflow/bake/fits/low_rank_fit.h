@@ -16,21 +16,21 @@
 
 namespace chronormal::inline internal {
 
-/// An instant between rows. The values there follow from three rows by a parabola.
+/// An instant between rows. The values at this instant follow from the values of three rows by a parabola.
 using PlaceOfRows = CurveNodes::Place;
 
 class LowRankFit {
  public:
-  /// Prepares a fit to all rows and to these places. Errors are also measured at the unseen places, which are not
-  /// fitted. All arguments must outlive this object.
+  /// Prepares a fit to all rows, and to the instants in `places` between rows. Errors are also measured at the unseen
+  /// places, which are not fitted. All arguments must outlive this object.
   LowRankFit(const MissingNormals& missing, std::span<const PlaceOfRows> places, std::span<const PlaceOfRows> unseen);
 
-  /// Returns for each of these numbers of correction targets the error, in degrees, that 99.9 % of the samples do not
+  /// Returns for each number of correction targets in `extras` the error, in degrees, that 99.9 % of the samples do not
   /// exceed if singular vectors alone are used. Measures the errors at some of the points and rows.
   [[nodiscard]] std::vector<double> errors_with(std::span<const std::size_t> extras);
 
-  /// Fits this many correction targets. Points with errors beyond the tolerance (degrees) get a fit of their own. If
-  /// own_weights (rows, targets) are given, the fit of a point also corrects the deltas of the mesh's own targets.
+  /// Fits `extras` correction targets. Points with errors beyond the tolerance (degrees) get a fit of their own. If
+  /// own_weights (rows, targets) are given, the fit of such a point also corrects the deltas of the mesh's own targets.
   void fit(std::size_t extras, double tolerance, std::span<const float> own_weights, std::size_t own_targets);
 
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
@@ -46,19 +46,20 @@ class LowRankFit {
   [[nodiscard]] std::span<const float> own_deltas(std::size_t point) const {
     return std::span(own_deltas_).subspan(3 * own_targets_ * point, 3 * own_targets_);
   }
-  /// Returns the factor by which a point counts in the fit.
+  /// Returns the factor that multiplies the errors of a point in the fit.
   [[nodiscard]] float importance(std::size_t point) const { return importance_[point]; }
-  /// Returns the largest error of all points in degrees, at rows, places and unseen places.
+  /// Returns the largest error of all points in degrees, at all fitted and unseen instants.
   [[nodiscard]] double worst() const;
 
  private:
-  // The vectors to which a point's normals are fitted: an array (instants, columns) for rows and places, with padding,
-  // and its transpose.
+  // The basis of a fit: the vectors whose sums are fitted to the normals of a point. They form an array (instants,
+  // columns) for rows and places, with padding. The transposed array is stored too.
   struct Basis {
     std::size_t columns = 0, padded = 0, instants = 0, stride = 0;
     std::vector<float> by_instant, by_column;
   };
-  // The rendered and the right normals of one point at rows and places. Each has three planes: x, y and z.
+  // The rendered and the right normals of one point at rows and places. Each list has three planes: first all x, then
+  // all y, then all z.
   struct Course {
     std::vector<float> shown, right;
     std::vector<char> is_known;

@@ -20,7 +20,7 @@ constexpr std::size_t kMissingBlock = 64;
 constexpr std::size_t kPosesAtOnce = 16;    // the number of poses whose normals are in memory at a time
 constexpr std::size_t kStridePadding = 16;  // the number of floats in the widest SIMD vector
 
-// Returns a vector with the true direction that differs from the sum only by a vector across the normal N. If such a
+// Returns a vector with the true direction that differs from `sum` only by a vector perpendicular to `base`. If such a
 // vector would be too long, returns the true normal itself.
 Vec3d reached_across(const Vec3d& base, const Vec3d& sum, const Vec3d& right) {
   constexpr double kLeastAlong = 0.2;
@@ -81,7 +81,7 @@ MissingNormals::MissingNormals(const RightNormals& rights, std::span<const Point
     parallel_for(count, [&](std::size_t r) {
       normals[r] = rights.of_elements(std::span(poses_[first + r]).first(rights.targets()));
     });
-    // The weights of own targets, column by column, so that a loop adds a delta in all poses at once.
+    // The weights of own targets, one column for each target, so that a loop adds a delta in all poses at once.
     std::vector<std::array<double, kPosesAtOnce>> weights(rights.targets());
     for (std::size_t r = 0; r < count; ++r)
       for (std::size_t c = 0; c < weights.size(); ++c) weights[c][r] = poses_[first + r][c];
@@ -129,7 +129,7 @@ std::vector<double> MissingNormals::inner_products(std::span<const float> import
         for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
       }
       std::fill(products.begin(), products.end(), 0.0F);
-      // A product of two rows does not depend on their order, so half of the matrix is enough.
+      // The product of rows i and j equals that of rows j and i, so half of the matrix is enough.
       for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {
         const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
         const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};

@@ -29,15 +29,16 @@ namespace chronormal::inline internal {
   return (count + kPadding - 1) / kPadding * kPadding;
 }
 
-/// Vertices that show the same normal. The first vertex stands for all of them.
+/// The vertices of a point: they show the same normal. The first vertex stands for all of them.
 using PointVertices = std::vector<std::uint32_t>;
 
-/// Groups vertices into points. Leaves out vertices whose base normal is too short to divide deltas by.
+/// Groups vertices with the same normal into points. Leaves out vertices whose base normal is too short to divide
+/// deltas by.
 [[nodiscard]] std::vector<PointVertices> points_of(const RightNormals& rights, std::span<const std::uint32_t> vertices,
                                                    std::span<const std::uint32_t> element_of_vertex);
 
-/// All instants of a file at which curves have values. The nodes of each track come first, and then the poses that the
-/// file stores.
+/// All instants of a file at which the weight curves of correction targets have values. The nodes of each track come
+/// first, and then the poses that the file stores.
 struct FileInstants {
   explicit FileInstants(const MeshWeights& weights);
 
@@ -46,13 +47,13 @@ struct FileInstants {
   PoseList poses;
 };
 
-/// The weights of the mesh's own targets in each row (a row is a pose), and the rendered and missing normals in this
-/// row.
+/// The rows of a fit. Each row is a pose, with the weights of the mesh's own targets, and with the rendered and the
+/// missing normals of all points.
 class MissingNormals {
  public:
   /// Computes the missing normals. `own` has the deltas of the mesh's own targets for the first vertex of each point.
-  /// If `across` is true, the missing vectors have no part along N where vectors across N can reach the right
-  /// direction. The length of the resulting normal is then not fixed.
+  /// If `across` is true, the missing vectors are perpendicular to the stored normal where such vectors can reach the
+  /// right direction. The length of the resulting normal is then not fixed.
   MissingNormals(const RightNormals& rights, std::span<const PointVertices> points,
                  std::span<const std::uint32_t> element_of_vertex, const VertexColumns& own, PoseList poses,
                  bool across = false);
@@ -61,23 +62,24 @@ class MissingNormals {
   [[nodiscard]] std::size_t rows() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] const PoseList& poses() const noexcept { return poses_; }
-  /// Returns the index that a point had among the points given to the constructor.
+  /// Returns the index of a point among the points given to the constructor. Indices differ after keep_beyond() has
+  /// removed points.
   [[nodiscard]] std::size_t number(std::size_t point) const { return numbers_[point]; }
-  /// Returns the sums of N and own deltas for a point, (3, stride). The sums are zero where the right normal is not
-  /// known.
+  /// Returns the rendered sums of the stored normal and the own deltas for a point, in all rows, as an array (3,
+  /// stride). A sum is zero in a row in which the right normal is not known.
   [[nodiscard]] const float* shown(std::size_t point) const { return shown_.data() + 3 * stride_ * point; }
-  /// Returns the missing vectors of a point, (3, stride). A missing vector is the right normal, whose length is |n(w)|
-  /// / |n(0)|, minus the sum that shown() returns.
+  /// Returns the missing vectors of a point in all rows, (3, stride). A missing vector is the right normal, whose
+  /// length is |n(w)| / |n(0)|, minus the sum that shown() returns.
   [[nodiscard]] const float* missing(std::size_t point) const { return missing_.data() + 3 * stride_ * point; }
 
   /// Returns the inner products of the missing normals of each two rows, (rows, rows). A product is a sum over every
-  /// step-th point. Each missing normal in it is multiplied by the importance of its point. The sum over a few points
-  /// is computed in float32, and these sums are added up in double.
+  /// step-th point. Each missing normal is multiplied by the importance of its point. Partial sums over a few points
+  /// are computed in float32, and these sums are added up in double.
   [[nodiscard]] std::vector<double> inner_products(std::span<const float> importance, std::size_t step = 1) const;
 
-  /// Adds vectors (3, stride) to the sums of a point, and subtracts them from its missing vectors.
+  /// Adds `more` (3, stride) to the rendered sums of a point, and subtracts it from the missing vectors of this point.
   void show_more(std::size_t point, std::span<const float> more);
-  /// Removes the points whose error is at most this many degrees in all rows.
+  /// Removes each point whose error is at most `degrees` in all rows.
   void keep_beyond(double degrees);
 
  private:
@@ -96,7 +98,7 @@ class MissingNormals {
   const float square = both > 0 ? across / both : 0;
   return along < 0 ? 2 - square : square;
 }
-/// Returns the angle that has this openness, in degrees.
+/// Returns the angle that has this openness (the measure that openness() returns), in degrees.
 [[nodiscard]] double degrees_of(float openness) noexcept;
 
 }  // namespace chronormal::inline internal

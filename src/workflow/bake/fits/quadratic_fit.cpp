@@ -1,4 +1,4 @@
-// Fits correction targets to the poses of a rig.
+// Fits correction targets with weights that are quadratic in the mesh's own weights, to the poses of a rig.
 #include "workflow/bake/fits/quadratic_fit.h"
 
 #include <algorithm>
@@ -20,17 +20,17 @@ constexpr unsigned kFitSeed = 101, kTermSeed = 102;
 constexpr std::size_t kQuadraticBlock = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kQuadraticPoints = 8000;
-// The largest number of products of two weights. With more products, the weight of a correction target would have too
-// many terms to compute.
+// The largest number of weights and products of two weights from which the weight of a correction target is made. More
+// of them would take too long.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which a normal
-// may turn if an entry of a delta is left out.
+// Parts of the tolerance in degrees. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which
+// a normal may turn if an entry of a delta is left out.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
-// The shortest length that counts, relative to n(0). Shorter normals count as if they had this length, because they can
-// hardly be fitted.
+// The shortest length of a normal in the fit, relative to n(0). Shorter normals count as if they had this length,
+// because they can hardly be fitted.
 constexpr float kLeastCounted = 0.1F;
-// The part of the root mean square of a weight that may be lost because terms are left out.
+// The part of the root mean square of a correction target's weight that may be lost because terms are left out.
 constexpr double kPartOfTerms = 0.02;
 constexpr double kRidgeOfTerms = 1e-5, kLeastRidge = 1e-12;
 
@@ -72,7 +72,7 @@ VertexColumns columns_of_points(std::span<const PointVertices> points, const std
   return by_vertex(columns, first);
 }
 
-// The points of each element, one list after the other.
+// The points that belong to each element, one list after the other.
 struct PointsOfElements {
   PointsOfElements(std::span<const PointVertices> points, const GltfShading& shading)
       : first(shading.groups.size() + 1, 0), points_(points.size()) {
@@ -144,7 +144,7 @@ void QuadraticFit::find_features(const DeltaSource& source) {
       if (a == b || source.terms.overlap(moving[a], moving[b])) features_.push_back({moving[a], moving[b], false});
 }
 
-// Returns for each point the sums of the missing normals over the poses, multiplied by these vectors (rows, extras).
+// Returns for each point its missing normals, multiplied by `vectors` (rows, extras) and summed over the rows (poses).
 // The result has the shape (points, 3, padded).
 std::vector<float> QuadraticFit::directions(std::span<const double> vectors) const {
   std::vector<float> columns(missing_.rows() * padded_, 0.0F), result(3 * padded_ * points_.size(), 0.0F);
@@ -158,8 +158,8 @@ std::vector<float> QuadraticFit::directions(std::span<const double> vectors) con
   return result;
 }
 
-// Computes the terms of the weights s_k. For this purpose, writes each term of n(w) as a sum of the directions E_k, by
-// least squares over all points.
+// Computes the terms of the weights s_k of correction targets. For this purpose, writes each term of n(w) as a sum of
+// the deltas E_k, by least squares over all points.
 void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, std::span<const float> directions) {
   const GltfShading& shading = source.shading;
   std::vector<double> matrix(extras_ * extras_, 0.0);
@@ -209,7 +209,7 @@ void QuadraticFit::project(const DeltaSource& source, const VertexColumns& own, 
   });
 }
 
-// Drops the smallest terms of each weight, measured in the poses of the rig.
+// Drops the smallest terms of each correction target's weight. The size of a term is measured in poses of the rig.
 void QuadraticFit::leave_out_small(const RigPoses& rig) {
   std::vector<double> squares(features_.size(), 0.0);
   for (const std::vector<double>& pose : rig.sample(kPosesOfTerms, kTermSeed)) {

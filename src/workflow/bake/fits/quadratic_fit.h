@@ -27,7 +27,7 @@
 
 namespace chronormal::inline internal {
 
-/// The largest number of terms of one correction target.
+/// The largest number of terms in the weight of one correction target.
 inline constexpr std::size_t kMostTerms = 160;
 
 class QuadraticFit {
@@ -43,12 +43,12 @@ class QuadraticFit {
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
-    /// Weights from about -1 to 1 in the poses of the rig; their member `target` is not set.
+    /// Weights of the correction targets, from about -1 to 1 in the poses of the rig. Their member `target` is not set.
     std::vector<GltfExtraTarget> weights;
     std::vector<VertexVectors> vectors;  ///< deltas of any length
   };
   /// Returns the best `count` correction targets. count must be at most extras(). If keeps_lengths is false, only the
-  /// direction of the sum of N and all deltas is fitted, and the length of this sum stays as it is.
+  /// direction of the sum of the stored normal and all deltas is fitted, and the length of this sum stays as it is.
   [[nodiscard]] Extras best(std::size_t count, bool keeps_lengths) const;
 
  private:

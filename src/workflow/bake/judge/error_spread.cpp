@@ -1,4 +1,4 @@
-// Counts errors in bins. An octave, which is a factor of two, has sixteen bins.
+// Counts errors in bins. Each factor of two in the error has sixteen bins.
 #include "workflow/bake/judge/error_spread.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kBins = ErrorSpread::kBins;
 constexpr float kLeastBin = 1e-3F;
 
-// Returns the bin of an error in degrees. In the bits of a float, the exponent counts octaves, and the first four bits
-// of the fraction count sixteenths of an octave.
+// Returns the bin of an error in degrees. An octave is a factor of two. In the bits of a float, the exponent counts
+// octaves, and the first four bits of the fraction count sixteenths of an octave.
 std::size_t bin_of(float degrees) {
   const auto bits = bit_cast<std::uint32_t>(std::max(degrees * (1 / kLeastBin), 1.0F));
   return std::min<std::size_t>(kBins - 1, (bits >> 19) - (127U << 4));

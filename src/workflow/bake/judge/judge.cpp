@@ -1,5 +1,5 @@
-// Measures candidates. The weights of many poses lie side by side in memory, so that one loop adds a delta to many
-// poses.
+// Measures the errors of candidates. The weights of many poses lie side by side in memory, so that one loop adds a
+// delta to many poses.
 #include "workflow/bake/judge/judge.h"
 
 #include <algorithm>
@@ -18,20 +18,21 @@ constexpr int kFineBits = 16;
 // kMostPairs is the largest number of samples whose right normals are in memory. A sample is a vertex in a pose. The
 // other constants limit the number of poses of one kind.
 constexpr std::size_t kMostPairs = 2500000, kFewestPoses = 12, kMostPoses = 800;
-// A glance takes every kGlance-th pose, but at least kFewestAtGlance poses if there are so many.
+// Numbers of poses in a glance, which is a quick measurement. A glance takes every kGlance-th pose, but at least
+// kFewestAtGlance poses if there are so many.
 constexpr std::size_t kGlance = 8, kFewestAtGlance = 24;
 // The largest number of errors (of a vertex in a pose) that are in memory at the same time.
 constexpr std::size_t kMostErrors = 4000000;
 
-// Returns the viewer without two kinds of rounding that must not decide which candidate is chosen: rounding to half
-// floats, because its effect is too small, and rounding to a few bits, because compressors do that and not the viewer.
+// Returns the viewer without two kinds of rounding that must not decide which candidate is chosen. Rounding to half
+// floats has too small an effect, and rounding to a few bits is done by compressors and not by the viewer.
 Viewer without_rounding(Viewer viewer) {
   viewer.bits = viewer.normals == NormalRule::kClamped ? kFineBits : 32;
   viewer.octahedral_base = false;
   return viewer;
 }
 
-// Returns true if two viewers render the same normals for all deltas.
+// Returns true if two viewers render the same normals for any deltas.
 bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
   return a.normals == b.normals && a.bits == b.bits && a.by_frame == b.by_frame &&
          a.octahedral_base == b.octahedral_base && (a.skins == b.skins || !is_skinned);
@@ -39,8 +40,8 @@ bool shows_alike(const Viewer& a, const Viewer& b, bool is_skinned) {
 
 std::size_t padded(std::size_t poses) { return block_count(poses, kPosePadding) * kPosePadding; }
 
-// The weights of poses, column by column. Each column also has the range of poses in which its weight is not zero. If
-// targets are judged one by one, most columns have no weight in most poses.
+// The weights of poses, one column for each target. Each column also has the range of poses in which its weight is not
+// zero. If targets are judged one by one, most columns have no weight in most poses.
 class PoseWeights {
  public:
   explicit PoseWeights(std::span<const SeenPose> poses)
@@ -61,11 +62,11 @@ class PoseWeights {
       if (active_[c].count > 0) columns_.push_back(c);
   }
 
-  // Returns the weights of a column: (poses, padded).
+  // Returns the weights of a column (target) in all poses, padded with zeros.
   [[nodiscard]] const float* of(std::size_t column) const { return weights_.data() + column * stride_; }
-  // Returns the columns that have a weight in some pose, in ascending order.
+  // Returns the columns (targets) that have a weight in some pose, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> columns() const { return columns_; }
-  // Returns the range of poses outside of which the column has no weight.
+  // Returns the range of poses outside of which the weight of a column (target) is 0.
   [[nodiscard]] const IndexRange& active(std::size_t column) const { return active_[column]; }
 
  private:
@@ -82,8 +83,8 @@ std::array<const float*, 3> planes_at(const float* first, std::size_t stride) {
 // The sums of the normal and the weighted deltas of one vertex, in many poses.
 class Sums {
  public:
-  // Adds up the normal and its deltas in `count` poses, beginning with pose `first`. The normal and the deltas must be
-  // rounded as a viewer stores them.
+  // Adds up the normal of a vertex and its weighted deltas in `count` poses, beginning with pose `first`. The normal
+  // and the deltas must be rounded as a viewer stores them.
   void add_up(const Vec3f& normal, std::span<const VertexColumns::Entry> entries, const PoseWeights& weights,
               std::size_t first, std::size_t count) {
     terms_.clear();
@@ -114,7 +115,7 @@ class Sums {
       std::fill_n(planes_.data() + range.first, range.count, std::numeric_limits<float>::quiet_NaN());
   }
 
-  // Replaces the sums by the normals that a viewer shows after the skin has transformed them.
+  // Replaces the sums by the normals that a viewer shows after the skin of each pose has transformed them.
   void carry(const SkinsInPoses::Vertex& carrying, SkinRule rule, std::size_t poses) {
     for (std::size_t p = 0; p < poses; ++p) {
       float *const x = planes_.data() + p, *const y = x + stride_, *const z = y + stride_;
@@ -125,8 +126,8 @@ class Sums {
     }
   }
 
-  // Compares the sums with the right normals, which are given in three planes. Writes the angles between them in
-  // degrees, and the differences of the unit vectors as planes. Returns the length of the largest difference.
+  // Compares the sums with the right normals, which are given as planes of x, y and z. Writes the angles between them
+  // in degrees, and the differences of the unit vectors as planes. Returns the length of the longest difference.
   float compare_with(const std::array<const float*, 3>& right, std::span<float> degrees, std::span<float> errors) {
     float *const x = errors.data(), *const y = x + degrees.size(), *const z = y + degrees.size();
     return compare_normals(planes_at(planes_.data(), stride_), right, degrees, {x, y, z});
@@ -153,7 +154,7 @@ std::vector<SurfaceEdge> edges_of(std::span<const SurfaceEdge> edges, std::span<
   return result;
 }
 
-// Writes vectors as three planes, `stride` floats apart.
+// Writes vectors as three planes: all x, then all y, then all z. The planes begin `stride` floats apart.
 void write_planes(std::span<const Vec3f> vectors, float* planes, std::size_t stride) {
   for (std::size_t p = 0; p < vectors.size(); ++p) {
     planes[p] = vectors[p].x;
@@ -231,7 +232,8 @@ std::vector<float> Judge::worst(const VertexColumns& columns, const PoseList& po
 std::vector<ErrorsOfKinds> Judge::measure(const Candidate& candidate, Depth depth) const {
   std::vector<ErrorsOfKinds> result(viewers_.size());
   const VertexColumns columns = columns_of(candidate, vertices_);
-  // The deltas as each kind of viewer stores them, for viewers that change the deltas of the candidate.
+  // Copies of the deltas as each kind of viewer stores them, for viewers that do not store the deltas of the candidate
+  // as they are.
   std::vector<std::pair<Viewer, VertexColumns>> of_viewers;
   const auto kept_by = [&](const Viewer& viewer) -> const VertexColumns& {
     if (viewer.normals == NormalRule::kSum && !viewer.keeps_halves()) return columns;
@@ -335,14 +337,15 @@ JudgedErrors Judge::errors_of(const KnownSet& known, const Viewer& viewer, const
 }
 
 TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences) const {
-  // A vertex that is not judged counts as a vertex without error.
+  // Uses zeros for a vertex that is not judged, so that it counts as a vertex without error.
   const std::size_t count = known.numbers.size(), poses = differences.poses;
   const std::vector<float> none(3 * poses, 0.0F);
   return parallel_fold<TearCounts>(
       known.edges.size(), kEdgeBlock,
       [&](std::size_t edge, TearCounts& counts) {
         const auto [a, b] = known.edges[edge];
-        // The difference of two error vectors is at most as long as both together.
+        // Skips an edge if its two errors are too small for a tear: their difference is at most as long as both
+        // together.
         const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
         if (most * most < TearCounts::kSquares[0]) return;
         counts.add(differences.planes.data() + 3 * a * poses,

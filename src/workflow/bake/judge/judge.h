@@ -32,7 +32,7 @@
 
 namespace chronormal::inline internal {
 
-/// An angle in degrees by which an error may always grow, because rounding to float32 and float16 may turn a normal by
+/// The angle in degrees by which an error may always grow, because rounding to float32 and float16 may turn a normal by
 /// this angle.
 inline constexpr double kHarmless = 0.02;
 
@@ -50,15 +50,15 @@ struct JudgedErrors {
   [[nodiscard]] ShownErrors errors() const;
 };
 
-/// The errors in each kind of poses.
+/// The errors of one viewer, separately for each kind of poses.
 using ErrorsOfKinds = std::array<JudgedErrors, kPoseKinds>;
 
-/// Returns the sum of the errors over all kinds of poses.
+/// Returns the errors over the poses of all kinds together.
 [[nodiscard]] JudgedErrors errors_of_all(const ErrorsOfKinds& kinds);
 
 class Judge {
  public:
-  /// Tells which viewers and which poses a measurement includes.
+  /// The depth of a measurement: the viewers and the poses that are included.
   enum class Depth {
     kGlance,   ///< the named viewers, without tears, in about an eighth of the poses that decide (decides())
     kRounded,  ///< the viewers with NormalRule::kClamped, rounded as by compressors, in about an eighth of the poses
@@ -78,10 +78,11 @@ class Judge {
   /// decide. If the file has no animation, all poses decide.
   [[nodiscard]] bool decides(PoseKind kind) const noexcept { return kind == PoseKind::kFile || !weights_.is_driven; }
 
-  /// Measures what each viewer renders in each kind of poses. Viewers and poses that the depth does not include have no
+  /// Measures what each viewer renders in each kind of poses. Viewers and poses that `depth` does not include have no
   /// errors in the result.
   [[nodiscard]] std::vector<ErrorsOfKinds> measure(const Candidate& candidate, Depth depth) const;
-  /// Returns the largest error of each vertex in these poses, in degrees, for a viewer that adds up deltas as stored.
+  /// Returns the largest error of each judged vertex in the given poses, in degrees, for a viewer that adds up deltas
+  /// as stored.
   [[nodiscard]] std::vector<float> worst(const VertexColumns& columns, const PoseList& poses) const;
 
  private:

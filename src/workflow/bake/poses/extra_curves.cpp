@@ -1,6 +1,6 @@
-// Computes the weights of curves, and extends tracks by curves. A parabola has the values a, m, b at the start, the
-// middle and the end of a piece. Its slopes are 4m - 3a - b at the start and a - 4m + 3b at the end, and a cubic spline
-// with these tangents is the parabola.
+// Computes the weights of correction targets from curves, and adds these weights to tracks. A parabola has the values
+// a, m, b at the start, the middle and the end of a piece. Its slopes are 4m - 3a - b at the start and a - 4m + 3b at
+// the end, and a cubic spline with these tangents is the parabola.
 #include "workflow/bake/poses/extra_curves.h"
 
 #include <algorithm>
@@ -18,7 +18,8 @@ constexpr std::size_t kFewestPieces = 2, kMostPieces = 8;
 constexpr double kNearParabola = 0.002;
 constexpr int kPlacesOfPiece = 4;
 
-// Returns the largest distance between the square of a weight and its parabolas, if a gap has this many pieces.
+// Returns the largest distance between the square of a weight and the parabolas that approximate this square, if a gap
+// has `pieces` pieces.
 double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pieces) {
   const auto square = [&weight](double t) {
     const double w = evaluate(weight, t);
@@ -37,7 +38,7 @@ double distance_of_parabolas(const std::array<double, 4>& weight, std::size_t pi
   return most;
 }
 
-// Returns the number of pieces into which each gap of a cubic spline is split.
+// Returns the number of pieces into which each gap between keys of a cubic spline is split.
 std::size_t pieces_of_spline(const WeightTrack& track) {
   std::size_t pieces = kFewestPieces;
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
@@ -81,7 +82,7 @@ ExtendedTrack spline_with_curves(const WeightTrack& track, const ExtraCurves& cu
     double start = 0;  // the start of the piece, as a part of the gap from 0 to 1
     for (std::size_t piece = 0; piece < pieces; ++piece) {
       const bool is_last = piece + 1 == pieces;
-      // The file stores times as float32, so a new key can only be at a float32 time.
+      // Rounds the time of a new key to float32, because the file stores times as float32.
       const double part = static_cast<double>(piece + 1) / static_cast<double>(pieces);
       const double time = is_last ? to : static_cast<double>(static_cast<float>(from + (to - from) * part));
       if (!is_last && !(keys.back().time < time && time < to)) continue;

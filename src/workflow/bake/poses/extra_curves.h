@@ -31,21 +31,21 @@ namespace chronormal::inline internal {
 
 struct ExtraCurves;
 
-/// The nodes of a track.
+/// The nodes of a track: the instants at which the curves over the track have values.
 class CurveNodes {
  public:
   explicit CurveNodes(const WeightTrack& track);
-  /// Prepares the same nodes as those of the given curves over the track.
+  /// Creates the nodes that `curves`, given over the track, already have.
   CurveNodes(const WeightTrack& track, const ExtraCurves& curves);
 
   [[nodiscard]] std::size_t size() const noexcept { return pieces_ == 0 ? keys_ : 2 * pieces_ * (keys_ - 1) + 1; }
-  /// Returns the number of pieces in each gap, or 0 if curves are constant between keys.
+  /// Returns the number of pieces in each gap between two keys, or 0 if curves are constant between keys.
   [[nodiscard]] std::size_t pieces() const noexcept { return pieces_; }
   /// Returns the weights of the mesh's own targets at a node.
   [[nodiscard]] std::vector<double> pose(const WeightTrack& track, std::size_t node) const;
 
-  /// A place in the gap after a key. The value of a curve there is the sum of its values at three nodes, multiplied by
-  /// these factors.
+  /// A place in the gap after a key. The value of a curve at this place is the sum of its values at three nodes,
+  /// multiplied by `factors`.
   struct Place {
     std::array<std::size_t, 3> nodes{};
     std::array<double, 3> factors{};
@@ -65,8 +65,8 @@ struct ExtraCurves {
   [[nodiscard]] std::span<const double> of(std::size_t node) const {
     return std::span(values).subspan(node * extras, extras);
   }
-  /// Writes the weights of the correction targets in the gap after a key. `part` is the position in this gap, from 0 to
-  /// 1.
+  /// Writes the weights of the correction targets in the gap after key `key`. `part` is the position in this gap, from
+  /// 0 to 1.
   void at(const CurveNodes& nodes, std::size_t key, double part, std::span<double> weights) const;
 };
 
@@ -74,33 +74,37 @@ using TrackCurves = std::map<TrackName, ExtraCurves>;
 
 /// Extends a track by curves. A LINEAR track stays LINEAR if `pieces` has numbers of pieces for its gaps
 /// (straight_track), and otherwise becomes a cubic spline. A cubic spline gets more keys at the ends of the curves'
-/// pieces. The weights that the track had are played as before, and the weights of correction targets follow the curves
-/// exactly. If all this takes more than most_keys keys, the result has no values, but the number of keys that it would
-/// have.
+/// pieces. The weights of the mesh's own targets are played as before, and the weights of correction targets follow the
+/// curves exactly. If all this takes more than most_keys keys, the result has no values, but the number of keys that it
+/// would have.
 [[nodiscard]] ExtendedTrack track_with_curves(const WeightTrack& track, const ExtraCurves& curves,
                                               std::span<const std::uint32_t> pieces,
                                               std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// The number of pieces into which each gap between two keys of a LINEAR track is split.
+/// The number of straight pieces into which each gap between two keys of a LINEAR track is split, by the name of the
+/// track.
 using TrackPieces = std::map<TrackName, std::vector<std::uint32_t>>;
 
-/// The data that drive the correction targets of a mesh. Formulas have one term in the weights of the mesh's own
-/// targets, and sums have many such terms. Curves give the weights over tracks.
+/// The data from which the weights of a mesh's correction targets follow. Formulas have one term in the weights of the
+/// mesh's own targets, and sums have many such terms. Curves give the weights over tracks.
 struct ExtraDrivers {
   std::vector<ExtraWeight> formulas;  ///< one for each correction target; all zero if there are sums or curves
-  /// One sum for each correction target, or none. If there are sums, tracks have curves as well.
+  /// The weights as sums of terms: one sum for each correction target, or none. If there are sums, tracks have curves
+  /// as well.
   std::vector<GltfExtraTarget> sums;
   TrackCurves curves;  ///< the curves of each track; empty if there are formulas
   PoseList rest;       ///< for curves, the weights in the poses that the file stores (MeshWeights)
   TrackPieces pieces;  ///< set for LINEAR tracks that stay LINEAR; others become cubic splines
-  /// An angle in radians. Cubic splines get more keys until the errors of formulas turn no normal by more than this
-  /// angle. If it is infinite, splines get no more keys.
+  /// The tolerance of cubic splines, an angle in radians. Splines get more keys until the errors of formulas turn no
+  /// normal by more than this angle. If it is infinite, splines get no more keys.
   double spline_tolerance = std::numeric_limits<double>::infinity();
 
   [[nodiscard]] std::size_t size() const noexcept { return formulas.size(); }
-  /// Returns correction target k in the form in which the file describes it. `index` is its index among all targets.
+  /// Returns correction target k in the form in which the file describes it. `index` is the index of this target among
+  /// all targets of the mesh.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t k, std::size_t index) const;
-  /// Returns a pose with the weights of correction targets appended. Formulas and sums give these weights.
+  /// Returns a pose with the weights of correction targets appended to the weights of own targets. Formulas or sums
+  /// give the appended weights.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
   /// Returns poses that stand still (outside of animations) with the weights of correction targets appended. If curves
   /// drive the correction targets, these weights are zero in the expressions of an avatar, which come after the poses

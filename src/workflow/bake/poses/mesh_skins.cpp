@@ -15,7 +15,8 @@ namespace {
 // kFewestInstants is the smallest number of times at which a skin is examined.
 constexpr std::size_t kLookedAtPairs = 10000000, kFewestInstants = 64;
 
-// Returns true if a skin deforms these vertices by more than a rotation and an even scale at some time of a track.
+// Returns true if a skin deforms these vertices by more than a rotation and an even scale at some time at which a track
+// is played.
 bool is_uneven(MeshSkin skin, const WeightTrack& track, std::span<const std::uint32_t> vertices) {
   std::vector<double> times;
   const std::vector<double> keys = keys_of_both(track, skin);
@@ -74,7 +75,7 @@ void read_skins(const GltfDocument& document, const GltfShading& shading, std::s
     }
     if (is_any_even) skins.emplace_back();
   }
-  // An audit uses the same skin for targets: the skin of the first node that has a skin and this mesh.
+  // Takes the skin with which an audit judges single targets: the skin of the first node that has a skin and this mesh.
   const auto first = std::find_if(nodes.begin(), nodes.end(),
                                   [&](const GltfNode& node) { return node.has_skin && node.mesh == shading.mesh; });
   if (first == nodes.end()) return;

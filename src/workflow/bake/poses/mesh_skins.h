@@ -1,4 +1,4 @@
-/// Finds the skins that matter to the choice of a bake. Each skin belongs to a node of the file that has the mesh.
+/// Finds the skins that matter when a bake chooses deltas. Each skin belongs to a node of the file that has the mesh.
 /// Private to workflow.
 ///
 /// A skin matters if it changes errors. A rotation with an even scale keeps the angle between two normals. If a skin
@@ -19,11 +19,11 @@
 namespace chronormal::inline internal {
 
 /// Returns the times of all keys of a track, and of all keys of a skin's joints while the track is played. The times
-/// are in seconds and in ascending order, and each occurs once.
+/// are in seconds and in ascending order, without repetitions.
 [[nodiscard]] std::vector<double> keys_of_both(const WeightTrack& track, const MeshSkin& skin);
 
-/// Reads the skins of all nodes of a mesh into weights.skins, for these vertices. Leaves out a skin that cannot be
-/// read; an audit reports the reason.
+/// Reads the skins of all nodes of a mesh into weights.skins, as far as they deform the given vertices. Leaves out a
+/// skin that cannot be read; an audit reports the reason.
 void read_skins(const GltfDocument& document, const GltfShading& shading, std::span<const std::uint32_t> vertices,
                 MeshWeights& weights);
 

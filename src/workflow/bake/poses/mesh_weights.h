@@ -15,8 +15,8 @@
 
 namespace chronormal::inline internal {
 
-/// The name of a track in a file: the index of its animation, and the index of the first track there with the same
-/// keys.
+/// The name of a track in a file: the index of its animation, and the index of the first track in this animation with
+/// the same keys.
 struct TrackName {
   std::size_t animation = 0, keys = 0;
   friend auto operator<=>(const TrackName&, const TrackName&) = default;
@@ -24,14 +24,14 @@ struct TrackName {
 
 /// The skins by which nodes deform a mesh. Skins that only rotate and scale evenly are left out (mesh_skins.h).
 struct MeshSkins {
-  /// For each track, the skins of all nodes that the track drives. An entry is nullopt if its node has no such skin.
-  /// The list is empty if no skin was read.
+  /// For each track, the skins of all nodes that the track drives. An entry is nullopt if its node has no skin that
+  /// matters. The list is empty if no skin was read.
   std::vector<std::vector<std::optional<MeshSkin>>> of_tracks;
   std::optional<MeshSkin> standing;  ///< the skin of the first node that has one, as the file poses it
 
   [[nodiscard]] bool any() const;
   /// Returns the skin for poses that no animation plays, such as a single target at weight 1. Returns nullptr if there
-  /// is no such skin.
+  /// is no skin for these poses.
   [[nodiscard]] const MeshSkin* as_standing() const { return standing ? &*standing : nullptr; }
 };
 
@@ -43,13 +43,14 @@ struct MeshWeights {
   std::size_t stored_poses = 0;  ///< the number of poses of the mesh and its nodes; those of expressions follow them
   WeightUse use;
   bool is_driven = false;  ///< true if an animation gives some moving target a weight
-  /// The poses to fit to, if no animation drives the mesh and a bake tries correction targets.
+  /// The poses to which correction targets are fitted if no animation drives the mesh. Set only if a bake tries
+  /// correction targets.
   std::optional<RigPoses> rig;
   MeshSkins skins = {};  ///< read_skins() sets these skins
 };
 
-/// Reads the weights of a mesh. Tracks with the same keys drive the mesh through several nodes, and count once. Errors:
-/// see GltfDocument
+/// Reads the weights that the animations of a file give to a mesh. Tracks with the same keys drive the mesh through
+/// several nodes, and count once. Errors: those of reading tracks from the document.
 [[nodiscard]] Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

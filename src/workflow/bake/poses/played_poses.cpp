@@ -1,4 +1,5 @@
-// Chooses the times at which a bake is judged. If there are too many, chooses the keys and tracks that show most.
+// Chooses the times of tracks at which a bake is judged. If there are too many, chooses the keys and tracks that show
+// most.
 #include "workflow/bake/poses/played_poses.h"
 
 #include <algorithm>
@@ -41,8 +42,8 @@ struct Peak {
   std::size_t number = 0;
 };
 
-// Returns the targets that have a weight between a key and the next key, with bounds of their weights. The largest
-// weights come first, and small ones are left out.
+// Returns the targets that have a weight between a key and the next key, with bounds of these weights. The largest
+// weights come first, and small weights are left out.
 std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   std::vector<Peak> result;
   for (std::size_t i = 0; i < track.targets; ++i) {
@@ -56,11 +57,11 @@ std::vector<Peak> active_after(const WeightTrack& track, std::size_t key) {
   return result;
 }
 
-// For each weight and each product of two weights, the largest value, and the item in which this value occurs. Items
-// are keys or tracks.
+// The peaks of weights: for each weight and each product of two weights, the largest value, and the item in which this
+// value occurs. Items are keys or tracks.
 class Peaks {
  public:
-  // Adds an item with this number. `active` has the weights that are active in the item at the same time.
+  // Adds the item with the index `number`. `active` has the weights that are active in this item at the same time.
   void add(const std::vector<Peak>& active, std::size_t number) {
     for (std::size_t a = 0; a < active.size(); ++a) {
       for (std::size_t b = a; b < active.size(); ++b) {
@@ -72,8 +73,8 @@ class Peaks {
     }
   }
 
-  // Returns at most `most` of these numbers, in ascending order. Three quarters of the result are the numbers with the
-  // largest peaks, and the rest is evenly spaced among the other numbers.
+  // Returns at most `most` of the items in `all`, in ascending order. Three quarters of the result are the items with
+  // the largest peaks, and the rest is evenly spaced among the other items.
   [[nodiscard]] std::vector<std::size_t> telling(std::span<const std::size_t> all, std::size_t most) const {
     std::vector<Peak> order;
     order.reserve(peaks_.size());
@@ -143,7 +144,7 @@ std::vector<double> instants_of(const WeightTrack& track, std::size_t room) {
   return times;
 }
 
-// Adds a pose, unless the last pose looks the same.
+// Adds a pose, unless a viewer shows the same as in the last pose of the list.
 void add_seen(PlayedPose pose, std::vector<PlayedPose>& poses) {
   if (poses.empty() || poses.back().track != pose.track || !(poses.back().seen == pose.seen))
     poses.push_back(std::move(pose));

@@ -31,7 +31,7 @@ struct PlayedPose {
 };
 
 /// Returns keys of a track, in ascending order. After each of these keys, the track shows something new, because
-/// weights change, come to rest or jump there. If there are more than `most` such keys, prefers keys after which a
+/// weights change, come to rest or jump at the key. If there are more than `most` such keys, prefers keys after which a
 /// weight, or the product of two weights, is larger than after all other keys, so that a wink in a long animation is
 /// included. The rest is evenly spaced among the other keys.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
@@ -42,17 +42,17 @@ struct PlayedPose {
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
 /// Returns the poses that a viewer plays from the tracks of a mesh, in order. Leaves out a pose that looks the same as
-/// the last one. There are poses at each telling key, and at several times up to the next telling key. If these are
-/// more than `most` poses, takes fewer times after each key, and then fewer keys. A track gets poses in proportion to
-/// its number of telling keys, but at least one.
+/// the last one. There are poses at each telling key, and at several times up to the next telling key. If there would
+/// be more than `most` poses, takes fewer times after each key, and then fewer keys. A track gets poses in proportion
+/// to its number of telling keys, but at least one.
 ///
 /// If nodes have skins, each track is judged with each of these skins: at its own keys, at keys of the joints, and at
-/// times between them. If these are more than `most` poses, some of them are chosen as above. The skins must outlive
-/// the poses.
+/// times between them. If these are more than `most` poses, some of them are chosen in the same way. The skins must
+/// outlive the poses.
 [[nodiscard]] std::vector<PlayedPose> played_tracks(const MeshWeights& weights, const Viewer& viewer, std::size_t most);
 
-/// Returns poses in which one of these targets has a weight and all other targets have weight 0. For each target, there
-/// are poses at `steps` evenly spaced weights up to 1.
+/// Returns poses in which one of the listed targets has a weight and all other targets have weight 0. For each listed
+/// target, there are poses at `steps` evenly spaced weights up to 1.
 [[nodiscard]] PoseList alone_poses(std::span<const std::size_t> targets, std::size_t target_count, std::size_t steps);
 
 }  // namespace chronormal::inline internal

@@ -14,15 +14,15 @@
 
 namespace chronormal::inline internal {
 
-/// A store of vectors. It takes vectors as long as there is room, and after that takes no more. Poses come in the same
-/// order each time, so if new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions
-/// may run at once.
+/// A store of vectors. It stores new vectors until its room is used up. Poses come in the same order each time, so if
+/// new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions may run at the same
+/// time.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
 
-  /// Returns the vectors that are stored for a pose, or nullptr if there are none. The vectors are valid as long as
-  /// this object.
+  /// Returns the vectors that are stored for a pose, or nullptr if there are none. The result is valid as long as this
+  /// object exists.
   [[nodiscard]] const std::vector<Vec3d>* find(std::span<const double> pose) const {
     const std::vector<double> key(pose.begin(), pose.end());
     const std::scoped_lock lock(mutex_);

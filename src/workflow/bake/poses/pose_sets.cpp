@@ -9,8 +9,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-// kMostWeights is the largest number of weights in memory. For this reason only some targets of a file with thousands
-// of targets are judged alone. The other constants limit the number of weights at which a target is judged alone.
+// kMostWeights is the largest number of weights that all poses together may have in memory, so only some targets of a
+// file with thousands of targets are judged alone. The other constants limit the number of weights at which a target is
+// judged alone.
 constexpr std::size_t kMostWeights = 8000000, kMostSteps = 8, kFewestSteps = 2;
 constexpr unsigned kRigSeed = 3;
 

@@ -21,7 +21,7 @@ namespace chronormal::inline internal {
 enum class PoseKind { kFile, kAlone, kPosed };
 inline constexpr std::size_t kPoseKinds = 3;
 
-/// Poses of one kind, and the viewers that render them. Viewers are indices in a list of viewers.
+/// Poses of one kind, and the viewers that render them, as indices in a list of viewers.
 struct PoseSet {
   PoseKind kind = PoseKind::kFile;
   std::vector<std::size_t> viewers;
@@ -29,16 +29,16 @@ struct PoseSet {
   std::vector<std::uint32_t> numbers = {};  ///< the judged vertices that these poses move, ascending; if empty, all
 };
 
-/// Returns the sets of poses of a mesh. There are about `most` poses of its tracks, as each viewer plays them, and the
-/// poses that stand still. There are poses with each target alone, unless only animations count, and the poses for
-/// which the rig is made. `numbers` has the judged vertices that each target turns. A target that turns no judged
-/// vertex is left out of all poses.
+/// Returns the sets of poses of a mesh. The sets have about `most` poses of the mesh's tracks, as each viewer plays
+/// them, and the poses that stand still. Unless only animations count, they also have poses with each target alone, and
+/// the poses for which the rig is made. `numbers` has the judged vertices that each target turns. A target that turns
+/// no judged vertex is left out of all poses.
 [[nodiscard]] std::vector<PoseSet> pose_sets(const MeshWeights& weights, std::span<const Viewer> viewers,
                                              std::span<const std::vector<std::uint32_t>> numbers, std::size_t most,
                                              bool animations_only);
 
-/// Returns the poses of a set with the weights of correction targets. A viewer plays these weights from the tracks that
-/// the bake will write.
+/// Returns the poses of a set with the weights of correction targets appended. For poses of tracks, these are the
+/// weights that the viewer plays from the tracks which the bake will write.
 [[nodiscard]] std::vector<SeenPose> with_extra_targets(const PoseSet& set, const MeshWeights& weights,
                                                        const ExtraDrivers& drivers, const Viewer& viewer);
 

@@ -1,6 +1,6 @@
 /// A pose as a viewer renders it: weights, and the skin that transforms the blended normals. Private to workflow.
 ///
-/// Threads    const functions may run at once.
+/// Threads    const functions may run at the same time.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_POSES_SEEN_POSE_H_
 #define CHRONORMAL_WORKFLOW_BAKE_POSES_SEEN_POSE_H_
 
@@ -28,15 +28,15 @@ struct SeenPose {
 
 /// Returns true if any of these poses has a skin.
 [[nodiscard]] bool any_skinned(std::span<const SeenPose> poses);
-/// Returns these poses, all with the given skin. If skin is nullptr, the poses have no skin.
+/// Returns the given poses, all with the same skin. If `skin` is nullptr, the poses have no skin.
 [[nodiscard]] std::vector<SeenPose> seen_through(PoseList poses, const MeshSkin* skin);
-/// Returns the weights of each pose.
+/// Returns the weights of each pose, without its skin.
 [[nodiscard]] PoseList weights_of(std::span<const SeenPose> poses);
-/// Returns the weights of the poses. If neighbouring poses differ only in the joints of a skin, their weights occur
-/// once.
+/// Returns the weights of the poses, without repetitions: if neighbouring poses differ only in the joints of a skin,
+/// their weights occur once.
 [[nodiscard]] PoseList different_weights_of(std::span<const SeenPose> poses);
 
-/// The skins of some poses, one for each pose. The joints of a skin stand as in its pose.
+/// The skins of some poses, one skin for each pose, with the joints placed as in the pose.
 class SkinsInPoses {
  public:
   explicit SkinsInPoses(std::span<const SeenPose> poses);

@@ -23,8 +23,8 @@ struct Knot {
 
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
-// Returns pi if any value was clamped, and otherwise 0. A clamped value lies on no product or straight line, so the
-// error of the normal is unknown.
+// Returns pi as the error in radians if any value was clamped to the range of float32, and otherwise 0. A clamped value
+// lies on no product or straight line, so the error of the normal is unknown.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
@@ -35,7 +35,8 @@ double error_of_clamping(const std::vector<float>& values) {
 double slope_at_start(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[1] - b[0]) / duration : 0; }
 double slope_at_end(const Cubic& b, double duration) { return duration > 0 ? 3 * (b[3] - b[2]) / duration : 0; }
 
-// Returns the weight of a correction target on a piece, as a polynomial in Bernstein form.
+// Returns the weight of a correction target between two keys of a track, as a polynomial in Bernstein form. `weights`
+// are the cubics of the own weights.
 Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights) {
   const Sextic product = multiply(weights[extra.i], weights[extra.j]);
   const Sextic raised = multiply(weights[extra.i], Cubic{1, 1, 1, 1});
@@ -50,7 +51,8 @@ double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, do
   return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
 }
 
-// Returns a bound of the distance between p and the cubic that has the values and slopes of p at both ends.
+// Returns a bound of the distance between the polynomial p and the cubic that has the values and slopes of p at both
+// ends.
 double cubic_error(const Sextic& p) {
   const Cubic cubic = {p[0], p[0] + 2 * (p[1] - p[0]), p[6] - 2 * (p[6] - p[5]), p[6]};
   const Sextic raised = multiply(cubic, Cubic{1, 1, 1, 1});
@@ -59,8 +61,8 @@ double cubic_error(const Sextic& p) {
   return error;
 }
 
-// Returns true if the weight of every correction target is linear in time between all keys. This is so if one of its
-// two factors is constant there, or if the weight is not a product.
+// Returns true if the weight of every correction target is linear in time between all keys. This is so if one of the
+// two factors of its product is constant between the keys, or if the weight is not a product.
 bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> extras) {
   for (std::size_t key = 0; key + 1 < track.size(); ++key) {
     const auto moves = [&](std::size_t target) { return track.value(key, target) != track.value(key + 1, target); };
@@ -71,7 +73,7 @@ bool extras_are_linear(const WeightTrack& track, std::span<const ExtraWeight> ex
   return true;
 }
 
-// Writes values without tangents, for LINEAR and STEP tracks and for tracks with one key.
+// Writes the weights at all keys without tangents, for LINEAR and STEP tracks and for tracks with one key.
 void append_values(const WeightTrack& track, std::span<const ExtraWeight> extras, std::vector<float>& values) {
   for (std::size_t key = 0; key < track.size(); ++key) {
     for (std::size_t i = 0; i < track.targets; ++i) values.push_back(static_cast<float>(track.value(key, i)));
@@ -85,7 +87,7 @@ class Spline {
  public:
   explicit Spline(std::size_t columns) : columns_(columns) {}
 
-  // Adds a key. Its slopes are 0 until a piece sets them.
+  // Adds a key at a time in seconds. The slopes at the key are 0 until a piece sets them.
   void add_key(double time) {
     times_.push_back(static_cast<float>(time));
     knots_.resize(knots_.size() + columns_);
@@ -120,7 +122,7 @@ class TrackExtender {
         most_keys_(most_keys),
         spline_(track.targets + extras.size()) {}
 
-  // Returns the extended track as a cubic spline.
+  // Returns the track, extended by the weights of correction targets, as a cubic spline.
   ExtendedTrack spline() {
     ExtendedTrack result;
     result.interpolation = GltfInterpolation::kCubicSpline;
@@ -132,7 +134,7 @@ class TrackExtender {
     }
     result.keys = keys_;
     if (keys_ > most_keys_) return result;
-    // The slopes before the first key and after the last key have no effect, so those of the file are kept.
+    // Keeps the file's slopes before the first key and after the last key. They have no effect.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
     }
@@ -162,7 +164,7 @@ class TrackExtender {
       error += extra.gain * cubic_error(exact);
       for (const double b : exact) rounding = std::fmax(rounding, 1e-7 * extra.gain * std::fabs(b));
     }
-    // The file stores times as float32, so a new key can only be at a float32 time.
+    // Rounds the time of a new key to float32, because the file stores times as float32.
     const double middle = static_cast<double>(static_cast<float>(from + (to - from) / 2));
     if (track_.interpolation == GltfInterpolation::kCubicSpline && error > std::fmax(tolerance_, rounding) &&
         halvings > 0 && from < middle && middle < to) {
@@ -182,7 +184,7 @@ class TrackExtender {
   }
 
   void add_piece(double duration, double to, const std::vector<Cubic>& weights) {
-    // If there are too many keys, further keys are only counted.
+    // Stops storing keys if there are too many, and only counts further keys.
     if (++keys_ > most_keys_) return spline_.clear();
     spline_.add_key(to);
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -279,7 +281,7 @@ ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, 
     if (key + 1 == track.size()) break;
     const double to = track.keys.times[key + 1];
     for (std::uint32_t piece = 1; piece < pieces[key]; ++piece) {
-      // The file stores times as float32, so a new key can only be at a float32 time.
+      // Rounds the time of a new key to float32, because the file stores times as float32.
       const auto time = static_cast<float>(from + (to - from) * piece / pieces[key]);
       if (!(times.back() < time && static_cast<double>(time) < to)) continue;
       const double t = (static_cast<double>(time) - from) / (to - from);

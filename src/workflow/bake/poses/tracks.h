@@ -25,7 +25,8 @@ namespace chronormal::inline internal {
 /// in pieces that are shorter than 1e-38 seconds.
 [[nodiscard]] float to_file(double number) noexcept;
 
-/// A correction target in a track. Its weight is linear w_i + quadratic w_i w_j.
+/// A correction target in a track. Its weight is linear * w_i + quadratic * w_i * w_j, where w_i and w_j are weights of
+/// own targets.
 struct ExtraWeight {
   std::size_t i = 0, j = 0;
   double linear = 0, quadratic = 1;
@@ -33,7 +34,8 @@ struct ExtraWeight {
   double gain = 0;
 
   [[nodiscard]] double at(double w_i, double w_j) const noexcept { return linear * w_i + quadratic * w_i * w_j; }
-  /// Returns the correction target in the form in which the file describes it. `target` is its index among all targets.
+  /// Returns the correction target in the form in which the file describes it. `target` is the index of this target
+  /// among all targets of the mesh.
   [[nodiscard]] GltfExtraTarget as_target(std::size_t target) const;
 };
 
@@ -41,12 +43,13 @@ struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::vector<float> times;   ///< the times of the keys in seconds; empty if they stay as they are
   std::vector<float> values;  ///< weights of the track's targets and of correction targets, in the order of the file
-  /// Radians: a bound of the angle by which errors of weights turn a normal; pi if float32 cannot hold a number.
+  /// A bound of the angle, in radians, by which errors of the weights turn a normal. It is pi if float32 cannot hold a
+  /// number.
   double error = 0;
   std::size_t keys = 0;
 };
 
-/// The bytes of memory for each weight at each key of an extended track, while the track is made and afterwards.
+/// The bytes of memory that each weight takes at each key of an extended track, while the track is made and afterwards.
 inline constexpr std::size_t kBytesPerWeight = 48;
 
 /// Extends a track by the weights of correction targets. Cubic splines get more keys until the errors of these weights
@@ -56,25 +59,27 @@ inline constexpr std::size_t kBytesPerWeight = 48;
                                            double tolerance,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Extends a LINEAR track that stays LINEAR. The gap between two keys gets the given number of straight pieces of equal
-/// length. The weights in the file play as before (up to float32), and the weights of correction targets are right at
-/// all keys. If that takes more than most_keys keys, the result has no values, but the number of keys that it would
-/// have. pieces must have one number for each pair of neighbouring keys, and none of these numbers may be 0.
+/// Extends a LINEAR track by the weights of correction targets, so that it stays LINEAR. The gap between two keys gets
+/// the given number of straight pieces of equal length. The weights in the file play as before (up to float32), and the
+/// weights of correction targets are right at all keys. If the pieces take more than most_keys keys, the result has no
+/// values, but the number of keys that it would have. pieces must have one number for each pair of neighbouring keys,
+/// and none of these numbers may be 0.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// A function that writes the weights of correction targets in the gap after a key. `part` is the position in the gap,
-/// from 0 to 1. `own` has the weights of the mesh's own targets at this position.
+/// A function that writes the weights of correction targets in the gap between `key` and the next key. `part` is the
+/// position in the gap, from 0 to 1. `own` has the weights of the mesh's own targets at this position.
 using ExtrasAt =
     std::function<void(std::size_t key, double part, std::span<const double> own, std::span<double> extras)>;
 
-/// Extends a LINEAR track in the same way, but by weights of correction targets that a function computes.
+/// Extends a LINEAR track by straight pieces. The weights of correction targets come from a function, and the track
+/// stays LINEAR.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::size_t extra_count, const ExtrasAt& extras_at,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
-/// Returns the extended track as it will be read from the file.
+/// Returns the extended track as a reader of the baked file would read it.
 [[nodiscard]] WeightTrack as_track(const WeightTrack& before, const ExtendedTrack& extended, std::size_t extra_count);
 
 }  // namespace chronormal::inline internal

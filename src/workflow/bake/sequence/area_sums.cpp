@@ -1,5 +1,5 @@
-// Computes areas and sums from rows of points, block by block (normals/groups/kernels/vector_areas.h). Polygons with
-// more than three corners are computed one by one.
+// Computes vector areas of faces, and their sums around elements, from rows of points, block by block
+// (normals/groups/kernels/vector_areas.h). Polygons with more than three corners are computed one by one.
 #include "workflow/bake/sequence/area_sums.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Chooses keys. Extends the line that starts at a key as far as its certificate allows, and puts the next key there.
+// Chooses the keys of a sequence. Extends the line that starts at a key as far as its certificate allows, and puts the
+// next key there.
 #include "workflow/bake/sequence/fewest_keys.h"
 
 #include <algorithm>
@@ -28,15 +29,15 @@ std::vector<ControlNormals> control_normals(const SequenceNormals& normals, std:
   return result;
 }
 
-// Converts a time to an instant. Keyframe k is at time k. The last keyframe is at the end of the last segment, and all
-// other keyframes are at the start of a segment.
+// Converts a time to an instant. Times count keyframes: keyframe k is at time k. The last keyframe is at the end of the
+// last segment, and all other keyframes are at the start of a segment.
 Instant instant_of(double time, std::size_t segments) {
   const std::size_t segment = std::min(static_cast<std::size_t>(time), segments - 1);
   return {segment, time - static_cast<double>(segment)};
 }
 
-// Returns the directions of elements at a key. If an element has no direction in the key's segment, returns its
-// direction in the segment before.
+// Returns the directions of the normals of all elements at a key. If an element has no direction in the key's segment,
+// returns its direction in the segment before.
 template <class OfSegment>
 std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment) {
   const std::vector<ControlNormals>& normals = of_segment(at.segment);
@@ -50,13 +51,13 @@ std::vector<Vec3d> key_directions(const Instant& at, const OfSegment& of_segment
 }
 
 // Reads all keyframes that affect the directions at two instants and between them into memory. These are the keyframes
-// of the segments with these instants, and of the segment before the first one.
+// of all segments from the first instant to the second, and of the segment before.
 Status hold_between(const SequenceNormals& normals, const Instant& from, const Instant& to) {
   return normals.hold(from.segment - std::min<std::size_t>(from.segment, 1), to.segment + 1);
 }
 
-// The judge of lines (fewest_keys.h) between the normals at two instants. Times count keyframes: keyframe k is at time
-// k. If a keyframe could not be read, status() has the error, and all other results are invalid.
+// The judge of lines between the normals at two instants, as viewers interpolate them. Times count keyframes: keyframe
+// k is at time k. If a keyframe could not be read, status() has the error, and all other results are invalid.
 class LineJudge {
  public:
   LineJudge(const Motion& motion, const SequenceNormals& normals, double tolerance)
@@ -75,10 +76,11 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Returns true if a viewer may interpolate linearly from a key at time a to a key at time b.
+  // Returns true if the errors are within the tolerance when a viewer interpolates linearly from a key at time a to a
+  // key at time b.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
-  // Returns a bound of the largest error on the line from a to b, in radians. Stops as soon as the bound exceeds the
-  // tolerance.
+  // Returns a bound of the largest error, in radians, when a viewer interpolates linearly from a to b. Stops as soon as
+  // the bound exceeds the tolerance.
   [[nodiscard]] double error(double a, double b) {
     if (!hold(a, b)) return 0;
     const std::vector<Vec3d> from = directions(a), to = directions(b);
@@ -121,12 +123,12 @@ class LineJudge {
     for (const auto& flags : left_out_) count += static_cast<std::size_t>(std::count(flags.begin(), flags.end(), 1));
     return count;
   }
-  // Frees the data of the segments before this segment.
+  // Frees the data of all segments before `segment`.
   void forget_before(std::size_t segment) { segments_.erase(segments_.begin(), segments_.lower_bound(segment)); }
 
  private:
-  // The part of a line from a to b that lies in one segment, as a range of t in the segment, and as a range on the line
-  // from 0 to 1.
+  // The part of a line from a to b that lies in one segment. It is given as a range of t in the segment, and as a range
+  // on the line, where 0 is a and 1 is b.
   struct Part {
     double from_t, to_t, from_share, to_share;
   };
@@ -184,8 +186,8 @@ class LineJudge {
 
 double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
 
-// Returns the last step that a line from step `from` can reach, but at most `to`. The caller knows that the line can
-// reach the step `reached`, which may be equal to `from`.
+// Returns the last step, at most `to`, that a line from step `from` can reach within the tolerance. The caller knows
+// that the line can reach the step `reached`, which may be equal to `from`.
 std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
   std::size_t beyond = to + 1;
   while (beyond - reached > 1) {
@@ -210,8 +212,8 @@ std::size_t next_key(LineJudge& judge, std::size_t from, std::size_t last) {
   return last;
 }
 
-// Returns the number of pieces in a segment, if all segments are cut into the same number of pieces. This is the number
-// that the worst segment needs.
+// Returns the number of pieces, at most kKeySteps, into which the worst segment must be cut, so that normals are within
+// the tolerance. All segments would get this number if they were cut evenly.
 std::size_t even_pieces(LineJudge& judge, std::size_t segments, double tolerance) {
   std::size_t pieces = 1;
   const auto suffices = [&](double start) {

@@ -28,29 +28,29 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kKeySteps = 64;  ///< the number of steps in a segment
 
-/// The largest distance of a vertex from the straight line at a keyframe that gets no key, as a share of the diagonal
-/// of the box around the whole motion.
+/// The largest distance of a vertex from the straight line between two keys, at a keyframe that gets no key, as a share
+/// of the diagonal of the box around the whole motion.
 inline constexpr double kKeyPositionShare = 1e-6;
 
 struct SequenceKeys {
   std::vector<std::size_t> at;  ///< the keys in steps, ascending; keyframe k is at step k kKeySteps
-  /// Radians: the largest error of any normal at any instant, except of normals counted in `beyond`.
+  /// The largest error of any normal at any instant, in radians. Leaves out the normals counted in `beyond`.
   double largest_error = 0;
-  /// The number of (normal, segment) pairs whose error is beyond the tolerance even on lines of one step.
+  /// The number of (normal, segment) pairs whose error is beyond the tolerance even if a key is put at every step.
   std::size_t beyond = 0;
-  /// The number of keys if all keyframes stay, and all segments are split into the same number of pieces, at most
-  /// kKeySteps.
+  /// The number of keys that would be needed if all keyframes stayed, and all segments were split into the same number
+  /// of pieces, at most kKeySteps.
   std::size_t even = 0;
 };
 
-/// Chooses keys. tolerance is in radians, and must be above 0. progress() receives the segment that was reached. Reads
-/// all keyframes three times. Keeps in memory the keyframes between two keys and a few keyframes around them;
-/// key_pose() keeps three keyframes. Errors of both functions: from reading keyframes.
+/// Chooses the fewest keys. tolerance is in radians, and must be above 0. progress() receives the segment that was
+/// reached. Reads all keyframes three times. Keeps in memory the keyframes between two keys and a few keyframes around
+/// them; key_pose() keeps three keyframes. Errors of both functions: those of reading keyframes.
 [[nodiscard]] Result<SequenceKeys> fewest_keys(const Motion& motion, const SequenceNormals& normals, double tolerance,
                                                const std::function<void(std::size_t segment)>& progress);
 
-/// The data of a key. They are the positions at its instant, as float32 deltas from keyframe 0, and the directions of
-/// the normals of all elements.
+/// The data of a key: the positions at its instant, as float32 deltas from keyframe 0, and the directions of the
+/// normals of all elements.
 struct KeyPose {
   std::vector<float> deltas;
   std::vector<Vec3d> directions;  ///< unit vectors; (0, 0, 0) if a normal has no direction in the segment

@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t kHarmlessBlock = 256;
 constexpr double kWorthIt = 2e-3;  // radians: a smaller gain is not worth the bytes of a target
-// The number of instants at which a segment is judged; its first key is not one of them.
+// The number of instants at which a segment is judged. The start of the segment is not one of them.
 constexpr std::size_t kJudged = 40;
 
-// Returns the weight 4 t (1 - t) of a bend as the LINEAR track plays it, in straight pieces.
+// Returns the weight of a bend at t, as the LINEAR track plays it: the curve 4 t (1 - t) in straight pieces.
 double bend_weight(double t) {
   const double at = t * kBendPieces, piece = std::min(std::floor(at), kBendPieces - 1.0);
   const auto exact = [](double n) { return 4 * (n / kBendPieces) * (1 - n / kBendPieces); };

@@ -21,31 +21,32 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kBendPieces = 8;
 
-/// The base normals of elements. without_room is the number of elements that have a delta with a component beyond 1.
-/// Compressors clamp such components.
+/// The elements of a sequence, with their base normals. without_room is the number of elements that have a delta with a
+/// component beyond 1. Compressors clamp such components.
 struct HarmlessElements {
   std::vector<SequenceElement> elements;
   std::size_t without_room = 0;
 };
-/// Examines all segments to find the base normals. Errors: from reading keyframes.
+/// Examines all segments to find the base normals of elements. Errors: those of reading keyframes.
 [[nodiscard]] Result<HarmlessElements> harmless_elements(const SequenceNormals& normals);
 
-/// The directions of all elements at both keys of a segment. If an element has no direction at a key, it has the
-/// direction of the key before.
+/// The directions of the normals of all elements at both keys of a segment. If an element has no direction at a key,
+/// the direction at the key before is used.
 struct SegmentEnds {
   std::vector<Vec3d> from, to;
 };
 [[nodiscard]] SegmentEnds segment_ends(std::span<const SequenceElement> elements, const SegmentForm& form,
                                        const std::vector<Vec3d>& before);
 
-/// Returns the deltas of a key, which lead from N to the given directions.
+/// Returns the deltas of a key. They lead from the base normals of the elements to the given directions.
 [[nodiscard]] std::vector<Vec3d> unit_key_deltas(std::span<const SequenceElement> elements,
                                                  std::span<const Vec3d> directions);
 
-/// The bends of a segment, if these reduce errors, and the largest angles between rendered and true normals.
+/// The bends of a segment (the deltas of its additional target), if they reduce errors, and the largest angles between
+/// rendered and true normals.
 struct UnitBends {
   std::vector<Vec3d> deltas;  ///< the deltas of elements; empty if bends help no element
-  /// Radians: the sum over elements of the angle by which bends reduce the largest error.
+  /// The sum, over all elements, of the angles in radians by which bends reduce the largest error.
   double gain = 0;
   double error = 0, straight = 0;  ///< radians: the largest error with these deltas, and without bends
 };

@@ -47,7 +47,7 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
 }
 
 // Returns the weighting that the stored normals of keyframe 0 clearly follow. Returns area if there is no such
-// weighting, or if the fits of all segments, which must be in memory, would be too large.
+// weighting, or if fits to this weighting would take too much memory.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
@@ -77,7 +77,8 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   std::vector<float> times;
   for (const Motion::Keyframe& keyframe : motion.keyframes) {
     const auto time = static_cast<float>(keyframe.time + shift);
-    // The slope of a weight is up to 1 / (time between two keys). float32 must be able to hold this slope.
+    // The shortest time between two keys, in seconds. The slope of a weight is up to 1 / (time between two keys), and
+    // float32 must be able to hold this slope.
     constexpr double kShortest = 1 / static_cast<double>(std::numeric_limits<float>::max());
     const bool is_after = times.empty() || double{time} - double{times.back()} > kShortest;
     if (!is_after || !std::isfinite(time))
@@ -89,13 +90,14 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Wraps elements without counting deltas beyond 1, for encodings that do not limit deltas for compressors.
+// Returns elements as HarmlessElements, without counting deltas beyond 1. For encodings that do not limit deltas for
+// compressors.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// Counts the polygons that cross themselves, so that some of their triangles face the other way.
+// Counts the polygons that cross themselves. Some of their triangles face the other way.
 std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);
@@ -138,8 +140,8 @@ void report_elements(const std::vector<SequenceElement>& elements, BakeEncoding 
                               "no area in this keyframe, or much less than later");
 }
 
-// Adds the targets of the encoding exact to the file, and records which segments bend. If the elements may still
-// change, returns false as soon as a segment needs other elements.
+// Adds the targets of the encoding exact to the file, and records in which segments normals bend. If are_final is
+// false, the elements may still change. The function then returns false as soon as a segment needs other elements.
 Result<bool> try_exact(const SequenceNormals& normals, const std::vector<SequenceElement>& elements, bool are_final,
                        const Step& step, SequenceTargets& targets, SequenceFile& file) {
   return each_exact_segment(normals, elements, are_final, [&](std::size_t s, const ExactSegment& values) {
@@ -158,8 +160,8 @@ bool any_frees_base(const std::vector<SequenceElement>& elements) {
   return std::any_of(elements.begin(), elements.end(), [](const SequenceElement& e) { return e.frees_base; });
 }
 
-// Writes the targets of the encoding exact. In almost every sequence the first segment determines the elements, and the
-// keyframes are read once. Otherwise they are read three times.
+// Writes the targets of the encoding exact. In almost every sequence the first segment determines the base normals of
+// all elements, and the keyframes are read once. Otherwise they are read three times.
 Status write_exact(const SequenceNormals& normals, std::vector<SequenceElement>& elements, const Step& step,
                    SequenceTargets& targets, SequenceFile& file) {
   std::size_t furthest = 0;
@@ -201,7 +203,8 @@ Result<double> write_endpoint(const SequenceNormals& normals, const std::vector<
   return largest;
 }
 
-// Returns the largest number of targets that all of these viewers support.
+// Returns the largest number of targets that all of these viewers support, or the largest integer if no viewer has a
+// limit.
 std::size_t room_for_targets(std::span<const Viewer> viewers) {
   std::size_t room = std::numeric_limits<std::size_t>::max();
   for (const Viewer& viewer : viewers)
@@ -209,7 +212,8 @@ std::size_t room_for_targets(std::span<const Viewer> viewers) {
   return room;
 }
 
-// Calls body(segment, form, ends) for every segment.
+// Calls body(segment, form, ends) for every segment. `form` has the normals of the segment, and `ends` their directions
+// at its two keys.
 template <class Body>
 Status each_unit_segment(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                          const Body& body) {
@@ -220,8 +224,8 @@ Status each_unit_segment(const SequenceNormals& normals, const std::vector<Seque
   });
 }
 
-// Chooses the segments that get a bend. If viewers support fewer targets (`room`) than there are segments, chooses
-// those in which bends reduce errors most.
+// Chooses the segments that get a bend. If viewers support fewer targets (`room`) than there are segments, chooses the
+// segments in which bends reduce errors most.
 Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                                            std::size_t room) {
   const std::size_t segments = normals.keys() - 1;
@@ -238,8 +242,8 @@ Result<std::vector<bool>> segments_to_bend(const SequenceNormals& normals, const
   return is_bent;
 }
 
-// Adds the targets of the encoding harmless to the file, and records which segments bend. Returns the largest angle
-// that is left between rendered and true normals, in degrees.
+// Adds the targets of the encoding harmless to the file, and records in which segments normals bend. Returns the
+// largest angle that is left between rendered and true normals, in degrees.
 Result<double> write_harmless(const SequenceNormals& normals, const std::vector<SequenceElement>& elements,
                               std::span<const Viewer> viewers, const Step& step, SequenceTargets& targets,
                               SequenceFile& file) {
@@ -329,8 +333,8 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
                          std::string(viewer.beyond));
 }
 
-// Returns the options with all viewers among the named viewers. A sequence has no candidates to choose from, so the
-// bake is the same for all viewers.
+// Returns the options with all viewers among the viewers for which the bake is made. A sequence has no candidates to
+// choose from, so the bake is the same for all viewers.
 BakeOptions for_all_viewers(const BakeOptions& asked) {
   BakeOptions options = with_viewers(asked);
   options.viewers.insert(options.viewers.end(), options.spared.begin(), options.spared.end());
@@ -375,8 +379,8 @@ Result<SequenceBake> bake_stream(MotionStream& stream, const BakeOptions& asked,
   if (!times) return times.error();
 
   const bool is_exact = encoding == BakeEncoding::kExact;
-  // The encoding exact checks its deltas while it writes them. If there are fits, the deltas were checked before the
-  // fits were made.
+  // Checks that float32 can hold all deltas. The encoding exact checks its deltas while it writes them, and if there
+  // are fits, the deltas were checked before the fits were made.
   if (!is_exact && normals.bounds().empty()) {
     if (const Status status = normals.check_deltas(normals.keys()); !status) return status.error();
   }

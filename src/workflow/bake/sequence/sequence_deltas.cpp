@@ -17,11 +17,11 @@ namespace {
 constexpr std::size_t kBlock = 256;
 
 // Limits for the length of an element's normals, relative to its normal at key 0. If a normal is beyond these limits,
-// the base normal N cannot be the normal at key 0.
+// the normal at key 0 cannot be the base normal.
 constexpr double kMuchSmaller = 0x1p-10, kMuchLarger = 0x1p40;
 
-// The lengths of the control normals of an element: the length at key 0, and the smallest and the largest of all
-// segments.
+// The lengths of the control normals of an element: the length at key 0, and the smallest and the largest length over
+// all segments.
 struct Sizes {
   double at_key_0 = 0, smallest = std::numeric_limits<double>::infinity(), largest = 0;
 };
@@ -53,7 +53,7 @@ void settle(const Sizes& sizes, SequenceElement& element) {
   element.scale = element.frees_base ? std::max(smallest, kWidest * largest) : at_key_0;
 }
 
-// Returns true if a segment agrees with the data that settle() found for an element from the segments before it.
+// Returns true if a segment needs no other base normal than settle() found for an element from the segments before.
 bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
   if (element.has_none) return rounded_to_float(unit_normal_at(n, 0).vector) == Vec3d{};
   if (element.frees_base) return false;
@@ -65,14 +65,14 @@ bool is_as_supposed(const SequenceElement& element, const ControlNormals& n) {
 }
 
 Vec3d key_delta(const SequenceElement& element, const Vec3d& at_key) {
-  // A delta that is only the rounding error of N would needlessly make the file larger, so it is dropped.
+  // Drops a delta that is only the rounding error of the base normal, because it would needlessly make the file larger.
   constexpr double kNothing = 0x1p-23;
   const Vec3d delta = (1 / element.scale) * at_key - element.normal;
   return !element.has_none && !(max_abs(delta) < kNothing) ? delta : Vec3d{};
 }
 
 Vec3d bend_delta(const SequenceElement& element, const Vec3d& from, const Vec3d& to, const Vec3d& bend) {
-  // A bend that turns no normal by more than 1e-8 rad is dropped. degree() (normals/control) has the same limit.
+  // Drops a bend that turns no normal by more than 1e-8 rad. degree() (normals/control) has the same limit.
   constexpr double kNothing = 0x1p-28;
   const double size = std::max(max_abs(from), max_abs(to));
   return !(max_abs(bend) <= kNothing * size) ? (-1 / element.scale) * bend : Vec3d{};
@@ -82,7 +82,7 @@ VectorView<float> view_of(std::vector<float>& values) {
   return VectorView<float>::packed(values.data(), values.size() / 3);
 }
 
-// Returns the data of elements, computed from the first `segments` segments alone.
+// Returns the base normals and the scales of all elements, computed from the first `segments` segments alone.
 Result<std::vector<SequenceElement>> elements_of(const SequenceNormals& normals, std::size_t segments) {
   std::vector<SequenceElement> elements(normals.elements());
   std::vector<Sizes> sizes(normals.elements());

@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 /// The normal that a file shows for an element without a normal.
 inline constexpr Vec3d kAnyNormal{0, 0, 1};
 
-/// The data of one element that follow from the whole sequence.
+/// The data of one element that are the same for all keys: they follow from the whole sequence.
 struct SequenceElement {
   Vec3d normal;             ///< N, the base normal: a unit vector in float32
   double scale = 1;         ///< the number by which the element's normals are divided
@@ -24,14 +24,14 @@ struct SequenceElement {
   bool has_none = true;     ///< true if the element has no normal at any time of the sequence
 };
 
-/// Examines all segments to find the data of elements. check_deltas() must have been called. Errors: from reading
-/// keyframes.
+/// Examines all segments to find the base normals and scales of elements. check_deltas() must have been called. Errors:
+/// those of reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> sequence_elements(const SequenceNormals& normals);
-/// Finds the data of elements from the first segment alone. In almost every sequence the result is that of
-/// sequence_elements(). Errors: kInvalidInput if a delta is too large for float32; errors from reading keyframes.
+/// Finds the base normals and scales of elements from the first segment alone. In almost every sequence the result is
+/// that of sequence_elements(). Errors: kInvalidInput if a delta is too large for float32; those of reading keyframes.
 [[nodiscard]] Result<std::vector<SequenceElement>> elements_of_start(const SequenceNormals& normals);
 
-/// The targets of one segment for the encoding exact. Vectors are in float32, three numbers each.
+/// The deltas of the targets of one segment, for the encoding exact. Vectors are in float32, three numbers each.
 struct ExactSegment {
   std::vector<float> positions;  ///< deltas of the positions of vertices, from key 0 to the second key
   std::vector<float> start;      ///< for each element, what key 0 adds to N; only in segment 0
@@ -40,10 +40,10 @@ struct ExactSegment {
   bool bends = false;            ///< true if any normal bends; otherwise `bend` is not valid
 };
 
-/// Calls body(segment, values) for every segment in order, until it returns an error. Has the keys of one segment in
+/// Calls body(segment, values) for every segment in order, until body returns an error. Has the keys of one segment in
 /// memory at a time. If are_final is false, the elements may be those of the first segment alone. The function then
 /// returns false as soon as a segment shows that sequence_elements() would return different elements. Errors:
-/// kInvalidInput if a delta is too large for float32; errors of body, and of the stream.
+/// kInvalidInput if a delta is too large for float32; those of body and of the stream.
 [[nodiscard]] Result<bool> each_exact_segment(
     const SequenceNormals& normals, std::span<const SequenceElement> elements, bool are_final,
     const std::function<Status(std::size_t segment, const ExactSegment& values)>& body);

@@ -58,7 +58,7 @@ SequenceVertices make_vertices(const Topology& topology, const NormalGroups& gro
   return result;
 }
 
-// Writes a vector for each vertex of the file into `room`, and returns these vectors.
+// Computes a vector for each vertex of the file, stores the vectors in `room`, and returns them.
 template <class VectorAt>
 std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room, const VectorAt& vector_at) {
   constexpr std::size_t kVectorBlock = 8192;
@@ -68,7 +68,7 @@ std::span<const float> fill_vectors(std::size_t count, std::vector<float>& room,
   return room;
 }
 
-// Returns the index of a segment in bent_segments, or nothing if the segment has no bend.
+// Returns the index of segment s in bent_segments, or nothing if the segment has no bend.
 std::optional<std::size_t> bend_of_segment(const SequenceTargets& targets, std::size_t s) {
   const auto found = std::lower_bound(targets.bent_segments.begin(), targets.bent_segments.end(), s);
   if (found == targets.bent_segments.end() || *found != s) return std::nullopt;
@@ -87,8 +87,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
     if (row % kRows == kValue) return set_key(key, 1);
     const bool is_in = row % kRows == kIn;
     if (key == (is_in ? 0 : targets.keys - 1)) return;
-    // Slopes are per second. A viewer computes the length of a segment from the float32 times in the file, so the same
-    // is done here.
+    // Computes slopes per second. A viewer computes the length of a segment from the float32 times in the file, so
+    // these times are used here too.
     const std::size_t s = is_in ? key - 1 : key;
     const auto slope = static_cast<float>(1 / (double{times[s + 1]} - double{times[s]}));
     set_key(s, -slope);
@@ -98,8 +98,8 @@ SequenceTrack spline_track(const SequenceTargets& targets, const std::vector<flo
   return {times, kRows * targets.keys, targets.count(), fill};
 }
 
-// Returns the track for the other encodings. The weight of each key is a hat, and the weight of each bent segment is 4
-// t (1 - t), which needs more keys in the segment.
+// Returns the LINEAR track, for all encodings except exact. The weight of each key is a hat: it is 1 at the key and
+// falls to 0 at both neighbours. The weight of each bent segment is 4 t (1 - t), which needs more keys in the segment.
 SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<float>& times) {
   struct TrackKey {
     std::size_t key;
@@ -138,7 +138,7 @@ SequenceTrack linear_track(const SequenceTargets& targets, const std::vector<flo
 }
 
 // Describes the weight of each bend, t (1 - t) or 4 t (1 - t), as a product of the weights of two keys. If key 0 has no
-// target, its weight is 1 minus the sum of all others.
+// target, its weight is 1 minus the sum of the weights of all other keys.
 GltfBakeMark mark_of(const SequenceTargets& targets) {
   GltfBakeMark mark{targets.encoding, true, {}};
   const double factor = targets.encoding == BakeEncoding::kHarmless ? 4 : 1;

@@ -25,7 +25,7 @@
 
 namespace chronormal::inline internal {
 
-/// The meaning of the targets in the file. First, each key has a target (key 0 only if some normal needs it). Then each
+/// The order of the targets in the file. First, each key has a target (key 0 only if some normal needs it). Then each
 /// segment in which normals bend has a target.
 struct SequenceTargets {
   BakeEncoding encoding = BakeEncoding::kExact;
@@ -35,7 +35,7 @@ struct SequenceTargets {
 
   [[nodiscard]] std::size_t of_keys() const noexcept { return keys - (has_key_0 ? 0U : 1U); }
   [[nodiscard]] std::size_t count() const noexcept { return of_keys() + bent_segments.size(); }
-  /// Returns the target of a key. The key must have a target.
+  /// Returns the index of a key's target. The key must have a target.
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
@@ -55,8 +55,8 @@ struct SequenceVertices {
   /// Returns the positions of the file's vertices. of_motion has the positions of the motion's vertices, (V, 3). The
   /// result is this array if there are no copies, and otherwise a new array in `room`.
   [[nodiscard]] std::span<const float> positions(std::span<const float> of_motion, std::vector<float>& room) const;
-  /// Returns the vectors of the file's vertices. of_elements has the vectors of elements, (E, 3), and vertices without
-  /// a face get `none`. The result is the given array, or a new array in `room`.
+  /// Returns a vector for each vertex of the file. of_elements has the vectors of elements, (E, 3), and vertices
+  /// without a face get `none`. The result is of_elements itself, or a new array in `room`.
   [[nodiscard]] std::span<const float> vectors(std::span<const float> of_elements, const Vec3f& none,
                                                std::vector<float>& room) const;
 };
@@ -67,11 +67,11 @@ struct SequenceVertices {
 struct SequenceTrack {
   std::vector<float> times;
   std::size_t rows = 0, width = 0;
-  /// Writes one row, whose values are 0 before the call.
+  /// Writes one row of values. All values of the row must be 0 before the call.
   std::function<void(std::size_t row, std::span<float> values)> fill;
 };
 
-/// The file while targets are added to it. Its arrays are written to the spool as soon as they are made.
+/// The file while targets are added to it. Arrays of the file are written to the spool as soon as they are made.
 class SequenceFile {
  public:
   /// Begins the file with key 0, which has the positions `base` and the normals of the elements. Polygons become fans
@@ -79,7 +79,7 @@ class SequenceFile {
   SequenceFile(const Topology& topology, const NormalGroups& groups, std::span<const float> base,
                std::span<const SequenceElement> elements, const BakeOptions& options, Spool spool);
 
-  /// Moves the node of the mesh to the origin that was subtracted from positions.
+  /// Sets the origin that was subtracted from all positions. The node of the mesh is moved there.
   void set_origin(const std::array<double, 3>& origin) { origin_ = origin; }
 
   /// Begins the file again with other elements. Targets that were added are lost.
@@ -91,16 +91,16 @@ class SequenceFile {
   /// key 0, it is empty. `normals` has one vector for each element, (E, 3).
   void add_key(std::size_t key, std::span<const float> positions, std::span<const float> normals);
   void add_key(std::size_t key, std::span<const float> positions, std::span<const Vec3d> normals);
-  /// Adds a target for a bend of a segment. A segment may have several bends. In the file, bends come after all other
-  /// targets, in any order of the calls.
+  /// Adds a target for a bend of a segment. A segment may have several bends. In the file, bends come after the targets
+  /// of keys, whatever the order of the calls.
   void add_bend(std::size_t segment, std::span<const float> normals);
   void add_bend(std::size_t segment, std::span<const Vec3d> normals);
 
-  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have too many with
-  /// `more` bytes; errors of the spool.
+  /// Checks the size of the file. Errors: kInvalidInput if the file has too many bytes, or would have too many after
+  /// `more` bytes are added; those of the spool.
   [[nodiscard]] Status check(std::uint64_t more = 0) const;
   /// Adds the animation, completes the file, and passes its bytes to `take`. Returns the number of bytes. `targets`
-  /// must describe the targets that were added. Errors: see GlbBuilder::finish()
+  /// must describe the targets that were added. Errors: those of GlbBuilder::finish().
   [[nodiscard]] Result<std::size_t> finish(const SequenceTargets& targets, const std::vector<float>& times,
                                            const GlbBuilder::Take& take);
 
@@ -120,7 +120,7 @@ class SequenceFile {
   void begin(std::span<const float> base, std::span<const SequenceElement> elements);
   [[nodiscard]] Target target(std::string name, std::size_t positions, std::span<const float> normals);
   [[nodiscard]] std::size_t add_positions(std::span<const float> of_motion);
-  // Returns the accessor of zeros. All targets that move no vertex share it.
+  // Returns the accessor of zeros, which all targets that move no vertex share.
   [[nodiscard]] std::size_t zero_positions();
   [[nodiscard]] std::span<const float> rounded(std::span<const Vec3d> of_elements);
 

@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t kVertexBlock = 8192;  // the number of vertices that one task handles
 
-// Writes three coordinates for each vertex. coordinate_at(i) returns coordinate i, counted over all vertices.
+// Writes three coordinates for each vertex into `rows`. coordinate_at(i) returns coordinate i of all vertices: x, y, z
+// of the first vertex, then those of the second, and so on.
 template <class CoordinateAt>
 void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coordinate_at) {
   constexpr std::size_t kRow = 4;
@@ -32,7 +33,7 @@ void write_rows(std::size_t vertices, PointRows& rows, const CoordinateAt& coord
   });
 }
 
-// Returns the float32 delta of a coordinate from key 0, as a file stores it.
+// Returns the delta of a coordinate from its value at key 0, in float32, as a file stores it.
 float delta_of(float position, float base) { return position - base; }
 
 bool is_far(float delta) {
@@ -81,8 +82,8 @@ Status SequenceNormals::check_deltas(std::size_t key, std::span<const float> del
 }
 
 Status SequenceNormals::fit(Weighting weighting) {
-  // At both ends of a segment, every fit has the length of the normal by area. For this reason the fits of neighbouring
-  // segments agree at their common key, up to rounding.
+  // The tolerance up to which the fits of neighbouring segments agree at their common key, relative to the normal. At
+  // both ends of a segment, every fit has the length of the normal weighted by area.
   constexpr double kSame = 1e-6;
   for (std::size_t s = 0; s + 1 < keys(); ++s) {
     if (Status status = hold(s, s + 1); !status) return status;
@@ -135,8 +136,8 @@ void SequenceNormals::write_displacements(std::size_t segment, PointRows& rows) 
 namespace {
 
 // Returns a function that computes exact sums of the areas at the points a + b, in integers. The arrays a and b are
-// made when they are first needed. At t = 1/2 of a segment from a to b, the points are half of a + b, and the areas are
-// a fourth.
+// made by make_a and make_b when they are first needed. At t = 1/2 of a segment from a to b, the points are half of a +
+// b, and the areas are a fourth.
 template <class MakeA, class MakeB>
 AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
                            const MakeB& make_b) {
@@ -195,8 +196,8 @@ std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   return vector_areas(positions, exact_at_key(key));
 }
 
-// Computes the bend d = sum of de x df of each element. The bend is twice the vector area of the polygon whose corners
-// are the displacements of the corners.
+// Computes the bend d of each element in a segment: the sum of de x df over the corners around the element. The bend is
+// twice the vector area of polygons whose corners are the displacements of the corners.
 std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;

@@ -24,32 +24,34 @@ namespace chronormal::inline internal {
 
 class SequenceNormals {
  public:
-  /// Reads key 0. If the weighting is not area, also reads all keyframes, to fit all segments. `stored` may have the
-  /// normals of the corners at key 0, (corners, 3). Their rotation away from the geometry's normals is then applied at
-  /// every instant. The stream and the groups must outlive the result. The memory is that of key 0 and of the fits.
-  /// Errors: kUsage if the fits of two neighbouring segments do not agree at their common key, because one target of a
-  /// key cannot represent both; errors of check_deltas(), if there are fits, and of the stream.
+  /// Makes the object, and reads key 0. If the weighting is not area, also reads all keyframes, to fit all segments.
+  /// `stored` may have the normals of the corners at key 0, (corners, 3). Their rotation away from the geometry's
+  /// normals is then applied at every instant. The stream and the groups must outlive the result. The memory is that of
+  /// key 0 and of the fits. Errors: kUsage if the fits of two neighbouring segments do not agree at their common key,
+  /// because one target of a key cannot represent both; those of check_deltas(), if there are fits; those of the
+  /// stream.
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
-  /// Keeps the positions of the keys from first to last in memory, until the next call. The functions below may only be
-  /// called for keys and segments in memory. Errors: from the stream.
+  /// Keeps the positions of the keys from first to last in memory, until the next call. All functions with a key or a
+  /// segment may only be called for keys in memory. Errors: those of the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
-  /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; errors of
+  /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; those of
   /// the stream.
   [[nodiscard]] Status check_deltas(std::size_t keys) const;
-  /// Checks the deltas of one key. Errors: kInvalidInput if a delta is too large for float32.
+  /// Checks that the deltas of one key fit into float32. Errors: kInvalidInput if a delta is too large.
   [[nodiscard]] static Status check_deltas(std::size_t key, std::span<const float> deltas);
 
   /// Returns the positions of key 0, (V, 3).
   [[nodiscard]] const std::vector<float>& base() const noexcept { return base_; }
   /// Returns the float32 deltas from the positions at key 0 to those at a key, as a file stores them, (V, 3).
   [[nodiscard]] std::vector<float> deltas(std::size_t key) const;
-  /// Writes the same deltas into existing memory.
+  /// Writes the float32 deltas from the positions at key 0 to those at a key, (V, 3), to `result`, whose memory is
+  /// reused.
   void deltas(std::size_t key, std::vector<float>& result) const;
 
-  /// Returns true if stored normals differ from the normals of the geometry.
+  /// Returns true if stored normals were given that differ from the normals of the geometry.
   [[nodiscard]] bool has_offsets() const noexcept { return !turns_.empty(); }
 
   /// Return the normals n of all elements at a key, and the bends d of all elements in a segment. Take O(corners), on
@@ -57,22 +59,22 @@ class SequenceNormals {
   [[nodiscard]] std::vector<Vec3d> at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> bends(std::size_t segment) const;
 
-  /// Memory that is reused from one segment to the next.
+  /// Memory for the points of each_block(), which is reused from one segment to the next.
   struct Rows {
     PointRows positions, displacements;
   };
-  /// Calls body(elements, n, d) for blocks of elements, on all cores. n are the normals of these elements at the second
-  /// key of a segment, and d their bends in the segment.
+  /// Calls body(elements, n, d) for blocks of elements, on all cores. n are the normals of the elements at the second
+  /// key of the segment, and d their bends in the segment.
   void each_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
 
   [[nodiscard]] std::size_t keys() const noexcept { return motion().keyframes.size(); }
   [[nodiscard]] std::size_t elements() const noexcept { return groups_->size(); }
-  /// Returns error bounds of the fits in radians, for each segment and element. A bound is pi if none could be proven.
-  /// The list is empty if normals are weighted by area.
+  /// Returns bounds, in radians, of the errors of fits to a weighting, for each segment and element. A bound is pi if
+  /// none could be proven. The list is empty if normals are weighted by area.
   [[nodiscard]] const std::vector<std::vector<double>>& bounds() const noexcept { return bounds_; }
 
  private:
-  // Compute normals from the geometry, without the rotation of stored normals.
+  // Compute the normals and bends of the geometry, before they are rotated as the stored normals are.
   [[nodiscard]] std::vector<Vec3d> computed_at_key(std::size_t key) const;
   [[nodiscard]] std::vector<Vec3d> computed_bends(std::size_t segment) const;
   void each_computed_block(std::size_t segment, Rows& rows, const AreaSums::Body& body) const;
@@ -87,8 +89,8 @@ class SequenceNormals {
   // Write the points at a key, and their displacements in a segment.
   void write_positions(std::size_t key, PointRows& rows) const;
   void write_displacements(std::size_t segment, PointRows& rows) const;
-  // Return functions that compute exact sums for elements whose areas cancel: at a key, and of the displacements in a
-  // segment.
+  // Return functions that compute the exact sum of areas of one element. They are called for elements whose areas
+  // cancel: exact_at_key() for the points at a key, exact_bend() for the displacements in a segment.
   [[nodiscard]] AreaSums::Exact exact_at_key(std::size_t key) const;
   [[nodiscard]] AreaSums::Exact exact_bend(std::size_t segment) const;
   [[nodiscard]] std::vector<Vec3d> vector_areas(const PointRows& points, const AreaSums::Exact& exact) const;
@@ -102,13 +104,13 @@ class SequenceNormals {
   std::vector<std::vector<double>> bounds_;
 };
 
-/// Returns the control normals of an element in a segment (eq. 5). from and to are its normals at both keys, and bend
-/// is its bend.
+/// Returns the control normals of an element in a segment (eq. 5 of the paper). from and to are the normals of the
+/// element at both keys, and bend is its bend.
 [[nodiscard]] inline ControlNormals control_normals_of(const Vec3d& from, const Vec3d& to, const Vec3d& bend) noexcept {
   return {from, 0.5 * (from + to - bend), to};
 }
 
-/// The normals of all elements in one segment.
+/// The normals of all elements in one segment: at both keys, and their bends between the keys.
 struct SegmentForm {
   std::vector<Vec3d> from, to, bends;
 
@@ -117,8 +119,8 @@ struct SegmentForm {
   }
 };
 
-/// Calls body(segment, form) for the first `segments` segments, one after the other, until it returns an error. Has the
-/// keys of one segment in memory at a time. Errors: from body, and from the stream.
+/// Calls body(segment, form) for the first `segments` segments, one after the other, until body returns an error. Has
+/// the keys of one segment in memory at a time. Errors: those of body and of the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, std::size_t segments, const Body& body) {
   SegmentForm form;
@@ -138,7 +140,8 @@ template <class Body>
   return Success{};
 }
 
-/// Calls body(segment, form) for all segments.
+/// Calls body(segment, form) for all segments, one after the other, until body returns an error. Errors: those of body
+/// and of the stream.
 template <class Body>
 [[nodiscard]] Status each_segment(const SequenceNormals& normals, const Body& body) {
   return each_segment(normals, normals.keys() - 1, body);

@@ -15,11 +15,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The number of morphed attributes in viewers that keep these in vertex attributes. WebGL 1 offers room for this
-// number, and the glTF specification requires that viewers support at least this number.
+// The number of morphed attributes that viewers support at least. Viewers that keep morphed data in vertex attributes
+// have no more room in WebGL 1, and the glTF specification requires that viewers support at least this number.
 constexpr std::size_t kMorphedAttributes = 8;
-// A file that grows by the factor kLargeTimes gets a warning. If it has more than kFewExtras correction targets, growth
-// by the factor kLargeTimesOfMany is enough for a warning.
+// Factors by which a file may grow without a warning. kLargeTimesOfMany applies if there are more than kFewExtras
+// correction targets.
 constexpr double kLargeTimes = 2.5, kLargeTimesOfMany = 2;
 constexpr std::size_t kFewExtras = 8;
 
@@ -126,7 +126,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
-  // If no limit was requested, there is no warning, because the report states the remaining error anyway.
+  // Gives no warning if no limit was requested, because the report states the remaining error anyway.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
@@ -209,8 +209,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     warn(counted(baked.without_base, "vertex has", "vertices have") +
          " only faces without area in the base; normals there are wrong at weights near 0 and right otherwise");
   }
-  // Each target morphs two attributes. The viewers that options can name support more attributes, but other viewers may
-  // support only kMorphedAttributes.
+  // Warns of viewers with few attributes. Each target morphs two attributes. The viewers that options can name support
+  // more attributes, but other viewers may support only kMorphedAttributes.
   if (!baked.extras.empty() && 2 * targets > kMorphedAttributes && !options.spared.empty()) {
     warn(std::to_string(targets) +
          " morph targets are in the result, and viewers that show only 4 or 8 drop the weakest; to avoid this, add "

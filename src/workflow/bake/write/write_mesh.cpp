@@ -50,7 +50,8 @@ MeshWriter::MeshWriter(const GltfDocument& document, const GltfShading& shading,
       has.tangents |= target.tangents;
     }
     has.normals |= is_shaded(p);
-    // The specification requires at least one attribute in each target.
+    // Adds positions to a target without attributes, because the glTF specification requires at least one attribute in
+    // each target.
     has.positions |= !has.normals && mesh_.primitives[p].vertex_count > 0;
   }
 }
@@ -102,7 +103,7 @@ void MeshWriter::write_target(std::size_t target, const std::optional<TargetDelt
     if (target >= mesh_.primitives[p].targets.size()) continue;
     const std::string pointer = pointer_of(p) + "/targets/" + std::to_string(target);
     const GltfPrimitive::Target& has = mesh_.primitives[p].targets[target];
-    // A primitive may have fewer targets than others.
+    // Adds the target to a primitive that has fewer targets than others.
     if (!edit_.has(pointer)) edit_.append(pointer_of(p) + "/targets", "{}");
     if (attributes_[p].positions && !has.positions) edit_.set(pointer + "/POSITION", std::to_string(zeros_of(p)));
     if (deltas && is_shaded(p))

@@ -1,5 +1,5 @@
-/// Writes one mesh as edits of the file. Writes the arrays of normals and deltas, and all lists with an item for each
-/// target, such as weights and names. Private to workflow.
+/// Writes one mesh as edits of the glTF file. Writes the arrays of normals and deltas, and all lists with an item for
+/// each target, such as weights and names. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 #define CHRONORMAL_WORKFLOW_BAKE_WRITE_WRITE_MESH_H_
 
@@ -17,12 +17,12 @@
 
 namespace chronormal::inline internal {
 
-/// The accessors that hold only zeros. There is one for each number of vertices.
+/// The accessors that hold only zeros, for targets that lack an attribute. There is one for each number of vertices.
 class ZeroVectors {
  public:
   ZeroVectors(GltfEdit& edit, bool dense) : edit_(edit), dense_(dense) {}
   [[nodiscard]] std::size_t of(std::size_t vertices);
-  /// Returns true if zeros are stored as bytes. Otherwise an accessor of zeros has no buffer view.
+  /// Returns true if accessors of zeros store their zeros as bytes. Otherwise an accessor of zeros has no buffer view.
   [[nodiscard]] bool are_dense() const noexcept { return dense_; }
 
  private:
@@ -46,7 +46,7 @@ class MeshWriter {
   /// Replaces the base normals of some parts. `normals` has the normals of all parts, (V, 3). Errors: kInvalidInput if
   /// Draco compresses a part that changes.
   [[nodiscard]] Status write_base(const std::vector<bool>& is_replaced, std::span<const float> normals);
-  /// Makes all targets change tangents, in primitives that have tangents.
+  /// Makes every target of the mesh change tangents, in all primitives that have tangents.
   void add_tangents();
   /// Writes the deltas of normals and tangents of one of the mesh's own targets. If there are no deltas, only adds the
   /// attributes that other targets have and this target lacks.
@@ -54,8 +54,8 @@ class MeshWriter {
                     const std::optional<TargetDeltas>& of_tangents = {});
   /// Appends a correction target, which moves no vertex.
   void append_target(const TargetDeltas& of_normals);
-  /// Sets the weights and names of the appended targets. If no formula gives the weights, `rest` has them for each pose
-  /// that stands still (outside of animations), in the order of MeshWeights.
+  /// Sets the weights and names of the correction targets that append_target() added. If no formula gives the weights,
+  /// `rest` has them for each pose that stands still (outside of animations), in the order of MeshWeights.
   void append_weights(std::span<const GltfExtraTarget> extras, const PoseList& rest);
   /// Writes the mark of the bake (docs/formats.md) into the mesh, where the next bake and an audit look for it. If
   /// there are correction targets, also writes the mark into the nodes that have the mesh, because some viewers pass

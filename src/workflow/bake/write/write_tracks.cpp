@@ -50,7 +50,7 @@ std::string_view name_of(GltfInterpolation interpolation) {
   return interpolation == GltfInterpolation::kLinear ? "LINEAR" : "CUBICSPLINE";
 }
 
-// A sampler of an animation, as the bake writes it.
+// A sampler (the data of a track) of an animation, as the bake writes it.
 struct Sampler {
   std::string input, output;  // indices of accessors, as text
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
@@ -94,7 +94,7 @@ std::optional<std::string> find_lone_weight(const GltfDocument& document, std::s
 namespace {
 
 // Returns an error if KHR_animation_pointer drives single weights, or the weights of a mesh without a node. The weights
-// of correction targets could not be animated there.
+// of correction targets could not be animated in such a file.
 Status check_pointers(const GltfDocument& document, std::span<const GrownMesh> meshes, const GltfEdit& edit) {
   for (const GrownMesh& mesh : meshes) {
     const std::optional<std::string> pointer = find_lone_weight(document, mesh.mesh, edit);
@@ -169,8 +169,8 @@ class TrackWriter {
   [[nodiscard]] WrittenTracks written() && { return std::move(written_); }
 
  private:
-  // Returns the index in meshes_ of the mesh that a track drives. Returns nullptr if the mesh is not one of these
-  // meshes.
+  // Returns the index in meshes_ of the mesh that a track drives. Returns nullptr if the mesh of the track is not in
+  // meshes_.
   [[nodiscard]] const std::size_t* mesh_driven_by(const GltfTrack& track) const {
     const GltfNode& node = document_.nodes()[track.node];
     const auto found = node.mesh ? place_of_mesh_.find(*node.mesh) : place_of_mesh_.end();
@@ -233,7 +233,8 @@ class TrackWriter {
   GltfEdit& edit_;
   WrittenTracks written_;
   std::map<std::size_t, std::size_t> place_of_mesh_;  // for the index of a mesh, its index in meshes_
-  // The samplers that were written, by animation, keys of the track, and index of the mesh in meshes_.
+  // The samplers that were written, keyed by the index of the animation, the keys of the track, and the index of the
+  // mesh in meshes_.
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;
 };
 

@@ -23,21 +23,21 @@ struct GrownMesh {
 };
 
 /// Finds a channel in which KHR_animation_pointer drives weights that no track of glTF can hold: a single weight of the
-/// mesh, or weights of a mesh without a node. Returns the JSON pointer of what the channel drives, or nothing if there
-/// is no such channel.
+/// mesh, or weights of a mesh without a node. Returns the JSON pointer of the driven weights, or nothing if there is no
+/// such channel.
 [[nodiscard]] std::optional<std::string> find_lone_weight(const GltfDocument& document, std::size_t mesh,
                                                           const GltfEdit& edit);
 
 struct WrittenTracks {
-  /// For each mesh, a bound of the angle by which errors of weights turn normals, in radians.
+  /// For each mesh, a bound of the angle, in radians, by which errors of correction targets' weights turn normals.
   std::vector<double> errors;
   std::vector<std::size_t> bytes;  ///< for each mesh, the number of bytes added to its tracks
   std::size_t converted = 0;       ///< the number of tracks that became cubic splines
 };
 
 /// Extends all tracks that drive these meshes, in all animations. Cubic splines get more keys until the errors of
-/// correction targets' weights turn no normal by more than tolerance (radians). Errors: see GltfDocument; kInvalidInput
-/// if an extension drives weights of any of these meshes.
+/// correction targets' weights turn no normal by more than tolerance (radians). Errors: those of reading tracks from
+/// the document; kInvalidInput if an extension drives weights of any of these meshes.
 [[nodiscard]] Result<WrittenTracks> write_tracks(const GltfDocument& document, std::span<const GrownMesh> meshes,
                                                  double tolerance, GltfEdit& edit);
 
