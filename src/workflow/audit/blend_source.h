@@ -31,8 +31,8 @@ namespace chronormal::inline internal {
 
 /// A function that writes the weights of the involved targets at position t of a segment, with t from 0 to 1.
 using Weights = std::function<void(std::size_t segment, double t, std::span<double> weights)>;
-/// A function that returns the number by which messages name position t of a segment: a time in seconds, or the weight
-/// of a target.
+/// A function that returns the number by which messages name position t of a segment: a time in seconds, a weight, or
+/// the index of a pose.
 using Moment = std::function<double(std::size_t segment, double t)>;
 
 class BlendSource {

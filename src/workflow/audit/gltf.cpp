@@ -83,7 +83,8 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures the angles between the stored base normals and the true normals of the base, which are sums of face normals.
+// Measures the angles between the stored base normals and the sums of face normals that `truth` has for the base.
+// Ignores the side of the surface.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());

@@ -102,7 +102,7 @@ std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<boo
 
 using Pairs = std::vector<PairMeter::Pair>;
 
-// Lists the pairs of targets that can move the same normal in some pose of the file.
+// Lists the pairs of targets that can move the same normal at the same time, in some pose.
 Result<Pairs> find_pairs(const GltfDocument& document, const MeshUse& mesh) {
   Pairs pairs;
   for (std::size_t i = 0; i < mesh.use.targets(); ++i) {

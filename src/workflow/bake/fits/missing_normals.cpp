@@ -129,7 +129,7 @@ std::vector<double> MissingNormals::inner_products(std::span<const float> import
         for (std::size_t c = 0; c < 3 * stride_; ++c) scaled[3 * stride_ * n + c] = importance[point] * lack[c];
       }
       std::fill(products.begin(), products.end(), 0.0F);
-      // The product of rows i and j equals that of rows j and i, so half of the matrix is enough.
+      // Computes only half of the matrix, because the product of rows i and j equals that of rows j and i.
       for (std::size_t i = 0; i < rows; i += kColumnsAtOnce) {
         const StridedMatrix a{scaled.data() + i, 3 * count, std::min(kColumnsAtOnce, rows - i), stride_, 1};
         const StridedMatrix b{scaled.data() + i, 3 * count, stride_ - i, stride_, 1};

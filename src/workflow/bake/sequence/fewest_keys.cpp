@@ -76,8 +76,8 @@ class LineJudge {
 
   [[nodiscard]] const Status& status() const { return status_; }
 
-  // Returns true if the errors are within the tolerance when a viewer interpolates linearly from a key at time a to a
-  // key at time b.
+  // Returns true if a viewer may interpolate linearly from a key at time a to a key at time b: vertices stay on
+  // straight lines, and the error is within the tolerance.
   [[nodiscard]] bool may_draw(double a, double b) { return is_straight(a, b) && error(a, b) <= tolerance_; }
   // Returns a bound of the largest error, in radians, when a viewer interpolates linearly from a to b. Stops as soon as
   // the bound exceeds the tolerance.
@@ -186,7 +186,7 @@ class LineJudge {
 
 double time_of(std::size_t step) { return static_cast<double>(step) / kKeySteps; }
 
-// Returns the last step, at most `to`, that a line from step `from` can reach within the tolerance. The caller knows
+// Returns the last step, at most `to`, that a line from step `from` can reach (LineJudge::may_draw()). The caller knows
 // that the line can reach the step `reached`, which may be equal to `from`.
 std::size_t farthest(LineJudge& judge, std::size_t from, std::size_t reached, std::size_t to) {
   std::size_t beyond = to + 1;

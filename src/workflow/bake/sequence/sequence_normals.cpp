@@ -196,8 +196,8 @@ std::vector<Vec3d> SequenceNormals::computed_at_key(std::size_t key) const {
   return vector_areas(positions, exact_at_key(key));
 }
 
-// Computes the bend d of each element in a segment: the sum of de x df over the corners around the element. The bend is
-// twice the vector area of polygons whose corners are the displacements of the corners.
+// Computes the bend d of each element in a segment: the sum of the cross products de x df. The bend is twice the vector
+// area of the polygon whose corners are the displacements of the corners.
 std::vector<Vec3d> SequenceNormals::computed_bends(std::size_t segment) const {
   if (!fitted_bends_.empty()) return fitted_bends_[segment];
   PointRows displacements;

@@ -33,8 +33,8 @@ class SequenceNormals {
   [[nodiscard]] static Result<SequenceNormals> make(MotionStream& stream, const NormalGroups& groups,
                                                     Weighting weighting, VectorView<const float> stored = {});
 
-  /// Keeps the positions of the keys from first to last in memory, until the next call. All functions with a key or a
-  /// segment may only be called for keys in memory. Errors: those of the stream.
+  /// Keeps the positions of the keys from first to last in memory, until the next call. deltas(), at_key(), bends() and
+  /// each_block() may only be called for keys and segments in memory. Errors: those of the stream.
   [[nodiscard]] Status hold(std::size_t first, std::size_t last) const { return stream_->hold(first, last); }
 
   /// Reads and checks the first `keys` keyframes. Errors: kInvalidInput if a delta is too large for float32; those of
