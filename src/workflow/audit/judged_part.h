@@ -83,8 +83,8 @@ class JudgedPart {
   [[nodiscard]] std::uint32_t output_of(std::uint32_t vertex) const noexcept { return output_of_[vertex]; }
   /// Returns the number of vertices of the whole mesh. edges() uses the vertex numbers of the whole mesh.
   [[nodiscard]] std::size_t vertices_of_edges() const noexcept { return output_of_.size(); }
-  /// Sets the edges of the whole mesh, which has this many vertices. The edges must outlive the part. Every vertex must
-  /// have at most one output.
+  /// Sets the edges of the whole mesh, which has vertex_count vertices. The edges must outlive the part. Every vertex
+  /// must have at most one output.
   void set_edges(std::span<const std::array<std::uint32_t, 2>> edges, std::size_t vertex_count);
   [[nodiscard]] std::size_t face_count() const noexcept { return face_offsets_.size() - 1; }
   /// Returns the index that a vertex of the mesh has in vertices(). May be called only for parts that were created with
@@ -92,8 +92,9 @@ class JudgedPart {
   [[nodiscard]] std::uint32_t place_of(std::uint32_t vertex) const noexcept { return places_[vertex]; }
 
   /// Computes the normals of faces and elements from the positions of vertices(). The normal of a face is a cross
-  /// product. The normal of an element is the weighted sum of face normals (normals/weighting.h), or the given sum.
-  /// Sums that are only rounding error are not removed.
+  /// product. The normal of an element is the sum that `sums` gives, if the part was created with `sums`, and otherwise
+  /// the weighted sum of face normals (normals/weighting.h). Such a weighted sum becomes zero if it consists only of
+  /// rounding errors of its terms (kRoundingOfTerms).
   void normals(std::span<const Vec3d> positions, PartNormals& result) const;
 
   /// Returns a bound of the change of an element's normal if these positions are rounded to float32. Treats the weights

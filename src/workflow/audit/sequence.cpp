@@ -199,7 +199,8 @@ std::vector<JudgedOutput> find_outputs(const Motion& motion, const NormalGroups&
   return outputs;
 }
 
-// Finds the vertices that move. If peer processes examine the other segments, examines only the segments of this run.
+// Finds the vertices that move in some segment. If peer processes examine the other segments, examines only the
+// segments of this process, and asks the peers which vertices move in theirs.
 Result<std::vector<bool>> moving_vertices(const SegmentsOfRun& segments) {
   const Motion& motion = segments.stream.motion();
   std::vector<bool> moves(motion.topology.vertex_count());

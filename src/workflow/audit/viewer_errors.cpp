@@ -86,8 +86,8 @@ void ViewerErrors::add_sample(BlendSource& source, const MeasuredSample& sample)
   for (std::size_t h = 0; h < weights_.size(); ++h) {
     if (is_judged[h]) continue;
     const PlacedPart* where = &sample.placed;
-    // Viewers that play the same weights and store normals in the same way render the same normals. Only the first of
-    // such viewers is judged. of_kept has for each entry of kept_ the error that is known already, or nullptr.
+    // The error that is known already for each entry of kept_, or nullptr. Viewers that play the same weights and store
+    // normals in the same way render the same normals, so only the first of such viewers is judged.
     std::vector<const MotionError*> of_kept(kept_.size());
     std::optional<SkinRule> is_right_for;  // the rule for which right_ was computed
     double displaced = 0;

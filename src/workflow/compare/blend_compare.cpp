@@ -135,7 +135,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// A meter of the errors of a subject's normals. It measures at one row of weights after the other.
+// A meter of the errors of a subject's normals. It measures at the rows of weights one after the other.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)

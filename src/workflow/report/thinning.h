@@ -21,7 +21,7 @@ namespace chronormal::inline internal {
 /// Returns the size, in bytes, of all arrays of a report together.
 [[nodiscard]] std::size_t bytes_of(const ReportModel& model);
 
-/// Leaves out data of a model until its arrays have about this many bytes, or until only required data are left. Lists
+/// Leaves out data of a model until its arrays have about most_bytes bytes, or until only required data are left. Lists
 /// in model.thinned what was left out. May be called once for a model.
 void thin_out(ReportModel& model, std::size_t most_bytes);
 

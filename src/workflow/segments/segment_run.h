@@ -152,13 +152,13 @@ struct RecordedRun : SegmentRun {
   /// The results of all segments of a shard. Results that an earlier run has kept are among them.
   std::vector<Found> found = {};
 
-  /// Returns true if this run cannot keep data of all segments at once. Commands then refuse options that need such
+  /// Returns true if this run never has the data of all segments together. Commands then refuse options that need such
   /// data.
   [[nodiscard]] bool is_divided() const noexcept { return shard || keep || !known.empty(); }
 
-  /// Begins the run as SegmentRun::begin() does, and calls add(result) for each known segment. Errors: kUsage if the
-  /// known segments are not the first of the share, or if fits(result) is false for one of them. The message names
-  /// `task`, for example "audit".
+  /// Begins as SegmentRun does, and calls add(result) for each known segment. Errors: kUsage if the known segments are
+  /// not the first of the share, or if fits(result) is false for one of them. The message of an error names the task,
+  /// for example "audit".
   template <class Fits, class Add>
   [[nodiscard]] Status begin(std::size_t segments, std::size_t steps, const char* task, const Fits& fits,
                              const Add& add) {

@@ -1,4 +1,4 @@
-/// Finds which weighting an author's normals follow. Private to workflow.
+/// Finds the weighting of faces that an author's normals follow. Private to workflow.
 ///
 /// The program that made a mesh weighted the faces around a vertex in its own way (normals/weighting.h). The stored
 /// normals show which weighting it used. The true normals follow the same weighting, so a difference from another

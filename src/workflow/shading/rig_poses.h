@@ -48,7 +48,7 @@ class RigPoses {
   std::vector<double> together_;  // (targets, targets), the results of togetherness()
 };
 
-/// Returns those of the given poses that have weights for a mesh, as weights of its targets.
+/// Returns the given poses that have weights for a mesh, each as a list of weights of the mesh's targets.
 [[nodiscard]] PoseList poses_of_mesh(std::span<const RigPose> poses, const GltfMesh& mesh);
 
 /// Checks that the given poses fit a glTF file. Errors: kInvalidInput if a pose names a target that no mesh with

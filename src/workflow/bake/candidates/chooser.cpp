@@ -174,7 +174,7 @@ class Chooser {
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
-  // Returns true if the best candidate is accurate enough and has at most this many bytes, so that no other candidate
+  // Returns true if the best candidate is accurate enough and takes at most `bytes` bytes, so that no other candidate
   // must be tried. A plan must measure all candidates, so the result is then always false.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
@@ -432,8 +432,8 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     alone.lines = FittedLines();
     const RightNormals& rights = chooser.making(false).rights;
     chooser.consider(own_candidate({source.shading, source.terms, alone, source.base_normals}, rights, Lengths::kFree));
-    // If the author's normals are known, the deltas of the file may be right at its keys. Deltas that are fitted to
-    // animations would change the normals there, so such deltas are not tried.
+    // Tries no deltas that are fitted to animations if the author's normals are known. The deltas of the file may then
+    // be right at its keys, and fitted deltas would change the normals there.
     const bool has_author = source.terms.follow_keys() && !options.weighting;
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));

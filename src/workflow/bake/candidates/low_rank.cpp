@@ -42,9 +42,9 @@ constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
 // remain after least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// If no tried number of correction targets reaches the tolerance, the first number is taken whose error is at most
-// kNoGain times the smallest error of all tried numbers, provided that at least kManyMore times as many targets were
-// tried.
+// Limits for a fit in which no tried number of correction targets reaches the tolerance. The first number is taken
+// whose error is at most kNoGain times the smallest error of all tried numbers, provided that at least kManyMore times
+// as many targets were tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
 // Positions in a gap between keys, from 0 to 1, at which a fit is checked. The fit does not use these positions.
@@ -116,8 +116,8 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // A piece of a curve takes three rows if its neighbours are left out, and otherwise two rows, because it shares its
-    // ends.
+    // Estimates at how many keys there is room for rows. A piece of a curve takes three rows if its neighbours are left
+    // out, and otherwise two rows, because it shares its ends.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -196,8 +196,8 @@ std::vector<float> refitted_own(MissingNormals& missing, std::size_t targets) {
   return result;
 }
 
-// Counts the products of two weights that are not zero in these poses. With area weights, n(w) is quadratic, so it has
-// at most this many missing terms.
+// Counts the products of two weights that are not zero in the given poses. With area weights, n(w) is quadratic, so at
+// most this many terms of n(w) are missing.
 std::size_t products_of(const PoseList& poses) {
   std::size_t active = 0;
   for (std::size_t i = 0; !poses.empty() && i < poses[0].size(); ++i)
@@ -484,8 +484,8 @@ Candidate low_rank_candidate(const Making& making, Candidate own) {
       find_low_rank(making.rights, making.weights, making.judge.vertices(), making.source.shading.element_of_vertex,
                     result.own, {making.most_extras / for_each, making.tolerance, making.keeps_across, refits_own});
   const std::size_t extras = found.extras.size();
-  // Deltas along N help viewers that add up deltas, because they allow turns by more than a right angle. In viewers
-  // that keep only directions, such deltas are wrong.
+  // Keeps deltas along the stored normal for viewers that add up deltas, because they allow turns by more than a right
+  // angle. In viewers that keep only directions, such deltas are wrong.
   const bool keeps_along = std::none_of(making.viewers.begin(), making.viewers.end(),
                                         [](const Viewer& viewer) { return viewer.normals == NormalRule::kUnit; });
   std::vector<Share> shares = shares_of(making.rights, std::move(found.extras), making.lengths,

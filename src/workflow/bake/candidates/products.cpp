@@ -116,7 +116,7 @@ std::vector<Asked> asked_vertices(const VerticesOfElements& shown, const RightNo
   return result;
 }
 
-// Collects the vectors that vector_of(asked) returns, except zeros.
+// Collects the vectors that vector_of() returns for the vertices in `asked`, except zeros.
 template <class VectorOf>
 VertexVectors gather(std::span<const Asked> asked, const VectorOf& vector_of) {
   std::vector<Vec3f> all(asked.size());
@@ -228,8 +228,8 @@ class Corrector {
     form_.extras.push_back(std::move(vectors));
   }
 
-  // Appends two correction targets: the first has the first vector of each vertex, and the other the second. Leaves out
-  // a correction target that has only zeros.
+  // Appends two correction targets: the first has the first vector of each vertex, and the second has the second
+  // vector. Leaves out a correction target that has only zeros.
   void append_parts(const ExtraWeight& weight, std::span<const Asked> asked,
                     const std::vector<std::array<Vec3d, 2>>& vectors) {
     for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) {

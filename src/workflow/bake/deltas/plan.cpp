@@ -30,7 +30,8 @@ struct MeshUse {
   const WeightUse& use;
   bool is_driven;
 
-  // If there are no animations, a program may set any weights, so all targets count as active together.
+  // Returns true if targets i and j may be active together. If there are no animations, a program may set any weights,
+  // so the result is true for all targets.
   [[nodiscard]] bool together(std::size_t i, std::size_t j) const { return !is_driven || use.together(i, j); }
   [[nodiscard]] double largest_weight(const ExtraWeight& extra) const {
     const auto largest = [this](std::size_t i) { return is_driven ? use.largest(i) : std::fmax(1, use.largest(i)); };
@@ -152,8 +153,9 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
   while (count < order.size() && (turn + candidates[order[count]].turn) * kDegreesPerRadian <= tolerance)
     turn += candidates[order[count++]].turn;
   order.resize(count);
-  // A term along a normal does not turn this normal alone, but the sum of several such terms may be longer than the
-  // normal and turn it. If the pairs together turn a normal by more than the tolerance, only half of them are left out.
+  // Leaves out fewer pairs if their terms together turn a normal too far. A term along a normal does not turn this
+  // normal alone, but the sum of several such terms may be longer than the normal and turn it. As long as the pairs
+  // turn a normal by more than the tolerance, only half of them are left out.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

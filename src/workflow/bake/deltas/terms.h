@@ -130,7 +130,7 @@ class VertexTerms {
     return largest <= kLongest * length_of_base;
   }
 
-  /// Returns a term of n(w) as a delta of the vertex.
+  /// Converts a term of n(w) of the element to a delta of the vertex.
   [[nodiscard]] Vec3d operator()(const Vec3d& term) const noexcept { return scale_ * turn(term); }
   /// Converts the best single delta of an element to a delta of the vertex. `delta` is scaled so that |n(0)| is 1.
   [[nodiscard]] Vec3d end_delta(const Vec3d& delta, const ControlNormals& normals) const noexcept;

@@ -23,7 +23,7 @@
 
 namespace chronormal::inline internal {
 
-/// Rounds a number of floats up to whole groups, so that loops handle a whole group at once.
+/// Rounds a number of floats up to a multiple of 16, so that loops handle whole groups of floats.
 [[nodiscard]] constexpr std::size_t padded_to(std::size_t count) noexcept {
   constexpr std::size_t kPadding = 16;
   return (count + kPadding - 1) / kPadding * kPadding;

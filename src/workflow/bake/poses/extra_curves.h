@@ -1,5 +1,5 @@
-/// Weights of correction targets that follow no formula. Such weights are curves over the tracks of a file. Private to
-/// workflow.
+/// Computes weights of correction targets that follow no formula. Such weights are curves over the tracks of a file.
+/// Private to workflow.
 ///
 /// A curve has values at nodes. Nodes are the keys of a track and, if the weights of the track change between two keys,
 /// the ends and middles of equal pieces of each gap between keys. In each piece the curve is a parabola through the
@@ -108,7 +108,7 @@ struct ExtraDrivers {
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
   /// Returns poses that stand still (outside of animations) with the weights of correction targets appended. If curves
   /// drive the correction targets, these weights are zero in the expressions of an avatar, which come after the poses
-  /// of `rest`.
+  /// for which `rest` has weights.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// Returns a track with the weights of correction targets. Cubic splines get more keys until the errors of formulas
   /// turn no normal by more than `tolerance` or spline_tolerance, in radians. If that takes more than most_keys keys,

@@ -31,14 +31,14 @@ struct PlayedPose {
 };
 
 /// Returns keys of a track, in ascending order. After each of these keys, the track shows something new, because
-/// weights change, come to rest or jump at the key. If there are more than `most` such keys, prefers keys after which a
+/// weights change, come to rest or jump there. If there are more than `most` such keys, prefers keys after which a
 /// weight, or the product of two weights, is larger than after all other keys, so that a wink in a long animation is
-/// included. The rest is evenly spaced among the other keys.
+/// included. The rest of the result is evenly spaced among the other keys.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
 
 /// Returns the indices of at most `most` tracks, in ascending order. If there are more tracks, prefers tracks in which
-/// a weight, or the product of two weights, is larger than in all other tracks. The rest is evenly spaced among the
-/// other tracks. All tracks must have the same targets.
+/// a weight, or the product of two weights, is larger than in all other tracks. The rest of the result is evenly spaced
+/// among the other tracks. All tracks must have the same targets.
 [[nodiscard]] std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std::size_t most);
 
 /// Returns the poses that a viewer plays from the tracks of a mesh, in order. Leaves out a pose that looks the same as

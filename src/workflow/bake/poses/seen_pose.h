@@ -26,7 +26,7 @@ struct SeenPose {
   friend bool operator==(const SeenPose&, const SeenPose&) = default;
 };
 
-/// Returns true if any of these poses has a skin.
+/// Returns true if any of the poses has a skin, which transforms the normals.
 [[nodiscard]] bool any_skinned(std::span<const SeenPose> poses);
 /// Returns the given poses, all with the same skin. If `skin` is nullptr, the poses have no skin.
 [[nodiscard]] std::vector<SeenPose> seen_through(PoseList poses, const MeshSkin* skin);

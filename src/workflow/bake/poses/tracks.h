@@ -53,17 +53,17 @@ struct ExtendedTrack {
 inline constexpr std::size_t kBytesPerWeight = 48;
 
 /// Extends a track by the weights of correction targets. Cubic splines get more keys until the errors of these weights
-/// turn no normal by more than tolerance (radians), as far as float32 allows. If that takes more than most_keys keys,
-/// the result has no values, but the number of keys that it would have.
+/// turn no normal by more than tolerance (radians), as far as float32 allows. If the track needs more than most_keys
+/// keys, the result has no values, but the number of keys that it would have.
 [[nodiscard]] ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            double tolerance,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
 /// Extends a LINEAR track by the weights of correction targets, so that it stays LINEAR. The gap between two keys gets
-/// the given number of straight pieces of equal length. The weights in the file play as before (up to float32), and the
-/// weights of correction targets are right at all keys. If the pieces take more than most_keys keys, the result has no
-/// values, but the number of keys that it would have. pieces must have one number for each pair of neighbouring keys,
-/// and none of these numbers may be 0.
+/// as many straight pieces of equal length as `pieces` tells. The weights in the file play as before (up to float32),
+/// and the weights of correction targets are right at all keys. If the pieces take more than most_keys keys, the result
+/// has no values, but the number of keys that it would have. pieces must have one number for each pair of neighbouring
+/// keys, and none of these numbers may be 0.
 [[nodiscard]] ExtendedTrack straight_track(const WeightTrack& track, std::span<const ExtraWeight> extras,
                                            std::span<const std::uint32_t> pieces,
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
