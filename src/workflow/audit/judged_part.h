@@ -19,8 +19,8 @@ namespace chronormal::inline internal {
 /// The number of elements or outputs that one task of a thread handles.
 inline constexpr std::size_t kRange = 4096;
 
-/// The limit below which a sum of vectors counts as zero, relative to the sum of the lengths of its vectors. A shorter
-/// sum consists only of rounding errors and has no direction.
+/// The limit below which a sum of vectors counts as zero, relative to the sum of the sizes (largest components) of its
+/// vectors. A shorter sum consists only of rounding errors and has no direction.
 inline constexpr double kRoundingOfTerms = 1e-13;
 
 /// Returns a bound of the change of a polygon's normal if the coordinates of its corners are rounded to float32.
@@ -55,7 +55,7 @@ class JudgedPart {
  public:
   /// Creates the part. Elements and faces of the outputs are renumbered for this part, but vertices and corners keep
   /// their numbers in the mesh. If needs_faces is false, normals() may leave out the normals of faces. If the weighting
-  /// is area, `groups` need no corners. If `sums` is given, this object supplies the normals of elements and must
+  /// is area, `groups` need no corners. If `sums` is not nullptr, the normals of elements come from `sums`, which must
   /// outlive the part.
   JudgedPart(const Topology& topology, const NormalGroups& groups, Weighting weighting,
              std::vector<JudgedOutput> outputs, bool needs_faces = true, const AuthorSums* sums = nullptr);

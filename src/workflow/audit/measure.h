@@ -364,7 +364,7 @@ void keep_sample(const KeptErrors& kept, std::span<const JudgedOutput> outputs, 
                  bool is_weight, double at);
 
 /// Measures all samples of a subject's segments, and writes the errors into the subject. Calls each_sample with a
-/// MeasuredSample for every sample. Errors: those that reading the segments returns.
+/// MeasuredSample for every sample. Errors: those of the functions of `segments`.
 template <class Source, class Segments, class EachSample>
 [[nodiscard]] Status measure(Source& source, Segments segments, const JudgedPart& part, AuditRule rule,
                              AuditSubject& subject, const KeptErrors& kept, const EachSample& each_sample) {

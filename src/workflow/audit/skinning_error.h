@@ -15,7 +15,7 @@ class SkinningErrors {
  public:
   /// Measures the error of the skin at the moment at which the source is placed. Compares the true normal n(w),
   /// transformed by the skin and without the author's offset, with the sum of face normals of the skinned positions.
-  /// Mirrored faces keep their outer side. Skips a vertex if its n(w) is below kVanished of its largest length, or if
+  /// Mirrored faces keep their outer side. Skips a vertex if |n(w)| is below kVanished times its largest length, or if
   /// the face normals of the skinned surface nearly cancel.
   void add_sample(const BlendSource& source, const MeasuredSample& sample);
 

@@ -51,8 +51,8 @@ struct FaceFigure {
   std::size_t face = 0, segment = 0;
   std::vector<std::array<Vec3d, 2>> corners;  ///< the positions of each corner at t = 0 and at t = 1
   std::vector<double> times;                  ///< (S) the times t, from 0 to 1
-  /// The exact unit normal at each sample, (S). If the area is zero at a sample, its limit, or zero if there is no
-  /// limit.
+  /// The exact unit normal at each sample, (S). If the area is zero at a sample, the entry is the limit of the normal,
+  /// or zero if there is no limit.
   std::vector<Vec3d> normals;
   std::vector<double> lengths;  ///< (S) the length of n(t), which is twice the area
   /// The paper's matrix M (eq. 8), by rows. It is the affine map that takes the first, the second and the last corner

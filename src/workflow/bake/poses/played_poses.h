@@ -31,7 +31,7 @@ struct PlayedPose {
 };
 
 /// Returns keys of a track, in ascending order. After each of these keys, the track shows something new, because
-/// weights change, come to rest or jump there. If there are more than `most` such keys, prefers keys after which a
+/// weights change, come to rest or jump at the key. If there are more than `most` such keys, prefers keys after which a
 /// weight, or the product of two weights, is larger than after all other keys, so that a wink in a long animation is
 /// included. The rest of the result is evenly spaced among the other keys.
 [[nodiscard]] std::vector<std::size_t> telling_keys(const WeightTrack& track, std::size_t most);
