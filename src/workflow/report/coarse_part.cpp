@@ -134,8 +134,8 @@ Kept keep_neighbourhoods(const ReportModel& model, std::size_t number, std::size
   return kept;
 }
 
-// Replaces the given triangles by about most_triangles larger triangles, which use the same vertices. Keeps the border
-// of the triangles if possible.
+// Returns about most_triangles larger triangles, which replace the given triangles and use the same vertices. Keeps the
+// border of the triangles if possible.
 std::vector<std::uint32_t> simplified(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
                                       std::size_t most_triangles) {
   if (triangles.empty() || most_triangles == 0) return {};

@@ -37,9 +37,9 @@ namespace {
 
 constexpr std::size_t kMostRows = 480, kBytes = std::size_t{700} << 20, kFewestRows = 48;
 constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
-// Parts of the tolerance in degrees. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the error that
-// 99.9 % of all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that should
-// remain after least squares.
+// Errors in a fit, as parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfSingular: the
+// error that 99.9 % of all samples should not exceed with singular vectors alone. kPartOfWorst: the largest error that
+// should remain after least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
 // Limits for a fit in which no tried number of correction targets reaches the tolerance. The first number is taken

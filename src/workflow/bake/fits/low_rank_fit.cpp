@@ -24,8 +24,8 @@ constexpr std::size_t kSampledPoints = 1500;
 constexpr double kShortQuantile = 0.02;
 constexpr float kShortest = 1e-3F, kPartOfLack = 0.1F;
 constexpr int kFitRounds = 3;
-// Parts of the tolerance in degrees. Points with an error beyond kPartThatCounts count more. Points with an error
-// beyond kPartToRefit get a fit of their own.
+// Errors of points, as parts of the tolerance. Points with an error beyond kPartThatCounts count more. Points with an
+// error beyond kPartToRefit get a fit of their own.
 constexpr double kPartThatCounts = 0.6, kPartToRefit = 0.4, kPartOfBad = 0.3;
 constexpr std::size_t kMostRefitted = 1500;
 // The limit of multiplications in the fits of all single points. If there are many correction targets, each fit takes

@@ -24,7 +24,7 @@ constexpr std::size_t kQuadraticPoints = 8000;
 // of them would take too long.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
-// Parts of the tolerance in degrees. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which
+// Angles as parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which
 // a normal may turn if an entry of a delta is left out.
 constexpr double kPartOfNeed = 0.05, kPartOfEntry = 0.01;
 // The shortest length of a normal in the fit, relative to n(0). Shorter normals count as if they had this length,

@@ -46,8 +46,9 @@ Result<NormalGroups> groups_of(MotionStream& stream, const BakeOptions& options)
                               .normal_of_corner = options.normal_of_corner});
 }
 
-// Returns the weighting that the stored normals of keyframe 0 clearly follow. Returns area if there is no such
-// weighting, or if fits to this weighting would take too much memory.
+// Returns the weighting that the stored normals of keyframe 0 clearly follow, for a bake whose options give no
+// weighting. Returns area if there is no such weighting, or if the fits of all segments to it would take too much
+// memory.
 Weighting weighting_of(MotionStream& stream, const NormalGroups& groups, const BakeOptions& options) {
   constexpr double kMostBytes = 1 << 30, kBytesOfFit = 80;
   const Motion& motion = stream.motion();
