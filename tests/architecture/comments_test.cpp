@@ -1,5 +1,6 @@
 // Tests that no comment begins like a fragment. The words in refused_openers.txt begin phrases that are not whole
-// sentences. A function's comment begins with a verb, a type's with a noun, and a note in code is a sentence.
+// sentences. The comment of a function must begin with a verb, the comment of a type with a noun, and a note inside a
+// function must be a sentence.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ std::vector<std::string> refused_openers() {
   return openers;
 }
 
-// Returns the comment in a line that has nothing else, without the mark `mark`.
+// Returns the text of a comment line that begins with `mark` and has no code before it, or nothing.
 std::optional<std::string_view> comment_in(std::string_view line, std::string_view mark) {
   const std::size_t begin = line.find_first_not_of(' ');
   if (begin == std::string_view::npos || !line.substr(begin).starts_with(mark)) return std::nullopt;

@@ -1,5 +1,5 @@
 // Tests that no two headers of the product use one name for different things. The check is that every_header.cpp, which
-// CMake makes from every_header.cpp.in, compiles. This test makes sure that no header is left out.
+// CMake makes from every_header.cpp.in, compiles. This file makes sure that every_header.cpp leaves out no header.
 
 #include "tests/architecture/every_header.h"
 

@@ -1,6 +1,7 @@
-// Tests which files include which others. Each floor is a folder, a room is a folder in it, and a room may have rooms
-// inside. A file may include only its own room, the rooms before its own on its floor or in its room, and the floors
-// before its own. Paths alone decide, so this test needs no list of files. docs/architecture.md describes the order.
+// Tests which files include which others. A floor is a folder, a room is a folder in a floor, and a room may contain
+// smaller rooms. A file may include only its own room, the rooms before its own on its floor or in its room, and the
+// floors before its own. Paths alone decide, so this test needs no list of files. docs/architecture.md describes the
+// order.
 
 #include <gtest/gtest.h>
 
@@ -82,9 +83,9 @@ std::vector<std::string> parts_of(const std::string& path) {
 }
 
 // The place of a file in the order: the numbers of its floor, of its room on this floor, and of the room inside this
-// room. Room 0 is the floor itself, which comes before its rooms. The program begins in main.cpp, which therefore comes
-// after the rooms of its floor. A public header comes before the rooms inside its room, and a private file of the room
-// itself after them.
+// room. Room 0 has the files directly in the floor, which come before its rooms. main.cpp, in which the program begins,
+// comes after the rooms of its floor. A public header comes before the rooms inside its room, and a private file of the
+// room itself after them.
 struct Place {
   std::size_t floor = 0;
   std::size_t room = 0;
@@ -150,7 +151,7 @@ std::string included_by(const std::string& line) {
   return last == std::string::npos ? "" : line.substr(first + 1, last - first - 1);
 }
 
-// Returns a description of each include in a file that breaks the rule.
+// Describes each #include in a file that breaks the order of floors and rooms.
 std::vector<std::string> violations(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   const auto own = place_of(path);
@@ -351,7 +352,8 @@ TEST(Layers, private_headers_declare_internal_names) {
   }
 }
 
-// A guard that has the name of another file hides one of the two headers where both are included.
+// If the include guard of a header has the name of another header, one of the two is ignored in files that include
+// both.
 TEST(Layers, guards_of_headers_have_the_names_of_their_files) {
   for (const fs::path& file : product_files()) {
     if (file.extension() != ".h" || file.string().ends_with("-inl.h")) continue;

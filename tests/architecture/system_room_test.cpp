@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 const std::string kRoom = "src/io/system/";
 
-// Files of the core that may call Linux and POSIX threads directly, under #if conditions. The core cannot include
+// Files of the core that may call Linux and POSIX threads directly, inside #if blocks. The core cannot include
 // src/io/system/.
 const std::array<std::string, 2> kCore = {"src/core/memory.cpp", "src/core/parallel.cpp"};
 
@@ -43,7 +43,7 @@ constexpr std::string_view kWords[] = {
     "isatty",       "sigfillset",    "strdup",        "std::ifstream",  "std::ofstream", "std::fopen",
     "fopen",        "std::rename",   "std::to_chars", "std::from_chars"};
 
-// Parts of lines that only src/io/system/ may have: paths of Linux, and conversions between paths and text.
+// Text that only the files of src/io/system/ may contain: paths of Linux, and conversions between paths and text.
 constexpr std::string_view kParts[] = {"\"/proc/",
                                        "\"/sys/",
                                        "filesystem::path(",
@@ -87,14 +87,14 @@ bool includes_system(std::string_view line) {
                      [&](std::string_view header) { return line.substr(kInclude.size()).starts_with(header); });
 }
 
-// Returns the lines of a file that only src/io/system/ may have. Ignores comments.
+// Returns the lines of a file that use what only src/io/system/ may use. Ignores comments.
 std::vector<std::string> refused(const std::string& path, const std::string& text) {
   const bool is_core = std::find(kCore.begin(), kCore.end(), path) != kCore.end();
   std::vector<std::string> found;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     std::string code = line.substr(0, line.find("//"));
-    // fs::path() makes an empty path and converts no text, so it is permitted.
+    // fs::path() makes an empty path and converts no text, so this call is permitted everywhere.
     for (std::size_t at = 0; (at = code.find("fs::path()")) != std::string::npos;) code.erase(at, 10);
     const bool has =
         std::any_of(std::begin(kWords), std::end(kWords), [&](auto word) { return has_word(code, word); }) ||

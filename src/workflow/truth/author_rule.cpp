@@ -13,21 +13,21 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The limits of author_rule.h: kTells and kFollowsRule are angles in degrees, and kClear is a share of the distance of
-// triangles by area.
+// Limits for accepting a rule (see author_rule.h). kTells and kFollowsRule are angles in degrees. kClear is the largest
+// ratio of a candidate's distance to the distance of triangles by area.
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;
 constexpr double kOff = 0.001;        // degrees: a normal that is farther from its sum does not follow the rule
 constexpr double kNothingLeft = 180;  // degrees: the distance if both sides of a sheet add up to zero
 constexpr std::size_t kMostKeys = 48, kMostAsked = 5000, kMostFollowers = 20000, kAskedAtOnce = 64;
 constexpr std::uint32_t kNoVertex = GltfShading::kNoElement;
-// The number of candidates. A candidate adds up triangles or quads, over the element's own corners or over its whole
-// point, by one of the weightings.
+// The number of candidates for the author's rule. A candidate adds up the normals of triangles or of quads, over the
+// element's own corners or over all corners at its point, with one of the weightings.
 constexpr std::size_t kKinds = 4, kCandidates = kKinds * kWeightings.size();
 
 double degrees_between(const Vec3d& a, const Vec3d& b) { return angle_between(a, b) * kDegreesPerRadian; }
 
-// Lists the base (nullopt), and at most most - 1 of the targets that store normals, evenly spaced in the order of
-// targets.
+// Lists the keys to examine: the base (nullopt), and at most `most` - 1 of the targets that store normals, evenly
+// spaced in the order of targets.
 std::vector<std::optional<std::size_t>> keys_to_ask(const GltfShading& shading, std::size_t most) {
   const std::vector<std::size_t> targets = targets_with_normals(shading);
   std::vector<std::optional<std::size_t>> keys = {std::nullopt};
@@ -40,7 +40,7 @@ StoredKey key_of(const GltfShading& shading, std::optional<std::size_t> target) 
   return target ? StoredKey(shading, *target) : StoredKey(shading);
 }
 
-// The sides of the surface that the author shows. At each element, this is the side of the stored base normal.
+// The side of the surface that the author's normals show at each element: the side of the stored base normal.
 class Sides {
  public:
   Sides(const GltfShading& shading, std::span<const std::uint32_t> vertex_of) : other_(vertex_of.size()) {
@@ -62,8 +62,8 @@ class Sides {
   std::vector<char> other_;
 };
 
-// Returns the edges around an element, one edge to each neighbouring point. for_edges(visit) must visit all of these
-// edges.
+// Returns the edges that leave the point of an element, one edge to each neighbouring point. for_edges(visit) must call
+// visit(from, to) for the edges of the element, and may repeat edges.
 template <class ForEdges>
 std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges& for_edges) {
   std::vector<OffsetEdge> edges;
@@ -80,7 +80,8 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
-  // The numbers of normals that do not tell, and of those among them that no candidate is near.
+  // `silent` is the number of stored normals at which all candidates are nearly equal, so that the normals tell
+  // nothing. `silent_off` is the number of such normals that are more than kTells degrees from triangles by area.
   std::size_t silent = 0, silent_off = 0;
 
   void add(const Distances& other) {
@@ -92,7 +93,7 @@ struct Distances {
   }
 };
 
-// Returns the value below which this share of the values lies. Changes the order of the values.
+// Returns the value below which the share `share` of the values lies. Changes the order of the values.
 double quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
@@ -100,8 +101,8 @@ double quantile(std::vector<float>& values, double share) {
   return static_cast<double>(values[static_cast<std::size_t>(place)]);
 }
 
-// The changes of a rule around normals that do not follow it. A change is made only if these normals then follow the
-// changed rule.
+// The changes of a rule around stored normals that do not follow the rule. A change is made only if these normals then
+// follow the changed rule.
 class Mending {
  public:
   Mending(const GltfShading& shading, Polygons& polygons, Weighting weighting, std::span<const std::uint32_t> vertex_of)
@@ -134,7 +135,7 @@ class Mending {
     });
   }
 
-  // Joins triangles to polygons, and splits polygons, if more stored normals then follow their sums.
+  // Joins triangles to polygons, and splits polygons, if more stored normals then follow the sums of their elements.
   void mend_polygons() {
     constexpr std::size_t kSweeps = 8;
     bool any = true;
@@ -148,7 +149,8 @@ class Mending {
 
   [[nodiscard]] std::vector<bool> whole_points() const { return {whole_.begin(), whole_.end()}; }
 
-  // Returns the median over all elements of the angle between stored normal and sum, in degrees.
+  // Returns the median over all elements of the angle between the stored normal and the sum of face normals, in
+  // degrees.
   [[nodiscard]] double distance() const {
     std::vector<float> all;
     for (std::size_t e = 0; e < off_.size(); ++e)
@@ -198,9 +200,9 @@ class Mending {
     return unit(sum);
   }
 
-  // Returns the largest angle between the stored normals of an element and its sums, in degrees. At keys, the offset
-  // that the stored normal has in the base is applied first. If no key turns the element, returns the angle in the
-  // base.
+  // Returns the largest angle between the stored normals of an element and its sums of face normals, over all keys that
+  // turn the element, in degrees. The offset that the stored normal has in the base is applied at each key first. If no
+  // key turns the element, returns the angle in the base.
   [[nodiscard]] double off(std::uint32_t element, bool whole) const {
     if (vertex_of_[element] == kNoVertex) return 0;
     // Counts each corner of a polygon once, even if several triangles of the polygon meet there.
@@ -252,8 +254,8 @@ class Mending {
     return false;
   }
 
-  // Makes the best polygon that begins with this triangle. Changes nothing and returns false if no polygon is better
-  // than the present ones.
+  // Makes the best polygon whose first triangle is t. Changes nothing and returns false if no such polygon is better
+  // than the present polygons.
   bool mend_at(std::size_t t, std::size_t end) {
     constexpr std::size_t kLongest = 130;
     std::size_t best = 0, most = 0;
@@ -273,8 +275,8 @@ class Mending {
     return best > 0;
   }
 
-  // Returns by how many more elements would follow their sums if a run of triangles were one polygon. Elements that
-  // only come nearer to their sums do not count, since that may be chance.
+  // Returns by how many more elements would follow their sums if `count` triangles from `first` on were one polygon.
+  // Elements that only come nearer to their sums do not count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
     // The first triangle and the number of triangles of each polygon that the run takes apart.
     std::vector<std::pair<std::size_t, std::size_t>> before;
@@ -310,8 +312,8 @@ class Mending {
   std::vector<char> whole_;  // for each element, 1 if it adds up its whole point
   std::vector<double> off_;
   std::vector<std::uint32_t> point_offsets_, corners_at_;
-  // The number of elements that may still be tried. It limits the time that is spent on normals that no polygon
-  // corrects.
+  // The number of elements that may still be tried. This number limits the time that is spent on normals that no
+  // polygon corrects.
   std::size_t budget_ = 400000;
 };
 
@@ -362,9 +364,9 @@ class Candidates {
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
   // Returns the candidate with the smallest distance, measured at keys, or else in the base. The distance of a
-  // candidate is the angle in degrees that this share of the normals does not exceed. If the smallest distance is above
-  // `clear` times the distance of weighting by area, no candidate is accepted, except weighting by area if or_area is
-  // true. Returns nothing if no candidate with a distance of at most `follows` is accepted.
+  // candidate is the angle in degrees that the share `share` of the normals does not exceed. If the smallest distance
+  // is above `clear` times the distance of weighting by area, no candidate is accepted, except weighting by area if
+  // or_area is true. Returns nothing if no candidate with a distance of at most `follows` is accepted.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;
@@ -535,8 +537,8 @@ class Candidates {
   std::span<const std::uint32_t> vertex_of_;
   StoredKey base_;
   std::vector<AuthorSums> of_kinds_;
-  // For each kind, the index of its sums in of_kinds_; if no point has several elements, a whole point is the same as
-  // own corners.
+  // For each kind of sum, the index of its sums in of_kinds_. If every point has a single element, the sums over whole
+  // points and over own corners are the same object.
   std::vector<std::size_t> sums_of_kind_;
   std::optional<Sides> sides_;
   std::vector<std::optional<std::size_t>> asked_keys_;
@@ -582,8 +584,8 @@ FoundRule find_author_rule(const GltfShading& shading) {
       rule.is_followed = false;
       return false;
     };
-    // If a tenth of the normals follow a rule exactly, that rule is the rule of the mesh, even if most of the mesh was
-    // cut or bent later.
+    // A rule that a tenth of the normals follow exactly is the rule of the mesh, even if most of the mesh was cut or
+    // bent later.
     constexpr double kTenth = 0.1, kExactly = 0.003, kMuchClearer = 1.0 / 3;
     std::optional<std::size_t> found = candidates.closest(kTenth, kExactly, kMuchClearer, false);
     if (!found || !accept(*found, false)) {

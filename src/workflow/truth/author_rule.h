@@ -37,7 +37,8 @@ struct AuthorRule {
   bool any_whole_point = false;  ///< true if some elements add up more than the corners that show them
   std::size_t telling = 0;       ///< the number of stored normals that tell rules apart
   double distance = 0;           ///< the median distance of the candidate that was found, in degrees
-  /// Degrees: the median, over these normals, of the largest angle between a candidate and triangles by area.
+  /// The median over all stored normals that tell rules apart: the median of the largest angle between a candidate and
+  /// triangles by area, in degrees.
   double spread = 0;
 
   [[nodiscard]] bool is_plain() const noexcept {
@@ -50,9 +51,9 @@ struct FoundRule {
   AuthorSums sums;  ///< the sums of the rule; empty if the rule is plain and no target stores normals
 };
 
-/// Finds the rule of a mesh. The groups of the shading must have their corners, and its deltas of normals must be kept.
-/// Takes O(corners) for each candidate, base and target, but examines some tens of thousands of normals at most. Uses
-/// all cores. The result has the same bits on any number of threads.
+/// Finds the rule of a mesh. Preconditions: the groups of the shading have their corners, and the shading has kept its
+/// deltas of normals. Takes O(corners) for each candidate in the base and in each target, but examines some tens of
+/// thousands of normals at most. Uses all cores. The result has the same bits on any number of threads.
 [[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

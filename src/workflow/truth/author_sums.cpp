@@ -110,7 +110,7 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
   constexpr std::uint32_t kNone = GltfShading::kNoElement;
   const std::size_t triangles = shading.set.topology.face_count(), elements = shading.groups.size();
   const auto is_wanted = [&](std::uint32_t e) { return e != kNone && (wanted.empty() || wanted[e]); };
-  // Lists the elements that add up all corners at a point.
+  // Lists, for each point, the elements whose sums have all corners at this point.
   std::vector<std::vector<std::uint32_t>> whole_at;
   std::vector<std::uint32_t> list_of_point;
   if (std::find(whole_point.begin(), whole_point.end(), true) != whole_point.end()) {

@@ -68,7 +68,7 @@ class Polygons {
   [[nodiscard]] std::uint32_t of_triangle(std::size_t triangle) const noexcept {
     return first_.empty() ? static_cast<std::uint32_t>(triangle) : first_[triangle];
   }
-  /// Returns the number of triangles of the polygon whose first triangle has this index.
+  /// Returns the number of triangles of a polygon, given the index of its first triangle.
   [[nodiscard]] std::size_t triangle_count(std::size_t polygon) const noexcept {
     return count_.empty() ? 1 : count_[polygon];
   }
@@ -81,17 +81,17 @@ class Polygons {
   void take_apart(std::size_t polygon);
 
   const Topology* triangles_;
-  // All four lists are empty until triangles are joined.
+  // The lists below are empty until triangles are joined.
   // first_ has for each triangle the first triangle of its polygon. count_ has for this first triangle the number of
   // triangles in the polygon.
   std::vector<std::uint32_t> first_, count_;
-  // For a larger polygon, by its first triangle, the place of its corners in loops_.
+  // The place in loops_ at which the corners of a larger polygon begin, by the first triangle of the polygon.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles
   std::size_t joined_ = 0;
 };
 
-/// The corners of polygons that each element adds up.
+/// The sums of face normals of all elements: for each element, the corners of polygons whose normals it adds up.
 class AuthorSums {
  public:
   AuthorSums() = default;
@@ -103,8 +103,8 @@ class AuthorSums {
 
   [[nodiscard]] Weighting weighting() const noexcept { return weighting_; }
 
-  /// Returns the sum of an element. position(vertex) must return the position of a vertex. The sum is zero if it is
-  /// only rounding error.
+  /// Returns the sum of face normals of an element. position(vertex) must return the position of a vertex. If the sum
+  /// is not larger than its rounding error, returns zero.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position) const {
     return at(element, position, weighting_);
@@ -155,8 +155,8 @@ class AuthorSums {
     });
   }
 
-  /// Return the number of polygons that have a corner in some sum, and the vertices around one of these polygons.
-  /// Polygons are in the order of their triangles.
+  /// Returns the number of polygons that have a corner in some sum. polygon(p) returns the vertices around one of these
+  /// polygons. Polygons are in the order of their triangles.
   [[nodiscard]] std::size_t polygon_count() const noexcept { return loop_offsets_.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> polygon(std::size_t p) const noexcept {
     return {loops_.data() + loop_offsets_[p], loops_.data() + loop_offsets_[p + 1]};
@@ -186,7 +186,7 @@ class AuthorSums {
       for (const std::uint32_t v : polygon(sums_[i].polygon)) visit(v);
   }
 
-  /// Marks the elements that need the position of a marked vertex.
+  /// Marks the elements whose sums need the position of any of the marked vertices.
   [[nodiscard]] std::vector<bool> elements_around(const std::vector<bool>& vertices) const;
 
  private:

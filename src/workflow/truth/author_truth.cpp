@@ -44,7 +44,7 @@ class AuthorTruth::Finder {
         stale_(shading_) {}
 
   void find() {
-    // A key that follows the rule that was found is not stale, even if it looks stale compared with plain sums of
+    // A key that follows the rule of the mesh is not stale, even if it looks stale compared with plain sums of
     // triangles.
     if (!stale_.list().empty()) stale_.keep_common(StaleKeys(shading_, &truth_.sums_));
     parallel_each(z0_.size(), kFramesOfBlock, [&](std::size_t i) {
@@ -75,7 +75,7 @@ class AuthorTruth::Finder {
     return truth_.sums_.at(e, [&](std::uint32_t v) { return key.position(v); }).normal;
   }
 
-  // Marks the elements whose normals at a key do not follow the sum.
+  // Marks the elements whose stored normals at key k differ from the sum of face normals by more than the tolerance.
   void note_bent(std::size_t k) {
     const StoredKey key(shading_, k);
     std::vector<bool> moves(shading_.element_of_vertex.size());

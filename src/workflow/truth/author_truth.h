@@ -40,7 +40,7 @@ namespace chronormal::inline internal {
 
 class AuthorTruth {
  public:
-  /// The offsets in a pose, one for each element that has an offset.
+  /// The offsets of the author's normals in one pose, one for each element that has an offset.
   using Pose = std::vector<PlaneOffset>;
 
   static constexpr std::uint32_t kNone = GltfShading::kNoElement;
@@ -68,8 +68,8 @@ class AuthorTruth {
   [[nodiscard]] const AuthorRule& rule() const noexcept { return rule_; }
   /// Returns the sums of face normals. The sums are empty if is_plain() is true.
   [[nodiscard]] const AuthorSums& sums() const noexcept { return sums_; }
-  /// Returns true if the truth is n(w), weighted by area, with the offset of the base unchanged. Such a truth can be
-  /// computed exactly.
+  /// Returns true if the truth is n(w), the area-weighted sum of the face normals at weights w, with the offset of the
+  /// base unchanged. Such a truth can be computed exactly.
   [[nodiscard]] bool is_plain() const noexcept { return rule_.is_plain() && frames_.empty(); }
   /// Returns true if the stored normals of targets influence the truth, so that it differs from area weighting. A bake
   /// that keeps such a truth notes this in its mark.
@@ -77,21 +77,23 @@ class AuthorTruth {
   [[nodiscard]] std::span<const StaleKey> stale() const noexcept { return stale_; }
   /// Returns the number of elements that have an offset.
   [[nodiscard]] std::size_t offset_count() const noexcept { return frames_.size(); }
-  /// Return the frames, the index of each element's frame, and the edges around the elements that have frames. The
-  /// index is kNone for an element without a frame. If no element has a frame, the list of indices is empty.
+  /// Return the frames, the index of each element's frame in frames(), and the edges around the elements that have
+  /// frames. The index is kNone for an element without a frame. If no element has a frame, the list of indices is
+  /// empty.
   [[nodiscard]] std::span<const Frame> frames() const noexcept { return frames_; }
   [[nodiscard]] std::span<const std::uint32_t> frame_of_element() const noexcept { return frame_of_element_; }
   [[nodiscard]] std::span<const OffsetEdge> edges() const noexcept { return edges_; }
-  /// Returns the changes that each target makes to offsets, in the order of frames. The lists are empty if no element
-  /// has an offset.
+  /// Returns for each target the changes that it makes to offsets, in the order of frames. The lists are empty if no
+  /// element has an offset.
   [[nodiscard]] std::span<const std::vector<Change>> changes() const noexcept { return changes_; }
 
-  /// Return the offsets at these weights of all targets, or at this weight of one target alone.
+  /// Return the offsets at the given weights of all targets, or at the given weight of one target if all others have
+  /// weight 0.
   [[nodiscard]] Pose pose(std::span<const double> weights) const;
   [[nodiscard]] Pose pose_alone(std::size_t target, double weight) const;
 
-  /// Returns the truth of an element in a pose, with the length of r(w). position(vertex) must return the position of a
-  /// vertex.
+  /// Returns the true normal of an element in a pose. Its length is the length of r(w), the sum of face normals.
+  /// position(vertex) must return the position of a vertex.
   template <class PositionOf>
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, const Pose& pose) const {
     return turned_sum(element, sums_.at(element, position), position, pose);
@@ -108,8 +110,8 @@ class AuthorTruth {
     const Vec3d x = frame.edge == kNone ? turned_with(frame, z) : zero_azimuth(edges_[frame.edge], z, position);
     return size * internal::with_offset(pose[n], z, x, mean_edge_angle(edges_of(frame), z, position));
   }
-  /// Call visit(i, truth) for the i-th of some elements, or visit(element, truth) for all elements, on all cores. The
-  /// calls are in no order.
+  /// Call visit(i, truth) for the i-th of the given elements, or visit(element, truth) for all elements. `truth` is the
+  /// true normal. The calls run on all cores, in no order.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Pose& pose,
                 const Visit& visit) const {
@@ -155,9 +157,9 @@ class AuthorTruth {
   bool any_split_ = false;
 };
 
-/// Returns the truth of a mesh. If a weighting is requested, the truth consists of sums by this weighting. Otherwise it
-/// is found from the stored normals, and vertices at one point whose normals differ at a key become separate elements.
-/// The shading must satisfy the preconditions of the constructor of AuthorTruth.
+/// Returns the true normals of a mesh. If a weighting is requested, the truth consists of sums by this weighting.
+/// Otherwise it is found from the stored normals, and vertices at one point whose normals differ at a key become
+/// separate elements. The shading must satisfy the preconditions of the constructor of AuthorTruth.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

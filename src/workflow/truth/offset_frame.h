@@ -31,7 +31,8 @@ struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
 
-/// Returns the mean angle in radians between z and edges that leave the point of z. Returns 1 if there is no edge.
+/// Returns the mean angle, in radians, between z and the edges. The edges leave the point whose unit sum of face
+/// normals is z. Returns 1 if there is no edge.
 template <class PositionOf>
 [[nodiscard]] double mean_edge_angle(std::span<const OffsetEdge> edges, const Vec3d& z, const PositionOf& position) {
   double sum = 0;
@@ -65,8 +66,8 @@ template <class PositionOf>
   return length(along) > kLeastLength * longest && length(cross(unit(along), z)) > kLeastSine;
 }
 
-/// Returns the offset of a normal. x is the direction of azimuth 0, and mean the mean angle between z and the edges, in
-/// radians.
+/// Returns the offset of a normal. x is the direction of azimuth 0. `mean` is the mean angle between z and the edges,
+/// in radians.
 [[nodiscard]] inline PlaneOffset offset_of(const Vec3d& normal, const Vec3d& z, const Vec3d& x, double mean) {
   const Vec3d s = unit(normal), across = unit(s - dot(s, z) * z);
   if (s == Vec3d{} || x == Vec3d{} || across == Vec3d{}) return {};
@@ -74,7 +75,7 @@ template <class PositionOf>
   return {size * dot(across, x), size * dot(across, cross(z, x))};
 }
 
-/// Returns the unit normal that has this offset. The normal is at most a right angle from z.
+/// Returns the unit normal with the given offset from z. The normal is at most a right angle from z.
 [[nodiscard]] inline Vec3d with_offset(const PlaneOffset& offset, const Vec3d& z, const Vec3d& x, double mean) {
   const double size = portable::hypot(offset.x, offset.y);
   if (size == 0 || x == Vec3d{}) return z;

@@ -46,7 +46,7 @@ std::vector<std::uint32_t> connected_parts(const GltfShading& shading, std::size
   return result;
 }
 
-// Returns for each vertex the sum by area of the normals of its faces.
+// Returns for each vertex the area-weighted sum of the normals of its faces.
 std::vector<Vec3d> sums_of_vertices(const Topology& topology, const StoredKey& key) {
   std::vector<Vec3d> sums(topology.vertex_count());
   for (std::size_t f = 0; f < topology.face_count(); ++f) {
@@ -70,7 +70,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// The vertices that a key turns, in one connected part of the mesh.
+// The vertices of one connected part of the mesh that a key turns.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians: the turn of each vertex that turns, and the error of its normal
   double together = 0, of_surface = 0, of_stored = 0;
@@ -157,7 +157,7 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  // For each class, the vertex with which its other vertices are compared.
+  // For each class of vertices, the vertex with which the other vertices of the class are compared.
   std::vector<std::uint32_t> first_of = vertex_of;
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);

@@ -33,11 +33,11 @@ struct StaleKey {
 class StaleKeys {
  public:
   StaleKeys() = default;
-  /// Judges all targets that store normals. Compares their normals with the given sums of elements, or, if `sums` is
-  /// nullptr, with sums by area around each vertex. Takes O(corners) for each target, on all cores.
+  /// Judges all targets that store normals. Compares the stored normals with the given sums of elements or, if `sums`
+  /// is nullptr, with area-weighted sums around each vertex. Takes O(corners) for each target, on all cores.
   explicit StaleKeys(const GltfShading& shading, const AuthorSums* sums = nullptr);
-  /// Keeps only those results that `others` shares: a target is then stale on a part of the mesh only if it is stale
-  /// there in `others` as well.
+  /// Keeps only the results that `others` shares: a target stays stale on a part of the mesh only if it is stale on
+  /// this part in `others` as well.
   void keep_common(const StaleKeys& others);
 
   [[nodiscard]] bool is_stale(std::size_t target, std::uint32_t vertex) const {

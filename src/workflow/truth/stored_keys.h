@@ -1,8 +1,8 @@
 /// The author's normals that a file stores, for the base and for each target at weight 1. Private to workflow.
 ///
 /// A bake distributes the normals of a target over the deltas of the target and the deltas of correction targets that
-/// follow its weight. If the mark of the bake states that the sums of these deltas are still the author's normals, this
-/// code adds up the deltas again.
+/// follow its weight. If the mark of the bake states that the sums of these deltas are still the author's normals, the
+/// class StoredKey adds up the deltas again.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_STORED_KEYS_H_
 
@@ -31,7 +31,7 @@ class StoredKey {
   }
   /// Returns the normal of a vertex as a viewer renders it. The normal has any length.
   [[nodiscard]] Vec3d normal(std::uint32_t vertex) const noexcept;
-  /// Returns whether the target changes the stored normal of the vertex.
+  /// Tells whether the target changes the stored normal of the vertex.
   [[nodiscard]] bool turns(std::uint32_t vertex) const noexcept;
 
  private:
@@ -48,7 +48,7 @@ class StoredKey {
 };
 
 /// Lists the targets whose stored normals are the author's, in ascending order. The list is empty if an earlier bake
-/// has replaced these normals.
+/// has replaced the author's normals.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 
 /// Returns for each element one of its vertices, or GltfShading::kNoElement if no vertex shows the element. All

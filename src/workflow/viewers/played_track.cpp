@@ -20,15 +20,15 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Returns the four factors of Hermite interpolation at t: those of the value before, of its tangent, of the value
-// after, and of its tangent.
+// Returns the four factors of cubic Hermite interpolation at t in [0, 1]: for the value before, its tangent, the value
+// after, and its tangent.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
 }
 
-// Returns the index of the last sample, as gltfpack computes it. gltfpack rounds the number of samples, and more often
-// up than down.
+// Returns the index of the last sample of an animation, as gltfpack computes it. gltfpack rounds the number of samples,
+// and more often up than down.
 double index_of_last_sample(const TimeRange& animation) noexcept {
   constexpr double kBias = 0.8;
   return std::floor((animation.last - animation.first) * kViewerSampleRate + kBias);
@@ -64,7 +64,7 @@ PlayedTrack::PlayedTrack(const Viewer& viewer, GltfKeys keys, GltfInterpolation 
 
 void PlayedTrack::sample(double index, std::span<double> weights) const {
   double time = first_ + index / kViewerSampleRate;
-  // The last sample of a spline is its last key, whose time need not be a multiple of the step.
+  // The last sample of a resampled spline is its last key, whose time need not be a multiple of the step.
   if (viewer_.tracks == TrackRule::kSplinesResampled) time = std::min(time, last_);
   curve_.at(time, false, weights);
   if (viewer_.weight_bits == 32) return;

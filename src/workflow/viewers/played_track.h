@@ -21,7 +21,7 @@ struct TimeRange {
   double first = 0, last = 0;
 };
 
-/// Reads the time range of an animation. Errors: see GltfDocument
+/// Reads the time range of an animation. Errors: those of GltfDocument::keys().
 [[nodiscard]] Result<TimeRange> weight_time_range(const GltfDocument& document, std::size_t animation);
 
 class PlayedTrack {
@@ -39,7 +39,7 @@ class PlayedTrack {
   [[nodiscard]] bool is_as_specified() const noexcept { return as_specified_; }
 
  private:
-  // Computes one sample of a resampled track.
+  // Computes the weights of one sample of a resampled track.
   void sample(double index, std::span<double> weights) const;
   // Computes the weights of a cubic spline by the viewer's own rule.
   void play_spline(double time, bool just_before, std::span<double> weights) const;

@@ -38,7 +38,7 @@ float clamped(float value, int bits) noexcept {
   const float size = std::fabs(value) < 1 ? std::fabs(value) : std::isnan(value) ? 0 : 1.0F;
   const float scaled = size * static_cast<float>((1 << (bits - 1)) - 1);
   const int whole = static_cast<int>(scaled);
-  // Float32 holds this difference exactly.
+  // The difference below is exact in float32.
   const int small = scaled - static_cast<float>(whole) >= 0.5F ? whole + 1 : whole;
   const int kept = lack == 0 ? small : (small << lack) | (small >> (bits - 1 - lack));
   return std::copysign(static_cast<float>(kept) / static_cast<float>((1 << (wide - 1)) - 1), value);

@@ -78,7 +78,7 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// The number of elements of a scheme that violate their bounds or have none, and the tightness of the bounds.
+// The numbers of elements of a scheme that violate their error bounds or have no bound, and how tight the bounds are.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
   double largest_share = 0;  // largest ratio of a measured error to the upper bound
@@ -228,8 +228,8 @@ TEST(Certificates, meet_an_error_that_is_known_by_hand) {
   EXPECT_NEAR(linear.at, 1 / (1 + std::sqrt(3)), 0.05);
   EXPECT_LE(linear.from, 1 / (1 + std::sqrt(3)) + 0.05);
   EXPECT_GE(linear.to, 1 / (1 + std::sqrt(3)) - 0.05);
-  // The scheme linear:scaled chooses the length of one end normal so that this curve is exact. Only rounding errors
-  // remain.
+  // The scheme linear:scaled chooses the length of one end normal so that its straight line has the directions of n(t).
+  // Only rounding errors remain.
   EXPECT_LT(bounds_of("linear:scaled", moving(kFlat, long_upright)).upper, 1e-5);
 }
 
@@ -240,14 +240,14 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     if (scheme == "recompute") continue;
     EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
   }
-  // The end normals are opposite, so their sum is zero at t = 1/2. There the direction changes abruptly, as it does at
-  // t = 1/4.
+  // The unit normals at both ends are opposite, so a weighted sum of them is zero at t = 1/2, and changes its direction
+  // abruptly there. n(t) changes its direction abruptly at t = 1/4.
   for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
     const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // A normal that is recomputed from positions is accurate right up to the collapse.
+  // The scheme `recompute` computes the normal from positions at t, and is accurate right up to the collapse.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
@@ -269,7 +269,7 @@ TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
       EXPECT_NEAR(bounds[0].from, 0.5, 1e-6);
       EXPECT_NEAR(bounds[0].to, 0.5, 1e-6);
     } else {
-      // Slerp does not pass through zero: it turns the normal about a fixed axis, perpendicular to the start normal.
+      // Slerp turns the normal about a fixed axis, perpendicular to the start normal, and does not pass through zero.
       EXPECT_LT(bounds[0].upper, std::numbers::pi);
     }
   }

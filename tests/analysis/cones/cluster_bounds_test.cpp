@@ -49,9 +49,9 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
   return result;
 }
 
-// The functions below repeat the tests in the comments of meshoptimizer.h in float32. Only sums of squares are computed
-// in double: in float32, squares of lengths below 1e-19 underflow, so every test with a length would fail for this
-// reason alone.
+// The functions below compute in float32 the culling tests that the comments of meshoptimizer.h describe. Only sums of
+// squares are computed in double: in float32, squares of lengths below 1e-19 underflow, so every test with a length
+// would fail for this reason alone.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -87,7 +87,7 @@ struct Meshlets {
   }
 };
 
-// Builds meshlets from the positions at the start of a segment.
+// Divides a motion into meshlets, built from the positions at the start of a segment.
 Meshlets meshlets_of(Motion motion, std::size_t segment) {
   constexpr std::size_t kVertices = 32, kTriangles = 32;
   const auto corners = motion.topology.corners();
@@ -153,8 +153,8 @@ struct Count {
 };
 using Rejects = std::function<bool(const meshopt_Bounds&, const Vec3f&)>;
 
-// Counts the pairs of a meshlet and a camera that `rejects` rejects. Also counts the wrong rejections, where some face
-// is front-facing at some instant.
+// Counts the pairs of a meshlet and a camera for which rejects() says that no face is front-facing. Also counts the
+// wrong rejections, for which some face is front-facing at some instant.
 Count judged(const Meshlets& meshlets, const std::vector<meshopt_Bounds>& bounds, const std::vector<Instant>& instants,
              const std::vector<Vec3f>& cameras, const Rejects& rejects, bool is_view) {
   Count result;

@@ -62,8 +62,8 @@ std::vector<NormalCone> cones_of_faces(const Segment& segment, const Interval& p
   return cones;
 }
 
-// Returns cones around the normals at both ends of the interval alone. Such cones are right only if n(t) follows a
-// straight line between the ends.
+// Returns cones around the normals at both ends of the interval, without the normals between. Such cones are right only
+// if n(t) follows a straight line between the ends.
 std::vector<NormalCone> cones_of_ends(const Segment& segment, const Interval& part) {
   std::vector<ControlNormals> ends = all_face_control_normals(segment);
   for (ControlNormals& c : ends) {
@@ -198,8 +198,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // In the second element, the control normals of the first half of the interval are {zero, zero, x}, so they begin
-  // with zeros. None of the control normals of the second half is zero.
+  // On the first half of the interval, the control normals of element 1 are {zero, zero, x}. On the second half, none
+  // of its control normals is zero.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);
@@ -223,8 +223,8 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2, these control normals nearly cancel. Errors of 2^-26 in the control normals therefore change the
-// direction of n(t) by much more than 2^-26 radians.
+// At t = 1/2, the control normals of this test nearly cancel. Errors of 2^-26 in the control normals therefore change
+// the direction of n(t) by much more than 2^-26 radians.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
     const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
@@ -268,8 +268,8 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
   EXPECT_EQ(cones_of_faces(segment, {0.5 + 0x1p-52, 1})[0].axis, (Vec3f{0, 0, 1}));
 }
 
-// A cone cannot have a half-angle below half of the largest angle between two of its normals. Compares the half-angle
-// of each cone with this lower bound, from 21 normals.
+// The half-angle of a cone is at least half of the largest angle between two of its normals. Compares the half-angle of
+// each cone with this lower bound, from 21 normals.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();

@@ -103,8 +103,8 @@ TEST(ExactShutter, of_lines_that_pass_near_zero_is_within_its_bound_of_the_close
   EXPECT_LT(largest_bound, 2e-6);
 }
 
-// Gives each control normal an error of almost 2^-26 of its length, all in the same direction. The bound must cover
-// these errors.
+// Gives every control normal an error of almost 2^-26 of its length, in the same direction for all. The bound of the
+// shutter normal must cover these errors.
 TEST(Shutter, has_a_bound_that_covers_the_rounding_of_control_normals) {
   fixtures::Random random(503);
   double smallest_bound = 1;

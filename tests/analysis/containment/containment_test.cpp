@@ -92,8 +92,8 @@ struct Scene {
   }
 };
 
-// Returns the winding number of a point at time t: counts the crossings before t, from the winding number `start` at t
-// = 0 on.
+// Returns the winding number of a point just before time t: the winding number `start` at t = 0, changed by all
+// crossings before t.
 int winding_before(int start, std::span<const Crossing> crossings, double t) {
   for (const Crossing& crossing : crossings) start += crossing.t < t ? (crossing.inward ? 1 : -1) : 0;
   return start;
@@ -174,8 +174,8 @@ bool is_touch(const Scene& scene, std::size_t p, double t, int winding) {
   return scene.expected_winding(p, t - kBeside) == winding && scene.expected_winding(p, t + kBeside) == winding;
 }
 
-// Compares the winding numbers at both ends, and at a time in between, with the oracle and with the count of the
-// crossings before.
+// Compares the winding number of each point at both ends of the segment, and at a time in between, with the oracle and
+// with a count of the crossings up to that time.
 void judge_windings(const Scene& scene, Random& random, const std::string& what) {
   const std::vector<Crossing> all = scene.crossings();
   const double t = static_cast<double>(random.below(15) * 2 + 1) / 32;
@@ -297,7 +297,8 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
   scene.from = {{-16, 0, 0}, {-8, -8, 0}, {8, -8, -8}, {-16, 0, 8}, {-16, 8, 0}};
   scene.to = {{16, 0, 0}, {8, 8, 0}, {-8, 8, 8}, {16, 0, 8}, {16, 8, 0}};
   const std::vector<Crossing> all = scene.crossings();
-  // The five points pass through a vertex, an edge or the middle of a face, or touch a vertex.
+  // Point 0 passes through a vertex, point 1 through an edge, and point 2 through the middle of a face. Points 3 and 4
+  // touch a vertex.
   const std::vector<double> times = {0.25, 0.25, 1.0 / 3};
   for (std::size_t p = 0; p < 5; ++p) {
     const std::span<const Crossing> crossings = of_point(all, p);
@@ -311,8 +312,8 @@ TEST(Containment, a_path_through_an_edge_or_a_vertex_crosses_once_each_way) {
 }
 
 TEST(Containment, the_surface_may_pass_points_that_rest) {
-  // The cube doubles its size while the points rest. The normal of a crossing must be the normal of the face at that
-  // time.
+  // The cube doubles its size while the points rest. The normal of a crossing must be the normal of the crossed face at
+  // the time of the crossing.
   Scene scene = resting_cube();
   for (float& x : scene.mesh_to) x = 2 * x;
   scene.from = scene.to = {{1.5F, 0.25F, 0.125F}, {0.5F, 0.75F, 0.25F}, {2.5F, 1, 1}};

@@ -27,8 +27,8 @@ DeltaNormals some_deltas(std::mt19937& random) {
   return result;
 }
 
-// Adds a pose with these weights to the fit. The fit must come close to the normals that the deltas `wanted` give in
-// this pose.
+// Adds a pose with the given weights to the fit. The fit must come close to the normals that the deltas `wanted` give
+// in this pose.
 void ask_for(const DeltaNormals& wanted, const std::vector<double>& weights, DeltaFit& fit) {
   std::vector<Vec3d> shown(3), missing(3);
   shown_normals(fit.deltas(), weights, shown);
@@ -67,7 +67,7 @@ TEST(DeltaFit, what_no_row_tells_stays_as_it_was) {
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
   EXPECT_EQ(fit.deltas().deltas[1].deltas, start.deltas[1].deltas);
   EXPECT_EQ(fit.deltas().deltas[2].deltas, start.deltas[2].deltas);
-  // solve() consumes the rows, so a second solve() changes nothing.
+  // solve() uses up the rows that add() has added, so a second solve() changes nothing.
   fit.solve();
   EXPECT_LT(largest_difference(fit.deltas(), wanted, 0), 1e-5);
 }

@@ -33,7 +33,7 @@ Vec3d vector(Random& random, double size = 1) {
   return {p[0], p[1], p[2]};
 }
 
-// Returns the control normals of a triangle whose edges change by about `motion`.
+// Makes a triangle whose edges change by about `motion`, and returns its control normals.
 ControlNormals triangle(Random& random, double motion) {
   const Vec3d e0 = vector(random), f0 = vector(random);
   const Vec3d e1 = e0 + vector(random, motion), f1 = f0 + vector(random, motion);
@@ -83,7 +83,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
         triangle(random, std::array{0.05, 0.3, 1.0, 3.0}[static_cast<std::size_t>(round % 4)]);
     const Vector u0 = reference::normalised(real(normals.n0)), u1 = reference::normalised(real(normals.n1));
     const EndDelta found = best_end_delta(normals);
-    // Searches a coarse grid first, then a fine grid around its best point.
+    // Searches a coarse grid of scales first, then a fine grid around the best scale of the coarse grid.
     Brute brute = brute_best(normals, u0, u1, 6, 60, 100);
     for (int i = -20; i <= 20; ++i) {
       const Real s = brute.scale * std::exp(Real(i) / 100);
@@ -91,7 +91,7 @@ TEST(EndDelta, no_scale_of_a_fine_grid_is_better) {
     }
     const bool collapses = found.error > 90 * kDegree;  // near a collapse, the largest angle depends on the grid
     EXPECT_LE(found.error, (collapses ? 1.02L : 1.002L) * brute.best + 1e-12L) << round;
-    // best_end_delta() also states the largest error of its line. This must be the true error.
+    // best_end_delta() also states the largest error of its straight line. This stated error must be the true error.
     const Vector to = reference::add(u0, real(found.delta));
     EXPECT_NEAR(static_cast<double>(reference::angle(to, u1)), 0, 1e-11) << round;
     EXPECT_NEAR(static_cast<double>(reference::length(to)), found.scale, 1e-10 * found.scale) << round;
@@ -154,8 +154,8 @@ TEST(EndDelta, time_reversal_inverts_the_scale) {
 
 TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const Vec3d x{1, 0, 0}, y{0, 1, 0};
-  // n(w) = 2 w (1-w) x + w^2 y has the same directions as the straight line from 2 x to y, so a scale gives them
-  // exactly.
+  // n(w) = 2 w (1-w) x + w^2 y has the same directions as the straight line from x to y / 2, so best_end_delta() finds
+  // a scale without error.
   const EndDelta from_zero = best_end_delta({{}, x, y});
   EXPECT_NEAR(from_zero.scale, 0.5, 1e-9);
   EXPECT_LT(from_zero.error, 1e-9);
@@ -192,7 +192,7 @@ TEST(EndDelta, equal_and_antipodal_ends_keep_their_size) {
 }
 
 TEST(EndDelta, a_normal_that_turns_to_its_antipode_is_off_by_90_degrees_or_more) {
-  // n(w) = (1 - 2 w) (1, w, 0) is zero at w = 1/2 and has opposite directions before and after that.
+  // n(w) = (1 - 2 w) (1, w, 0) is zero at w = 1/2. Just before w = 1/2 and just after it, n(w) has opposite directions.
   const EndDelta found = best_end_delta({{1, 0, 0}, {0, 0.5, 0}, {-1, -1, 0}});
   EXPECT_GE(found.error, 89 * kDegree);
   EXPECT_TRUE(std::isfinite(found.scale));

@@ -165,7 +165,8 @@ TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
         const auto judge = [&](const Vec3d& n, const test::IntegerVector& truth) {
           ++judged;
           if (n == Vec3d{}) {
-            // If t is inside the segment, rounding of t may decide whether the normal is zero.
+            // If t is inside the segment, the library may return zero although the exact normal is not zero, since t is
+            // rounded.
             doubtful += test::is_zero(truth) ? 0U : 1U;
             EXPECT_TRUE(test::is_zero(truth) || (0 < t && t < 1)) << family.name << " from seed " << kSeed;
           } else {

@@ -114,7 +114,8 @@ TEST(Surface, edge_that_one_face_has_twice_is_open) {
   EXPECT_EQ(alone.open_edges, (Found{2, 0}));
   EXPECT_EQ(alone.turned_edges, Found{});
   EXPECT_EQ(alone.repeating_faces, (Found{1, 0}));
-  // A second face with this edge closes the open side of the edge. The edge does not count as non-manifold.
+  // A second face at the edge between vertices 0 and 1 closes the open side of this edge. The edge does not count as
+  // non-manifold.
   const Surface both = survey_vertices(fixtures::make_polygons(4, {0, 4, 7}, {0, 1, 0, 2, 0, 1, 3}));
   EXPECT_EQ(both.edges, 4U);
   EXPECT_EQ(both.open_edges.count, 3U);
@@ -153,7 +154,8 @@ TEST(Surface, copies_of_vertices_are_seams_and_not_holes) {
 }
 
 TEST(Surface, one_end_of_an_edge_that_is_kept_apart_makes_it_a_seam) {
-  // The edge joins points 0 and 1. Vertex 4 is a copy of either vertex 0 or vertex 1.
+  // Both faces have the edge between points 0 and 1. Vertex 4 is a copy of vertex 0 in `low`, and of vertex 1 in
+  // `high`.
   const Topology low = fixtures::make_triangles(5, {0, 1, 2, 1, 4, 3}),
                  high = fixtures::make_triangles(5, {0, 1, 2, 4, 0, 3});
   EXPECT_EQ(survey(low, {{0, 1, 2, 3, 0}, 4}).seam_edges, (Found{1, 0}));
@@ -229,7 +231,7 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     RC_ASSERT(surface.unreferenced.count == topology.vertex_count() - used.size());
     RC_ASSERT(surface.repeating_faces.count == repeating);
     RC_ASSERT(surface.pieces == pieces.size());
-    // Each later face with the same points is a copy of the first face or its back.
+    // Each later face with the same points as an earlier face is either a copy of that face or its back.
     RC_ASSERT(surface.doubled_faces.count <= pairs);
     RC_ASSERT(surface.doubled_faces.count + surface.back_to_back.count >= pairs);
   });

@@ -89,7 +89,7 @@ std::string fault_of(const Collapses& found, const std::array<WholePolynomial, 3
     if (!starts && before != 0 && !points_along(one.before, n, low)) return "direction before";
     if (!ends && after != 0 && !points_along(one.after, n, high)) return "direction after";
   }
-  // Two roots count as one if no double is between them.
+  // Two roots count as one root if no double is between them.
   return inside == roots ? "" : std::to_string(roots) + " zeros, found " + std::to_string(inside);
 }
 

@@ -26,7 +26,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// The next two functions return a vector of doubles, and a vector of floats, as integers in units of 2^-1074.
+// The two functions whole() return a vector of doubles, and a vector of floats, as integers in units of 2^-1074.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -65,7 +65,8 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
 
 int sign_of(Side side) { return static_cast<int>(side); }
 
-// Checks the changes of side that the library found for one face. Describes the first fault, or returns "".
+// Checks the changes of side that the library found for one face against f, the polynomial whose sign is the side.
+// Describes the first fault, or returns "".
 std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Random& random) {
   if (f.is_zero()) return facing.count == 0 && facing.side == Side::kNone ? "" : "zero throughout";
   const std::size_t roots = f.count_roots();
@@ -81,7 +82,8 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
       ++inside;
     } else {
       const int below = f.sign_at(change.lower), above = f.sign_at(change.upper);
-      // A root that is exactly a double has its own bracket. Another root may follow before the next double.
+      // A root that is exactly a double has its own bracket, of width zero. The bracket of another root may begin at
+      // this double.
       const bool follows_a_root = below == 0 && change.lower == last;
       if (below == 0 && change.lower > 0 && !follows_a_root) return "lower end is a root";
       const bool crosses = below * above < 0;
@@ -95,7 +97,7 @@ std::string fault_of(const Facing& facing, const WholePolynomial& f, test::Rando
     last = change.upper;
   }
   if (inside != roots) return std::to_string(roots) + " roots, found " + std::to_string(inside);
-  // Checks the sign exactly at many instants, some of which are close to the brackets.
+  // Compares the side with the exact sign of f at many instants, some of which are close to the brackets.
   const std::size_t times = test::wanted_times(random);
   for (std::size_t i = 0; i < times; ++i) {
     double t = random.uniform(0, 1);
@@ -197,7 +199,7 @@ TEST(ExactFacing, what_a_shutter_may_cull_shows_no_front) {
         }
         if (is_front && side == ShutterSide::kBack) return std::string("culled, and shows its front");
         if (is_back && side == ShutterSide::kFront) return std::string("said to show its front alone");
-        // The function returns kBoth also if it cannot decide. It may do this only if there is a root.
+        // sides_over() may return kBoth without seeing both sides if it cannot decide, but only if f has a root.
         if (side == ShutterSide::kBoth && f.count_roots() == 0) return std::string("undecided without a root");
         return std::string();
       },
@@ -266,7 +268,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // In every fourth lane, an end value is so small that its sign is hardly certain.
+        // In every fourth lane, the first or the last coefficient is so small that its sign is hardly certain.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }
@@ -395,7 +397,8 @@ Motion crumpling_grid(std::uint32_t size) {
   return fixtures::make_motion(fixtures::make_triangles(count, std::move(corners)), from, to);
 }
 
-// Compares the sides of the two faces at every edge, at instants that are outside of all brackets.
+// Compares the silhouettes that the library finds with the exact sides of the two faces at every edge, at random
+// instants.
 TEST(Silhouettes, are_the_edges_whose_faces_show_different_sides) {
   const Motion motion = crumpling_grid(40);
   const Segment segment = motion.segment(0);

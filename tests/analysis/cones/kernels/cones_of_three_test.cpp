@@ -61,8 +61,8 @@ TEST(ConesOfThree, flags_what_has_no_direction) {
   std::array<std::uint16_t, 1> flags{};
   cones_of_three(normals.data(), normals.size(), kNormalShare, cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b110011110);
-  // The bits mark elements whose cone the kernel cannot make. A control normal of a part is zero only where n(t) is
-  // zero: {x, -x, x} has a zero at t = 1/2. Lengths far below 2^-1000 always count as uncertain.
+  // The bits of flags[0] mark elements whose cone the kernel cannot make. A control normal of a part of [0, 1] is zero
+  // only where n(t) is zero: {x, -x, x} has a zero at t = 1/2. Lengths far below 2^-1000 always count as uncertain.
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0, 0.25), cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b10011100);
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0.25, 0.5), cones.data(), flags.data());

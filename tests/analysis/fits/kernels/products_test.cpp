@@ -1,4 +1,4 @@
-// Compares sums of products with three nested loops, bit by bit, on every instruction set.
+// Compares the kernel that computes sums of products with three nested loops, bit by bit, on every instruction set.
 #include "analysis/fits/kernels/products.h"
 
 #include <gtest/gtest.h>
