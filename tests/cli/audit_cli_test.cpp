@@ -88,7 +88,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {"; within 90.1 degrees\n"});
-  // In every viewer, four edges are torn at one moment.
+  // Every viewer tears four edges of the hinge at the same moment.
   EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
   const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
@@ -358,7 +358,7 @@ TEST_F(AuditCli, gate_judges_small_normals_whose_direction_is_certain) {
   };
   folder_.write("big.obj", big);
   folder_.write("small.obj", small(".009", "0"));
-  // At this distance from the origin, rounding to float32 collapses the triangle to a point or a line.
+  // At x = 100000, rounding to float32 collapses the triangle to a point or a line.
   folder_.write("far.obj", small(".009", "100000"));
   for (const std::string rule : {"--rule step", "--rule slerp --samples 2", "--rule nlerp --samples 2"}) {
     const std::string arguments = "big.obj small.obj " + rule;
@@ -416,8 +416,8 @@ std::string last_line(const std::string& text) {
 }
 
 TEST_F(AuditCli, faults_are_said_once_for_each_mesh_and_cause_the_worst_first) {
-  // All 20 targets of the mesh "Much" lack normals. Most of them have errors of a few degrees, and target 17 has one of
-  // 90 degrees. The only target of the earlier mesh has a smaller error.
+  // All 20 targets of the mesh "Much" lack normals. Most of the targets have errors of a few degrees, and target 17 has
+  // an error of 90 degrees. The only target of the mesh before "Much" has a smaller error.
   const auto slight = [](float share) {
     test::ShadedMesh::Target target = test::hinge().targets[0];
     for (float& c : target.positions) c *= share;
@@ -491,7 +491,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"were baked before", "that no animation moves"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The first bake used a single delta, although an animation could drive correction targets.
+  // The first bake stored a single delta for each target, although the animation could drive correction targets.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --encode exact"});
@@ -500,7 +500,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --for"});
-  // The positions of the baked file were changed after the bake.
+  // The next case changes the positions of a file after its bake.
   bake("hinge.glb -o baked.glb --encode exact -q");
   std::string bytes = test::read_whole(folder_ / "baked.glb");
   const float folded = -2;
@@ -511,7 +511,7 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   folder_.write("moved.glb", bytes);
   advice = last_line(text_of("moved.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file again"});
-  // The rule lerp, by which the error is measured here, is not one that bake corrects.
+  // The audit measures the error by the rule lerp, which bake cannot correct.
   expect_words(last_line(text_of("hinge.glb --rule lerp")), {"leave --rule out to see what bake can do"});
   // A tolerance below one degree also lowers the limit for "nothing to do".
   expect_words(last_line(text_of("baked.glb --tolerance 0.1")),

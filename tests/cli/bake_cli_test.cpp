@@ -169,13 +169,13 @@ TEST_F(BakeCli, endpoint_says_what_was_fitted_and_audit_what_would_be_exact) {
 }
 
 // The program reads files above 64 MiB one keyframe at a time, without keeping their stored normals. The audit of such
-// a file must still judge them.
+// a file must still judge the stored normals.
 TEST_F(BakeCli, of_large_files_it_audits_the_normals_that_they_store_all_the_same) {
   constexpr std::size_t kLine = 1 << 20, kLines = 24;
   const std::string comment = "#" + std::string(kLine - 2, ' ') + "\n";
   std::string room;
   for (std::size_t i = 0; i < kLines; ++i) room += comment;
-  // The stored normals of keyframe 1 are wrong, which only an audit of the file itself can find.
+  // The stored normals of keyframe 1 are wrong. Only an audit that reads the stored normals can find this error.
   for (const int k : {0, 1, 2}) {
     std::string mesh = bytes_of("f_" + std::to_string(k) + ".obj");
     mesh = mesh.substr(0, mesh.find('f')) + (k == 1 ? "vn 1 0 0\n" : "vn 0 0 1\n") +
@@ -216,8 +216,8 @@ TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
 }
 
 TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
-  // The products of the deltas and the squares of the weights exceed the range of float32, so these bakes are written
-  // only with --force.
+  // In these cases, products of deltas and squares of weights exceed the range of float32, so a bake is written only
+  // with --force.
   std::size_t worse = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     test::GltfBuilder builder = test::hills_document(1, seed);

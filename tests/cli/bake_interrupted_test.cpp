@@ -36,8 +36,8 @@ class InterruptedBake : public testing::Test {
     EXPECT_TRUE(test::read_whole(folder_ / (folder + "/old.glb")) == kOld);
     EXPECT_EQ(entries(folder), 1) << "a temporary file is left";
   }
-  // Mounts a disk with room for this number of kilobytes as the folder `small`. Only root can mount a disk, so the test
-  // is skipped for other users.
+  // Mounts a disk of the given size in kilobytes as the folder `small`. Only root can mount a disk, so the test is
+  // skipped for other users.
   void mount_disk_of(std::size_t kilobytes) const {
     fs::create_directory(folder_ / "small");
     const std::string mount = "mount -t tmpfs -o size=" + std::to_string(kilobytes) + "k none small";
@@ -85,9 +85,9 @@ TEST_F(InterruptedBake, folder_that_cannot_be_written_keeps_its_file) {
 
 TEST_F(InterruptedBake, full_disk_keeps_its_file) { expect_refused_on_a_disk_of(64); }
 
-// The arrays are kept in a separate file until the JSON, which precedes them in the result, is known. Each array is
-// deleted from the disk after it is copied into the result. The largest array has 214 KB. The disk has room for all
-// arrays, but not for another copy of the largest array.
+// The bake writes the arrays to a separate file until it knows the JSON, which precedes the arrays in the result. The
+// bake frees the disk space of each array after it has copied the array into the result. The largest array has 214 KB.
+// The disk has room for all arrays, but not for another copy of the largest array.
 TEST_F(InterruptedBake, disk_that_is_full_at_the_end_keeps_its_file) {
   expect_refused_on_a_disk_of(whole_.size() / 1024 + 100);
 }

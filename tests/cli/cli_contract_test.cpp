@@ -163,7 +163,7 @@ TEST_F(Cli, help_and_version_have_short_ways) {
 
 TEST_F(Cli, a_mistyped_option_is_answered_with_the_nearest) {
   expect_error(run("compare a.obj b.obj --shcemes linear"), 2, {"'--shcemes'; did you mean --schemes?"});
-  // The program makes the same suggestion if a required option is missing too, or if the mistyped option has a value
+  // The program suggests the nearest option also if a required option is missing, or if the mistyped option has a value
   // after "=".
   expect_error(run("bake --tolerence=3"), 2, {"'--tolerence'; did you mean --tolerance?"});
   expect_error(run("bake -z a.obj"), 2, {"there is no option '-z'"});
@@ -213,8 +213,8 @@ TEST_F(Cli, every_command_explains_itself_and_knows_misuse) {
   }
 }
 
-// For each option, arguments with which the option is valid. needs_of() returns the other arguments that a command
-// needs.
+// For each option, arguments with which the option is valid. needs_of() adds the arguments that a command needs in any
+// case.
 const std::map<std::string, std::string> kUses = {
     {"--access", "a.obj b.obj --access sequential"},
     {"--active", "--base a.obj b.obj --blend 2 --active 1"},
@@ -360,8 +360,8 @@ TEST_F(Cli, every_option_that_help_lists_is_taken) {
       const auto special = kUses.find(command + " " + name), usual = kUses.find(name);
       const auto use = special != kUses.end() ? special : usual;
       ASSERT_NE(use, kUses.end()) << "give kUses an input that takes this option";
-      // If an option belongs to only one query, the key in the table names that query, as in {"query --points",
-      // "contain ..."}.
+      // If only one query has an option, the key in kUses names the command and the option, and the arguments name the
+      // query: {"query --points", "contain ..."}.
       const std::string question =
           command == "query" && special == kUses.end() && !name.starts_with("--help") ? "collapse " : "";
       const ProcessResult result = run(command + " " + question + use->second + needs_of(command, use->second));
@@ -396,7 +396,8 @@ TEST_F(Cli, colours_are_for_terminals) {
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " --json").out, with("", audit + " --json").out);
   EXPECT_EQ(with("CLICOLOR_FORCE=1", audit + " -o table.txt").out, "");
   EXPECT_EQ(read("table.txt"), piped.out);
-  // Codes that emphasise text in a terminal take up no columns in a table. Names from files cannot contain such codes.
+  // Escape codes that emphasise text in a terminal take up no columns in a table. Names from files are printed without
+  // escape codes.
   std::string plain;
   bool is_mark = false;
   for (const char c : forced.out) {
@@ -573,8 +574,8 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
-  // The error of linear interpolation, computed by hand, is the angle between (1, 0, 1) and (1, -1, 1), at t = 1/4 and
-  // at t = 3/4.
+  // The expected error of linear interpolation was computed by hand: it is the angle between (1, 0, 1) and (1, -1, 1),
+  // which linear interpolation has at t = 1/4 and at t = 3/4.
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
   for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }

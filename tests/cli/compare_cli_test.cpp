@@ -111,7 +111,7 @@ TEST_F(CompareFigures, latex_has_the_figures_of_both_tables) {
     EXPECT_EQ(exit_code_of(wrong), 2) << wrong;
 }
 
-// Returns the cells of the row that begins with this name, in LaTeX or in the text table.
+// Returns the cells of the table row that begins with the given name, in LaTeX or in the text table.
 std::vector<std::string> cells_after(const std::string& text, const std::string& name, char separator) {
   const std::size_t begin = text.find('\n' + name + ' ');
   if (begin == std::string::npos) {
@@ -252,7 +252,7 @@ TEST_F(CompareFigures, certificates_stand_beside_what_was_sampled) {
   EXPECT_FALSE(Json::parse(output("--json"))["schemes"][0].contains("certified"));
   for (const Json& row : rows) {
     const Json& certified = row["certified"];
-    // The error bound of the face that turns over is 180 degrees. The motion has two segments of three faces.
+    // Element 1 of segment 0 is the face that turns over. Its error bound is 180 degrees for every scheme.
     EXPECT_EQ(certified["upper_degrees"], 180) << row;
     EXPECT_GE(certified["upper_degrees"], row["max_degrees"]);
     EXPECT_EQ(certified["upper_at"]["segment"], 0);

@@ -1,5 +1,5 @@
-// Tests the program with hostile files and systems: strange names of files, endless inputs, and files that declare too
-// much. Messages must say what is wrong.
+// Tests the program with hostile files and under hostile conditions: strange names of files, endless inputs, and files
+// that declare more data than they have. Messages must say what is wrong.
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -189,8 +189,8 @@ TEST_F(HostileCli, a_closed_stream_is_not_taken_for_the_output) {
     EXPECT_EQ(run("convert --sample twist --force -o out.npz" + std::string(closed)).exit_code, 0) << closed;
     EXPECT_EQ(test::read_whole(folder_ / "out.npz"), test::read_whole(folder_ / "right.npz")) << closed;
   }
-  // The program cannot print its note about zeros, since standard error is closed. The note must not end up in the
-  // output file instead.
+  // The program has a note about zero normals but cannot print it, since standard error is closed. The note must not
+  // end up in the output file instead.
   folder_.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   EXPECT_EQ(run("sample flat.obj -o flat.npy 2>&-").exit_code, 0);
   EXPECT_EQ(test::read_whole(folder_ / "flat.npy").find("chronormal"), std::string::npos);
@@ -267,7 +267,7 @@ TEST_F(HostileCli, a_sentence_that_holds_for_several_meshes_is_said_once) {
   EXPECT_EQ(result.err.find("by --encode exact", first + 1), std::string::npos) << result.err;
 }
 
-// An output must never replace an input or another output, even if the two names of the file differ.
+// An output must never replace an input or another output, even if the command names one file by two different paths.
 TEST_F(HostileCli, two_outputs_and_what_is_read_are_different_files_by_any_name) {
   folder_.write("a.obj", kFirst);
   folder_.write("b.obj", kSecond);
@@ -378,7 +378,8 @@ std::string grid_of_targets(int mesh_count, int target_count) {
   return builder.glb();
 }
 
-// The answer has a row for every face of every target, so a file of 127 kB would give an answer of 455 MB.
+// The result of the command has a row for every face of every target, so a file of 127 kB would give a result of 455
+// MB.
 TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion) {
   folder_.write("many.glb", grid_of_targets(1, 150));
   for (const std::string arguments :
@@ -393,7 +394,7 @@ TEST_F(HostileCli, an_answer_for_every_face_of_many_targets_needs_max_expansion)
 TEST_F(HostileCli, errors_of_many_meshes_need_max_expansion) {
   folder_.write("many.glb", grid_of_targets(60, 5));
   expect(run("audit many.glb --samples 9 --errors e.npz"), 3, {"the errors of every sample", "--max-expansion"});
-  // The limit permits the expansion here. The file has no normals to judge, which gives another error.
+  // --max-expansion 10000 permits the table. The run still fails, since the file has no normals that could be judged.
   expect(run("audit many.glb --samples 9 --errors e.npz --max-expansion 10000"), 3, {"nothing could be judged"});
 }
 
@@ -403,7 +404,7 @@ TEST_F(HostileCli, a_file_of_the_kernel_is_read_unless_it_has_no_end) {
   if (::access("/proc/kmsg", R_OK) == 0) expect(run("inspect /proc/kmsg", "timeout 20 "), 1, {"kmsg", "never end"});
 }
 
-// A stack of 256 kB is enough, since the program keeps large arrays on the heap.
+// The program runs on a stack of 256 kB, since it keeps large arrays on the heap.
 TEST_F(HostileCli, a_small_stack_is_enough) {
   if (std::string(kProgram).ends_with("_sanitized")) GTEST_SKIP() << "a sanitizer needs more";
   folder_.write("a.obj", kFirst);
@@ -417,7 +418,7 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// The headers of the files promise a terabyte, of which almost nothing was written. Only p.ply and q.ply are as long as
+// The headers promise a terabyte of data. Almost none of it was written, except that p.ply and q.ply are as long as
 // their headers say.
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);

@@ -1,5 +1,5 @@
-// Tests `--shard` and `merge`: the merged results of several machines must equal the result of one machine. Also tests
-// how keyframes are chosen.
+// Tests `--shard` and `merge`: results computed in shards on several machines and then merged must equal the result of
+// one machine. Also tests how keyframes are chosen.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -68,8 +68,8 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.npy"));
 }
 
-// First, the shards are from two inputs with the same names, sizes and times but different content. Then, one frame of
-// the input changes between two shards.
+// `merge` must refuse shards of two different inputs. First, the two inputs have the same names, sizes and times but
+// different content. Then, one frame of an input changes between two shards.
 TEST_F(Merge, parts_of_two_inputs_are_refused_with_the_names_of_both) {
   const std::string changed = "v 0 0 0\nv 1 0 0\nv 0 1 0.5\nv 1 1 0.25\nf 1 2 3\nf 2 4 3\n";
   const std::string before = file("w_3.obj");

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Tells whether a text contains NaN or infinity in place of a number. Sentences that mention NaN do not count.
+// Tells whether a text contains NaN or infinity as a number. Sentences that mention NaN do not count.
 bool has_no_number(const std::string& text) {
   static const std::regex kSentence("zero, infinite or NaN|NaN or infinite");
   static const std::regex kWord("(^|[^a-z])-?(nan|inf)([^a-z]|$)", std::regex::icase);

@@ -41,8 +41,8 @@ class Paths : public testing::Test {
       folder_.write("f" + std::to_string(frame) + ".obj", text.str());
     }
   }
-  // Writes frames of a triangle that turns in the same way, one frame per second, with the true velocities multiplied
-  // by `factor`.
+  // Writes five frames of a triangle that turns by `angle` radians from frame to frame, one frame per second. Stores
+  // the true velocities, multiplied by `factor`.
   void write_turn_with_velocities(double angle, double factor) {
     for (int frame = 0; frame < 5; ++frame) {
       std::ostringstream text;
@@ -86,7 +86,7 @@ TEST_F(Paths, say_into_how_many_pieces_they_were_cut_and_how_near_these_are) {
             std::string::npos);
   EXPECT_EQ(run("inspect 'f*.obj' --path catmull-rom -q").err, "");
   EXPECT_EQ(run("inspect 'f*.obj'").err, "");
-  // Every command computes with the same straight pieces that approximate the curves.
+  // Every command must compute with the same straight pieces, which approximate the curves.
   const auto pieces = json("inspect 'f*.obj' --path catmull-rom:0.5 --json")["input"]["keyframes"].get<int>() - 1;
   EXPECT_GT(pieces, 4);
   EXPECT_EQ(json("compare 'f*.obj' --path catmull-rom:0.5 --json --no-times")["input"]["segments"], pieces);

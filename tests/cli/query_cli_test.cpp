@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 
 class QueryCli : public testing::Test {
  protected:
-  // Writes a square of two triangles in three keyframes. The last vertex crosses the diagonal and returns on the same
+  // Writes three keyframes of a square of two triangles. The last vertex moves across the diagonal and back on the same
   // path. Face 1 turns over at t = 1/2 of both segments, and face 0 stands still.
   QueryCli() {
     for (const auto& [name, corner] : {std::pair{"a.obj", "1 1 0"}, {"b.obj", "0 0 0"}, {"c.obj", "1 1 0"}})
@@ -95,7 +95,7 @@ TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {
   expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements vertices --silhouettes", "--silhouettes");
   const Json vertices = json_of("facing a.obj b.obj --direction 0,0,1 --elements vertices");
   EXPECT_EQ(vertices["summary"]["vertices"], 4);
-  // The vertex that crosses the diagonal, vertex 3, belongs only to face 1, which turns over at t = 1/2.
+  // Vertex 3 crosses the diagonal. It belongs only to face 1, so it shows its front until face 1 turns over at t = 1/2.
   const Json &of = vertices["arrays"]["vertex"], &to = vertices["arrays"]["to"];
   ASSERT_EQ(of.size(), 4U);
   expect_near(Json::array({to[3]}), {0.5});

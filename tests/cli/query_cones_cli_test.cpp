@@ -51,7 +51,7 @@ TEST_F(QueryCones, have_a_row_for_each_segment_and_face) {
   EXPECT_EQ(arrays.at("axis")[1], Json({0.0, 0.0, 1.0}));
   EXPECT_EQ(json.at("summary").at("whole_sphere"), 0);
   EXPECT_EQ(arrays.size(), 5u);
-  // In the first half of the motion, the face turns by less than half of the whole angle.
+  // In the first half of the motion, the first face turns by less than half of its whole angle.
   EXPECT_LT(json_of("cones a.obj b.obj --to 0.5").at("arrays").at("half_angle")[0].get<double>(), 30);
 }
 

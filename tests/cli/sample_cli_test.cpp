@@ -1,5 +1,6 @@
 // Tests `sample` for scripts and people: arrays of normals, meshes with normals, and exit codes. If the environment
-// variable CHRONORMAL_DATA names a folder of meshes from other tools, also compares their normals.
+// variable CHRONORMAL_DATA names a folder of meshes from other tools, also compares the computed normals with the
+// normals of these meshes.
 
 #include <gtest/gtest.h>
 
@@ -50,8 +51,8 @@ class SampleCli : public testing::Test {
     EXPECT_EQ(result.out, "");
     EXPECT_NE(result.err.find(word), std::string::npos) << word << "\n" << result.err;
   }
-  // Returns the array that the program writes to standard output for these arguments. Fails if the program writes
-  // anything to standard error.
+  // Runs `sample` with the given arguments, and returns the array that it writes to standard output. Fails if the
+  // program writes anything to standard error.
   [[nodiscard]] test::ArrayFile array_of(const std::string& arguments) const {
     const ProcessResult result = run(arguments + " -o -");
     EXPECT_EQ(result.exit_code, 0) << arguments << "\n" << result.err;
@@ -93,7 +94,7 @@ TEST_F(SampleCli, elements_lengths_and_hard_edges) {
   const auto faces = array_of("a.obj b.obj --times 0.5 --elements faces --length area").as<float>();
   EXPECT_EQ(row(faces, 0), (std::array<float, 3>{0, 0, 2}));
   EXPECT_EQ(row(faces, 1), (std::array<float, 3>{-1, 0, 1}));
-  // The motion from b to a starts with the quads folded by 90 degrees.
+  // The motion goes from b.obj to a.obj, so it starts with the two quads folded by 90 degrees.
   const auto distinct = [this](const std::string& options) {
     const auto normals = array_of("b.obj a.obj --times 0 --elements corners " + options).as<float>();
     std::set<std::array<float, 3>> set;
@@ -334,7 +335,7 @@ TEST_F(SampleCli, elements_without_a_normal_are_counted_on_stderr) {
   EXPECT_EQ(row(test::parse_npy(result.out).as<float>(), 3), (std::array<float, 3>{0, 0, 0}));
 }
 
-// The second face turns by 90 degrees. Exact and linear normals follow the straight path of an edge of this face, while
+// Face 1 turns by 90 degrees. The exact and the linear normals follow the straight path of an edge of this face, while
 // slerp turns the normal at a constant speed.
 TEST_F(SampleCli, a_scheme_is_written_in_every_format) {
   const auto tangent_of = [&](const std::string& scheme) {
@@ -373,7 +374,7 @@ TEST_F(SampleCli, steps_say_how_far_they_drift) {
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{17, 8, 3}));
   const test::ArrayFile of_targets = array_of("--base a.obj b.obj --scheme slerp --step 8 -q");
   EXPECT_EQ(of_targets.shape, (std::vector<std::size_t>{9, 8, 3}));
-  // The rows of two shards together must equal those of one run.
+  // The rows of shards 1 and 2 together must equal the rows of a run without shards.
   const std::string steps = "a.obj b.obj a.obj --scheme slerp --step 100 ";
   ASSERT_EQ(run(steps + "-o all.npy").exit_code, 0);
   for (const char* const shard : {"1", "2"})
@@ -493,7 +494,7 @@ TEST_F(SampleCliGolden, another_weighting_or_no_hard_edges_are_not_met) {
 TEST_F(SampleCliGolden, trimesh_weighs_vertices_by_area) {
   const std::string path = (data_ / "golden/static/groups.obj").string();
   const auto normals = array_of(path + " --no-weld").as<float>();
-  // In this file, all corners of a vertex have the same normal.
+  // The file stores the same normal for all corners of a vertex.
   std::ifstream text(path);
   const auto of_corners = stored_normals(path);
   std::size_t corner = 0, checked = 0;

@@ -33,8 +33,8 @@ class Stability : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-// Checks that the names are exactly those of a list. If CHRONORMAL_UPDATE_DOCS is set, adds new names to the list
-// instead.
+// Checks that the found names of options or keys are exactly those of the list in `file`. If CHRONORMAL_UPDATE_DOCS is
+// set, adds new names to the list instead.
 void expect_listed(const Names& found, const std::string& file) {
   const std::filesystem::path path = std::filesystem::path(kSourceFolder) / "tests/cli" / file;
   Names listed;

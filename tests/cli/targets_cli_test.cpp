@@ -1,4 +1,5 @@
-// Tests what scripts depend on in --base: targets and their folders, names, and refused requests.
+// Tests the option --base, with which commands read morph targets from files: folders of targets, names, and refused
+// requests. Scripts depend on this behaviour.
 
 #include <gtest/gtest.h>
 
@@ -159,7 +160,7 @@ TEST_F(TargetsCli, targets_become_morph_targets_of_a_glb_with_their_names) {
   EXPECT_EQ(mesh.target_names, (std::vector<std::string>{"lift", "packed", "smile"}));
   const GltfGeometry geometry = document.geometry(0, 0, {.shading = true}).value();
   EXPECT_EQ(geometry.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}));
-  // The glTF file has the same shapes as the files above, so the schemes must have the same errors.
+  // face.glb has the same shapes as base.obj and its targets, so the schemes must have the same errors.
   const auto sum = [&](const std::string& input) { return json_of(input)["schemes"][0]["sum_degrees"].get<double>(); };
   EXPECT_NEAR(sum("face.glb"), sum("--base base.obj targets smile.obj"), 1e-3);
   EXPECT_EQ(run("bake face.glb baked.glb").exit_code, 0);

@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Counts the threads that are inside pass() at the same time, and keeps the largest count.
+// A counter of the threads that are inside pass() at the same time. Keeps the largest count.
 class Crowd {
  public:
   void pass(std::chrono::microseconds time) {
@@ -94,8 +94,8 @@ TEST(ParallelFor, in_its_body_shares_the_threads_of_the_outer_loop) {
 TEST(ParallelFor, helps_with_the_loops_inside_while_it_waits) {
   const ThreadLimit two(2);
   Crowd crowd;
-  // The calling thread has nothing to do after its own piece, and waits. The other thread then runs a loop inside its
-  // piece, with which the calling thread must help.
+  // The calling thread finishes its own piece at once, and waits. The other thread then runs a loop inside its piece,
+  // and the calling thread must help with this inner loop.
   const auto caller = std::this_thread::get_id();
   std::atomic<bool> is_helped = false;
   std::atomic<std::size_t> begun = 0;

@@ -17,7 +17,7 @@ constexpr unsigned kSeed = 20;
 constexpr int kCases = 200000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Returns the error of a value, compared with a more precise one, in units in the last place.
+// Returns the error of `value` against the more precise value `right`, in units in the last place of a double.
 double units_off(double value, long double right) {
   const auto nearest = static_cast<double>(right);
   const long double unit = std::nextafter(std::fabs(nearest), kInfinity) - std::fabs(nearest);
@@ -83,8 +83,8 @@ TEST(PortableMath, special_arguments_give_what_the_standard_library_gives) {
   EXPECT_EQ(portable::atan(-kInfinity), -std::numbers::pi / 2);
 }
 
-// Checks a hash of the results, which must be the same on every machine and with every compiler. cmake/bits.cmake also
-// builds this test for other machines.
+// Compares a hash of the results with a constant, since the results must be the same on every machine and with every
+// compiler. cmake/bits.cmake also builds this test for other machines.
 TEST(PortableMath, the_bits_are_these) {
   std::mt19937_64 random(kSeed);
   std::uniform_real_distribution<double> among(-20, 20);

@@ -43,8 +43,8 @@ TEST(Text, numbers_in_messages_have_no_long_fractions_but_differ_where_they_are_
   std::mt19937 random(50);
   SCOPED_TRACE("seed 50");
   for (int round = 0; round < 10000; ++round) {
-    // The numbers are integers of up to five digits, divided by a power of ten, as people write numbers. The test adds
-    // the rounding errors of a computation.
+    // The numbers are integers of up to five digits, divided by a power of ten, as people write numbers. The test then
+    // changes the last bits, as the rounding errors of a computation do.
     const std::string written = std::to_string(random() % 100000) + "e-" + std::to_string(random() % 5);
     const double meant = std::stod(written);
     double found = meant;

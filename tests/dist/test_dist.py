@@ -179,7 +179,7 @@ class Source(Unpacked):
             files = sorted(member.name for member in opened if not member.isdir())
         tracked = run("git", "ls-tree", "-r", "--name-only", "-z", "HEAD", cwd=ROOT).split("\0")[:-1]
         self.assertEqual(files, sorted(f"chronormal-{VERSION}/{name}" for name in tracked))
-        # Runs the release step in a copy of the repository.
+        # Makes the archive again in a clone of the repository. The two archives must have the same bytes.
         copy = self.folder / "clone"
         run("git", "clone", "-q", ROOT, copy)
         run(copy / "run", "dist", "source")
@@ -468,15 +468,16 @@ class Packaging(Unpacked):
     def setUp(self):
         super().setUp()
         self.archive = artefact(f"chronormal-{VERSION}.tar.gz")
-        # The port and the recipe are compiled in one folder, which is emptied if the archive changes. Files of another
-        # archive could have the same times, so the build would not notice the difference.
+        # The port and the recipe share one build folder, which is emptied if the archive of sources changes. Files of
+        # another archive could have the same times, so the build would not notice the difference.
         self.build = ROOT / "build/packaging"
         known = self.build / "archive"
         if not known.exists() or known.read_bytes() != self.archive.read_bytes():
             shutil.rmtree(self.build, ignore_errors=True)
             self.build.mkdir(parents=True)
             shutil.copyfile(self.archive, known)
-        # Users get the feature io by default. In these tests it is off by default, since compiling it takes minutes.
+        # Users get the feature io by default. By default, these tests leave the feature out, since compiling it takes
+        # minutes.
         self.with_io = os.environ.get("CHRONORMAL_PACKAGING_IO") == "1"
 
     def test_versions_are_that_of_the_project(self):

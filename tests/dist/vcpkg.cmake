@@ -72,8 +72,8 @@ function(vcpkg_cmake_configure)
   endif()
   run(${CMAKE_COMMAND} -G Ninja -S ${arg_SOURCE_PATH} -B ${FOLDER}/build -DCMAKE_BUILD_TYPE=Release
       -DBUILD_SHARED_LIBS=OFF -DCMAKE_INSTALL_LIBDIR=lib ${arg_OPTIONS})
-  # The cache has an option as UNINITIALIZED if the project does not define it. Fails if the port passes such an
-  # option.
+  # CMake marks an option as UNINITIALIZED in its cache if the project does not define the option. Fails if the port
+  # passes such an option.
   file(STRINGS ${FOLDER}/build/CMakeCache.txt cache)
   foreach(option ${arg_OPTIONS})
     string(REGEX REPLACE "^-D([^=]*)=.*" "\\1" variable ${option})

@@ -158,8 +158,8 @@ Lines check_console(const Lines& block, const fs::path& folder, const std::strin
   return renewed;
 }
 
-// Makes one test for each document, so that documents can be tested in parallel. The test has the path of its document
-// in the repository as its name.
+// Makes one test for each document, so that documents can be tested in parallel. The name of a test is the path of its
+// document in the repository.
 class Commands : public testing::TestWithParam<std::string> {};
 
 std::vector<std::string> documents_with_commands() {
@@ -233,7 +233,7 @@ TEST(Documents, every_indented_command_for_artists_runs) { run_indented_commands
 
 TEST(Documents, every_indented_command_for_simulation_runs) { run_indented_commands("docs/simulation.md", 5); }
 
-// Compares the rows about human faces in docs/cpp.md with the output of `compare --blend`.
+// Compares the table rows about human faces in docs/cpp.md with the output of `compare --blend`.
 class RealFaces : public testing::TestWithParam<std::tuple<const char*, const char*, std::size_t>> {};
 
 TEST_P(RealFaces, have_the_rows_that_the_page_shows) {
@@ -290,7 +290,7 @@ TEST(Documents, quoted_code_is_the_example_that_is_built_and_run) {
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const std::string example = i == 0 ? "" : between(lines[i - 1], "<!-- ", " -->");
       const std::string language = lines[i].starts_with("```") ? lines[i].substr(3) : "";
-      // In these languages, a block may be only a part of a file that other tests run.
+      // A block in C or Python may quote only a part of an example, which other tests run.
       const bool may_be_a_part = language == "c" || language == "python";
       if (language != "cpp" && language != "js" && !(may_be_a_part && example.starts_with("examples/"))) continue;
       EXPECT_TRUE(example.starts_with("examples/"))
@@ -342,8 +342,8 @@ TEST(Documents, links_lead_to_files_and_headings) {
   EXPECT_GT(anchors, 5);
 }
 
-// Comments, messages and help texts mention pages, some with a heading or a section of docs/theory.md. All of these
-// must exist.
+// Comments, messages and help texts mention pages, some with a heading or a section of docs/theory.md. All mentioned
+// pages, headings and sections must exist.
 TEST(Documents, that_sources_name_are_there) {
   static const std::regex kPage("docs/[a-z][a-z-]*[.]md(#[a-z0-9-]+)?(, section ([0-9]+))?");
   const std::string theory = read(kRoot / "docs/theory.md");

@@ -140,7 +140,7 @@ __attribute__((destructor)) void write_counts() {
   (void)::syscall(SYS_close, file);
 }
 
-// Counts a call. Returns the fault that this call must have, or nullptr if it has none.
+// Counts a call of the given kind. Returns the fault that was requested for this call, or nullptr.
 const Fault* fault_at(int kind) {
   if (!is_armed) return nullptr;
   const long number = ++counts[kind], any = kind == kMalloc ? 0 : ++counts[kAny];
@@ -157,7 +157,7 @@ const Fault* fault_at(int kind) {
   return found;
 }
 
-// Tells whether the call fails, and sets errno.
+// Tells whether a call of the given kind must fail with an error, and sets errno if so.
 bool fails(int kind) {
   const Fault* const fault = fault_at(kind);
   if (fault == nullptr || fault->is_short) return false;
@@ -226,7 +226,8 @@ int ftruncate(int file, off_t size) noexcept {
 off_t lseek(int file, off_t at, int from) noexcept {
   return fails(kSeek) ? -1 : static_cast<off_t>(::syscall(SYS_lseek, file, at, from));
 }
-// Deletes a file even if it returns an error. The test then finds no remains that the program had no way to delete.
+// Deletes the file even if the call must return an error. The test then finds no remains that the program had no way to
+// delete.
 int unlink(const char* path) noexcept {
   const bool is_refused = fails(kUnlink);
   const long result = ::syscall(SYS_unlinkat, AT_FDCWD, path, 0);

@@ -52,7 +52,7 @@ struct Command {
   friend void PrintTo(const Command& command, std::ostream* out) { *out << command.arguments; }
 };
 
-// The tested commands. Their inputs are in the folder in/, and their outputs go to out/.
+// The tested commands. Commands read their inputs from the folder in/, and write their outputs to the folder out/.
 const std::vector<Command> kCommands = {
     {"help", "bake --help"},
     {"usage", "compare --no-such-option"},
@@ -101,12 +101,11 @@ struct Outcome {
   Files files;  // all files in the folder out
 };
 
-// Returns the step from one tested fault to the next: 1 in the full test, otherwise `many`.
+// Returns the step from one tested fault to the next: 1 if all faults are tested (CHRONORMAL_FULL), otherwise `many`.
 std::size_t one_of(std::size_t many) { return std::getenv("CHRONORMAL_FULL") != nullptr ? 1 : many; }
 
 // Tells whether the program is compiled with a sanitizer. The fault layer and the address sanitizer both replace
-// malloc, so the tests of this file skip such a program. The tests of the sanitized build do not run these tests at
-// all.
+// malloc, so the tests of this file skip such a program.
 bool is_sanitized_program() { return std::string(kProgram).ends_with("_sanitized"); }
 
 class Faults : public testing::TestWithParam<Command> {
@@ -197,7 +196,7 @@ class Faults : public testing::TestWithParam<Command> {
   }
 
   // Tells whether a failed run may keep a file for the next run. Such a file is useful only together with the journal,
-  // which is the last file in the list.
+  // which is the last file in the list `kept`.
   [[nodiscard]] static bool is_kept(const std::string& name) {
     const std::vector<std::string>& kept = GetParam().kept;
     return std::find(kept.begin(), kept.end(), name) != kept.end();
@@ -235,7 +234,8 @@ class Faults : public testing::TestWithParam<Command> {
     }
   }
 
-  // Returns the number of allocations before a command reads its arguments, or 0 for `help` and `usage`.
+  // Returns the number of allocations before a command reads its arguments. For `help` and `usage`, of which all
+  // allocations are tested, returns 0.
   [[nodiscard]] std::size_t mallocs_of_table() {
     constexpr std::size_t kMostOfArguments = 500;
     const std::size_t start = counts_["start"];
@@ -243,7 +243,8 @@ class Faults : public testing::TestWithParam<Command> {
     return is_whole || start < kMostOfArguments ? 0 : start - kMostOfArguments;
   }
 
-  // Makes one in `many` calls of a kind fail. If is_harmless, the faults must not change the exit code.
+  // Runs the command with one fault after the other: one in `many` calls of a kind fails. If is_harmless, the faults
+  // must not change the exit code.
   void check_each(const std::string& kind, const std::string& how, std::size_t many, bool is_harmless = false) {
     const std::size_t table = kind == "malloc" ? mallocs_of_table() : 0;
     const std::size_t most = table > 0 ? kMostPlaces : counts_[kind];
@@ -360,7 +361,7 @@ TEST_P(Faults, streams_that_are_full_or_closed_change_exit_codes_only_where_data
   }
 }
 
-// First, each call fails while stderr accepts no output. Then, two calls fail in one run.
+// First, each call fails while standard error accepts no output. Then, two calls fail in one run.
 TEST_P(Faults, pairs_of_failures_leave_no_trace) {
   std::vector<std::string> single;
   for (const char* const kind : {"write", "fsync", "close", "rename", "open", "change", "truncate", "seek", "unlink"})

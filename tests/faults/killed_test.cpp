@@ -62,7 +62,7 @@ class Killed : public testing::TestWithParam<Command> {
     return run(" --resume -q -o out",
                "CHRONORMAL_FAULT=any:" + std::to_string(call) + ":signal" + std::to_string(signal) + " LD_PRELOAD=");
   }
-  // Resumes the run until it is complete, and checks the files.
+  // Resumes a killed run until the run is complete, and checks the files.
   void finish(const std::string& what) const {
     const ProcessResult done = run(" --resume -q -o out");
     // If the run was killed after it had removed its journal, the run was complete, and only its output exists.

@@ -76,7 +76,8 @@ TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itsel
   const Surface surface = survey_triangles(4, {0, 1, 2, 0, 2, 3, 0, 1, 2, 0, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 2}));
   EXPECT_EQ(surface.turned_edges.count, 0U);
-  // An edge counts as turned if the windings of its two faces contradict each other.
+  // An edge counts as turned if its two faces pass it in the same direction, so that their windings contradict each
+  // other.
   EXPECT_EQ(survey_triangles(4, {0, 1, 2, 0, 1, 3}).turned_edges.count, 1U);
 }
 

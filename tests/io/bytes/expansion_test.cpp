@@ -75,7 +75,7 @@ TEST(Expansion, of_deflated_arrays_is_asked_for_before_they_are_unpacked) {
   expect_refused(error_of(read_npz(bomb, "bomb.npz")));
   EXPECT_TRUE(read_npz(bomb, "bomb.npz", 1, kEnough).ok());
   EXPECT_TRUE(read_npz(zeros(2, 1000000, false), "stored.npz").ok()) << "what is stored is there";
-  // A keyframe of one vertex needs more memory for the fields of its struct than for its position.
+  // In memory, a keyframe of one vertex needs more bytes for the other fields of its struct than for its position.
   expect_refused(error_of(read_npz(zeros(400000, 3, true), "frames.npz")));
 }
 
@@ -93,7 +93,8 @@ TEST(Expansion, of_many_targets_of_one_line_is_asked_for_one_by_one) {
   expect_refused(error_of(test::read_motion(options)));
 }
 
-// Makes a base mesh of zeros, which takes no bytes in the file, and many equal targets.
+// Makes a document with many targets over a base mesh. Base and targets share one accessor of zeros, which takes no
+// bytes in the file.
 GltfBuilder zero_targets(std::size_t vertices, std::size_t targets) {
   GltfBuilder builder;
   const auto zeros = builder.add_accessor_over(std::nullopt, "VEC3", 5126, vertices);

@@ -263,7 +263,7 @@ TEST(WriteOutput, full_device_is_an_error_and_null_device_is_written_directly) {
   EXPECT_EQ(error, "<stdout>: No space left on device");
 }
 
-// A socket on which nobody listens cannot be opened, and an output must not replace the socket.
+// A socket on which nobody listens cannot be opened as a file, and an output must not replace the socket.
 TEST(WriteOutput, a_socket_is_no_place_for_a_file) {
   const TemporaryFolder folder;
   const std::string path = folder / "socket";
@@ -336,7 +336,7 @@ TEST(WriteOutput, failure_leaves_no_temporary_and_the_old_file) {
   EXPECT_EQ(folder.entry_count(), 1U);
 }
 
-// A limit on the size of files has the same effect as a full disk.
+// A limit on the size of files makes a write fail as a full disk does.
 TEST(WriteOutput, write_that_fails_half_way_leaves_no_temporary_and_the_old_file) {
   const TemporaryFolder folder;
   const std::string path = folder.write("a", "old");

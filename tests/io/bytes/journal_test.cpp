@@ -83,7 +83,7 @@ TEST(Journal, belongs_to_one_run_at_a_time) {
   EXPECT_NE(two.error().message.find("another run is writing"), std::string::npos);
 }
 
-// A limit on the size of files has the same effect as a full disk.
+// A limit on the size of files makes a write fail as a full disk does.
 TEST(Journal, a_record_that_the_disk_refuses_is_an_error_with_the_path) {
   const test::TemporaryFolder folder;
   Result<Journal> journal = Journal::open(folder / "out.journal", kRun);

@@ -23,7 +23,8 @@ namespace {
 
 using namespace std::string_literals;
 
-// A kind of file: the first bytes that its specification demands, and the words that the message about it must have.
+// A kind of file: the first bytes that its specification demands, and the words for this kind that a message about the
+// file must contain.
 struct Sample {
   std::string bytes, kind;
 };
@@ -55,8 +56,8 @@ const std::vector<Sample> kSamples = {
 
 class KnownKinds : public ::testing::Test {
  protected:
-  // Returns the message about a file with this name and these bytes. If the extension is that of a cache, the file is
-  // read together with a mesh.
+  // Returns the message about a file with the given name and content. If the name has the extension of a point cache,
+  // the file is read together with a mesh.
   std::string said(const std::string& name, const std::string& bytes) {
     folder_.write(name, bytes);
     folder_.write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -114,7 +115,8 @@ TEST(KnownKindsOfBytes, are_no_files_of_ours_and_no_noise) {
       text += std::vector<std::string>{"v ",  "f ",       "# ", "{\"asset\":", "1.5 ",   "\n",
                                        "-2 ", "o solid ", " <", "[",           "mtllib "}[random() % 11];
     EXPECT_EQ(known_kind(text), "") << text;
-    // Some kinds are recognised by their first two or three bytes, and random bytes often begin with these.
+    // Some kinds of files are recognised by their first two or three bytes, and random bytes often begin with such
+    // bytes.
     const bool may_be_one =
         std::any_of(kShort.begin(), kShort.end(), [&](const std::string& begin) { return bytes.starts_with(begin); });
     EXPECT_TRUE(may_be_one || known_kind(bytes).empty()) << known_kind(bytes);

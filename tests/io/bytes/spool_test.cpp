@@ -1,5 +1,5 @@
-// Checks that a spool returns all of its data, whether it keeps them in memory or on disk, and that its file is never
-// visible in a folder.
+// Checks that a spool (a temporary store for output) returns all of its data, whether it keeps them in memory or on
+// disk, and that its file is never visible in a folder.
 #include "io/bytes/spool.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ std::string all_of(const Spool& spool, std::uint64_t at, std::uint64_t size) {
   return bytes;
 }
 
-// Makes parts of various lengths. One part is longer than the buffer through which files are read.
+// Returns byte strings of various lengths. One of them is longer than the buffer through which files are read.
 std::vector<std::string> parts() {
   std::vector<std::string> result = {"a", "", "bc", "def", std::string(1, '\0'), ""};
   std::string large;

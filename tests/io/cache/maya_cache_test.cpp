@@ -151,7 +151,7 @@ TEST(ReadMayaCache, reads_a_file_per_frame_in_the_order_of_time_and_no_other_fil
   EXPECT_EQ(cache.value().samples[1].time, 2375.0 / 6000);
   EXPECT_EQ(cache.value().samples[1].positions, test::kTurning[1]);
 
-  // In the order of the alphabet, cFrame10 comes before cFrame9, although the number 10 comes after 9.
+  // In alphabetical order, cFrame10 comes before cFrame9, although frame 10 comes after frame 9.
   folder.write("c.xml", test::maya_xml("OneFilePerFrame", "mcx", 125, 2375, 2500));
   std::filesystem::rename(folder / "cFrame1.mcx", folder / "cFrame10.mcx");
   folder.write("cFrame10.mcx", frame_bytes(true, 2500, test::kTurning[0]));

@@ -193,8 +193,8 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
             std::string::npos);
   EXPECT_NE(error_with("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3, 3)}").find("has records"),
             std::string::npos);
-  // The number of bytes of the large shapes overflows; for the first shape, it overflows to exactly the number of bytes
-  // in the file. The small shapes need more or fewer bytes than the file has.
+  // For the large shapes, the number of bytes overflows, for the first shape to exactly the number of bytes in the
+  // file. The small shapes need more or fewer bytes than the file has.
   for (const char* const shape :
        {"(4611686018427387906, 3, 3)", "(6148914691236517206, 3, 3)", "(4611686018427387904, 1, 1)",
         "(4294967296, 4294967296, 3)", "(2, 3, 4)", "(2, 3, 2)", "(18446744073709551615, 3, 3)"})
@@ -227,7 +227,7 @@ TEST(ReadNpz, sizes_that_deflate_can_not_reach_are_refused_before_memory_is_take
   const auto declared = static_cast<std::uint32_t>(huge.size() + std::uint64_t{119304600} * 36);
   EXPECT_NE(error_of(test::zip({{"positions.npy", huge, true}}, "", declared)).find("cannot unpack to"),
             std::string::npos);
-  // Deflate could have expanded the data to the size that the archive declares, but the member really has fewer bytes.
+  // Deflate could expand the data to the size that the archive declares, but the member expands to fewer bytes.
   const std::string header = npy_header("<f4", "(2, 3, 3)");
   const std::string shorter = npy(header, raw(test::turning_elements<float>(false)).substr(4));
   EXPECT_NE(error_of(test::zip({{"positions.npy", shorter, true}}, "", static_cast<std::uint32_t>(shorter.size() + 4)))
@@ -309,7 +309,8 @@ RC_GTEST_PROP(WriteNpz, what_was_written_reads_back_bit_for_bit, ()) {
   }
 }
 
-// Makes a NumPy array of one string. Its type is either '<U7', with four bytes per character, or '|S9', with one.
+// Makes a NumPy array of one string. The type of the array is either '<U7', with four bytes per character, or '|S9',
+// with one byte per character.
 std::string text_array(const std::string& type, const std::string& text, std::size_t bytes_per_character) {
   std::string data;
   for (const char c : text) data += c + std::string(bytes_per_character - 1, '\0');
@@ -355,8 +356,8 @@ TEST(WriteNpz, refuses_faces_of_different_numbers_of_corners) {
   EXPECT_NE(bytes.error().message.find("face 0 has 3 corners and face 1 has 4"), std::string::npos);
 }
 
-// In an array in Fortran order, the numbers of a keyframe are not contiguous, so the reader reads the whole array at
-// once.
+// In an array in Fortran order, the numbers of one keyframe are not contiguous, so the reader cannot read one keyframe
+// at a time.
 TEST(Npy, no_keyframe_lies_in_one_piece_in_the_order_of_Fortran) {
   for (const bool fortran : {false, true}) {
     const std::string bytes = npy(npy_header("<f4", "(2, 3, 3)", fortran), std::string(72, '\0'));
@@ -369,8 +370,8 @@ TEST(Npy, no_keyframe_lies_in_one_piece_in_the_order_of_Fortran) {
   }
 }
 
-// Zip archives of more than 4 GiB have fields of the extension zip64. In this test, all members that lie behind byte
-// `from` have these fields.
+// Zip archives of more than 4 GiB use the fields of the extension zip64. In this test, all members at byte `from` or
+// later have zip64 fields.
 TEST(Zip, members_with_zip64_fields_read_back) {
   const std::array<zip::Part, 3> parts = {{{"positions.npy", kPositions}, {"faces.npy", kFaces}, {"empty", ""}}};
   for (const std::uint64_t from : {0U, 1U, 60U, 100U, 150U, 1000U}) {

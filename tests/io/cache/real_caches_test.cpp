@@ -30,8 +30,8 @@ class RealCaches : public ::testing::Test {
     data_ = folder;
   }
 
-  // Reads a cache as a motion, together with a mesh that has one triangle and as many points as the cache. Compares the
-  // number and the times of the samples.
+  // Reads the Maya cache in a folder as a motion, together with a mesh that has one triangle and as many points as the
+  // cache. Compares the number of samples, and the first and last time, with the expected values.
   void expect_maya(const std::string& folder, std::size_t samples, double first, double last) const {
     SCOPED_TRACE(folder);
     std::string obj;
@@ -95,7 +95,7 @@ TEST_F(RealCaches, maya_description_full_of_entities_is_read_and_its_missing_fra
   EXPECT_TRUE(read_maya_points(points.value().bytes(), "cacheFrame1.mc", {1, 36, "pCubeShape2"}).ok());
 }
 
-// Sample 4 has the positions of the mesh, except for the order of the vertices and a translation.
+// Sample 4 of the cache has the positions of the mesh, except that the vertices are in another order and translated.
 TEST_F(RealCaches, pc2_of_3ds_max_is_read_and_fits_its_mesh_through_the_permutation) {
   const fs::path folder = data_ / "caches/max_cache_box";
   const Result<FileBytes> file = FileBytes::open((folder / "max_cache_box.pc2").string());

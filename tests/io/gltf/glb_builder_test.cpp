@@ -20,8 +20,8 @@ std::vector<float> vectors(float first, std::size_t nonzero) {
   return result;
 }
 
-// Adds arrays of every kind: dense, sparse, all zeros, a repetition, and one with the same numbers and bounds in a
-// different order. Returns the indices of their accessors.
+// Adds arrays of every kind: dense arrays, sparse arrays, arrays of zeros, repetitions, and arrays with the same
+// numbers and bounds in a different order. Returns the indices of their accessors.
 std::vector<std::size_t> add_all(GlbBuilder& builder) {
   std::vector<std::size_t> accessors = {builder.set_triangles(std::vector<std::uint32_t>{0, 1, 2}, kVertices)};
   std::vector<float> dense = vectors(1, 3 * kVertices), sparse = vectors(1, 30);

@@ -38,8 +38,8 @@ TEST(GltfAccessors, elements_may_stand_apart) {
 }
 
 TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
-  // The view has a position, a normal, a position, a normal and so on. The last normal ends exactly at the end of the
-  // view.
+  // The buffer view has a position, a normal, a position, a normal and so on. The last normal ends exactly at the end
+  // of the view.
   std::vector<float> mixed;
   const std::vector<float> normals = {0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 0, -1};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -57,7 +57,7 @@ TEST(GltfAccessors, positions_and_normals_may_be_interleaved) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
   EXPECT_EQ(geometry_of(builder).normals, normals);
 
-  // The view ends with the last position, so the last stride is incomplete.
+  // The buffer view now ends with the last position, so its last stride is incomplete.
   builder.json["bufferViews"][view]["byteLength"] = 24 * 3 + 12;
   builder.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
@@ -81,8 +81,8 @@ TEST(GltfAccessors, whole_numbers_may_be_written_as_floats) {
   EXPECT_EQ(geometry_of(builder).positions, test::kQuad);
 }
 
-// A sparse accessor replaces elements 1 and 3 of the quad. kReplacedZeros is the result if the other elements are
-// zeros.
+// The elements by which a sparse accessor replaces elements 1 and 3 of the quad (kReplacing), and the result
+// (kReplaced). kReplacedZeros is the result if all other elements are zeros.
 const std::vector<float> kReplacing = {5, 6, 7, 8, 9, 10};
 const std::vector<float> kReplaced = {0, 0, 0, 5, 6, 7, 1, 1, 0, 8, 9, 10};
 const std::vector<float> kReplacedZeros = {0, 0, 0, 5, 6, 7, 0, 0, 0, 8, 9, 10};
@@ -142,8 +142,8 @@ TEST(GltfSparse, indices_of_corners_may_be_sparse) {
   EXPECT_EQ(geometry_of(builder).corners, (std::vector<std::uint32_t>{3, 1, 2, 0, 2, 1}));
 }
 
-// Returns the number that a component stands for, by the formulas of section 3.6.2.2 of the glTF specification, in long
-// double. The reader must return the nearest float.
+// Returns the number for which a component c stands, by the formulas of section 3.6.2.2 of the glTF specification, in
+// long double. The reader must return the nearest float.
 template <class T>
 float as_float(T c, bool normalized) {
   if (!normalized) return static_cast<float>(c);
@@ -167,7 +167,7 @@ void expect_quantised() {
     const std::size_t base = builder.add_strided("VEC3", values, (3 * sizeof(T) + 3) / 4 * 4, normalized);
     builder.add_mesh(GltfBuilder::primitive(base, builder.add_indices(test::kQuadCorners), {{{"POSITION", base}}}));
     builder.json["extensionsUsed"] = builder.json["extensionsRequired"] = {"KHR_mesh_quantization"};
-    // Components of targets must be signed integers.
+    // The specification permits only signed integers as components of targets.
     const bool is_target = std::is_signed_v<T>;
     if (!is_target) builder.json["meshes"][0]["primitives"][0].erase("targets");
     const GltfGeometry geometry = geometry_of(builder);

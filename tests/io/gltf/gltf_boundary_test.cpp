@@ -45,7 +45,7 @@ class Batch {
   void complain(const std::string& label) { complaints_ += label + "\n"; }
   [[nodiscard]] bool last_was_refused() const { return last_refused_; }
 
-  // Returns one text with the number of files, the number of refused files, and the complaints.
+  // Returns a text with the number of files, the number of refused files, and the complaints.
   [[nodiscard]] std::string summary() const {
     return std::to_string(count_) + " " + std::to_string(refused_) + " " + complaints_;
   }
@@ -135,7 +135,8 @@ TEST(GltfBoundary, every_value_of_a_document_of_another_type_or_missing) {
     for (const auto& [name, builder] : test::all_documents()) {
       const Json whole = Json::parse(builder.gltf()), flat = whole.flatten();
       for (const auto& [key, unused] : flat.items()) {
-        // Replaces the value at the pointer, and then, one after the other, every value that contains it.
+        // Replaces the value at the pointer, and then, one after the other, each object or array that contains this
+        // value.
         for (Json::json_pointer at(key); !at.empty(); at.pop_back()) {
           for (const Json& value : values) {
             Json broken = whole;

@@ -109,8 +109,8 @@ TEST(GltfMeshopt, triangles_of_two_bytes_come_back) {
   EXPECT_EQ(geometry_of(GltfFixture(builder)).corners, kCorners);
 }
 
-// Decodes an octahedral normal by the formula in appendix B of the specification of EXT_meshopt_compression. The three
-// numbers are integers; the third is the number that stands for 1.
+// Decodes an octahedral normal by the formula in appendix B of the specification of EXT_meshopt_compression. coded[0]
+// and coded[1] are x and y as integers, and coded[2] is the integer that stands for 1.
 std::array<double, 3> octahedral(const std::array<int, 3>& coded, int largest) {
   const double one = coded[2];
   double x = coded[0] / one, y = coded[1] / one;
@@ -153,7 +153,7 @@ void expect_octahedral(int bits) {
   for (std::size_t i = 0; i < vertices; ++i) {
     const auto expected = octahedral({filtered[4 * i], filtered[4 * i + 1], filtered[4 * i + 2]}, largest);
     for (std::size_t k = 0; k < 3; ++k) {
-      // The reader computes in float32, so the last digit of a component may be rounded up or down.
+      // The reader computes in float32, so the last bit of a component may be rounded up or down.
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), expected[k], 1.001 / largest) << i;
       EXPECT_NEAR(static_cast<double>(geometry.normals[3 * i + k]), static_cast<double>(four[4 * i + k]),
                   4.0 / (1 << (bits - 1)))

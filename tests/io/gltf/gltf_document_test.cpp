@@ -251,7 +251,7 @@ TEST(GltfStructure, mark_of_a_bake_is_found_in_the_node_of_a_mesh_or_above_it) {
   ASSERT_TRUE(broken->meshes()[0].mark_fault);
   EXPECT_EQ(broken->meshes()[0].mark_fault->place, "a.gltf, /nodes/1/extras/chronormal/version");
 
-  // A mark in a node that has another mesh belongs to that mesh only.
+  // If node 0 has another mesh than its child, a mark in node 0 belongs only to that other mesh.
   builder.json["meshes"].push_back(builder.json["meshes"][0]);
   builder.json["nodes"][0]["mesh"] = 1;
   builder.json["nodes"][1].erase("extras");
@@ -315,8 +315,8 @@ Corners turned(Corners corners) {
   return corners;
 }
 
-// Makes a document with five vertices, which suit every mode of primitives: in a triangle fan, vertex 0 is in the
-// middle.
+// Makes a document with five vertices, and reads its geometry. The vertices suit every mode of primitives: in a
+// triangle fan, vertex 0 is in the middle.
 GltfGeometry five_vertices(int mode, std::optional<std::vector<std::uint8_t>> indices) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, -1, 1, 0});

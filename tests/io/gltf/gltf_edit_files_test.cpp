@@ -50,7 +50,7 @@ std::string first_bytes() { return bytes_of(kFirst); }
 std::string second_bytes() { return "skip" + bytes_of(kSecond) + "x"; }
 std::string as_data(const std::string& bytes) { return "data:application/octet-stream;base64," + base64(bytes); }
 
-// Opens a file and compares its arrays with those of two_buffers(). If with_third, the file must also have a third
+// Opens a file and compares its arrays with the arrays of two_buffers(). If with_third, the file must also have a third
 // array.
 void expect_arrays(const std::string& path, bool with_third) {
   const Result<GltfDocument> document = GltfDocument::open(path);

@@ -158,7 +158,7 @@ TEST(GltfEdit, number_beyond_double_is_kept_and_refused_where_it_is_read) {
   EXPECT_EQ(error_with("/meshes/0/name", "?"), "a.gltf, /meshes/0/name: the value must be a string, not a number");
 }
 
-// Adds an array with these options to a file, and returns the JSON of the accessor of this array.
+// Adds an array with the given options to a file, and returns the JSON of the accessor of this array.
 Json accessor_of(const std::vector<float>& values, const GltfVectors& options, bool scalars = false) {
   GltfBuilder builder;
   const std::size_t base = builder.add_positions(std::vector<float>(scalars ? 3 : values.size(), 1.0F));

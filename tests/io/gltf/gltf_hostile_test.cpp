@@ -76,7 +76,7 @@ TEST(GltfHuge, nested_arrays_are_refused_at_the_level_that_is_too_deep) {
   std::string objects = head;
   for (int i = 0; i < 200000; ++i) objects += R"({"a":)";
   EXPECT_TRUE(read_apart("objects", objects).starts_with("a.gltf, byte "));
-  // Brackets inside a string do not count as nested.
+  // Brackets inside a string do not count as nested arrays.
   EXPECT_TRUE(read_apart("text", head + "\"\\\"" + std::string(200000, '[') + "\"}").starts_with("a.gltf: "));
 }
 
@@ -108,8 +108,8 @@ TEST(GltfHuge, numbers_and_texts_of_a_million_digits) {
   EXPECT_TRUE(read_apart("exponent", std::string(kHead) + "\"extras\": 1e-" + digits + "}").starts_with("a.gltf"));
   EXPECT_TRUE(read_apart("version", std::string(R"({"asset": {"version": ")") + digits + "\"}}")
                   .starts_with("a.gltf, /asset/version: "));
-  // An unknown extension that the file requires but does not use gives only a note. The error is another one: nothing
-  // in the file moves.
+  // If the file requires an unknown extension but does not use it, the reader only gives a note. The error here is that
+  // nothing in the file moves.
   EXPECT_TRUE(read_apart("extension", std::string(kHead) + R"("extensionsRequired": [")" + digits + "\"]}")
                   .starts_with("a.gltf: nothing in this file moves"));
 }
@@ -153,8 +153,8 @@ TEST(GltfHuge, keys_that_nothing_backs_are_refused_before_they_are_made) {
   EXPECT_TRUE(read_apart("keys", builder.glb()).starts_with("a.gltf, /"));
 }
 
-// Many tracks share the same arrays of keys. If the reader copied the arrays for each track, a small file would need
-// much memory.
+// Many tracks share the same arrays of key times and values. If the reader copied the arrays for each track, a small
+// file would need much memory.
 TEST(GltfHuge, tracks_that_share_their_keys_are_refused_before_these_are_copied) {
   if (test::is_sanitized()) GTEST_SKIP() << kSlow;
   GltfBuilder builder = test::quad_document();
@@ -271,8 +271,8 @@ const std::set<std::string_view> kRead = {
     "VALUE_NOT_IN_RANGE",
 };
 
-// Codes of errors about parts of a file that our reader does not read, or reads only if they are used. The text gives
-// the reason.
+// Codes of errors that the Khronos validator reports about parts of a file that our reader does not read, or reads only
+// if they are used, each with the reason.
 const std::map<std::string_view, const char*> kNotRead = {
     {"ACCESSOR_INVALID_SIGN", "the sign of tangents does not touch geometry"},
     {"ACCESSOR_JOINTS_INDEX_DUPLICATE", "skins are not read"},
@@ -308,11 +308,11 @@ const std::map<std::string_view, const char*> kNotRead = {
     {"MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", "the file has it in colours, which are not read"},
 };
 
-// Files with types from later versions of glTF. The validator only warns of such types.
+// Names of files with types from later versions of glTF. The Khronos validator only warns of such types.
 const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 
-// Tells whether a message of the validator is about a part of the file that our reader reads. Some codes also occur in
-// other parts; the JSON pointer then decides.
+// Tells whether a message of the Khronos validator is about a part of the file that our reader reads. If the code of
+// the message also occurs for other parts, the JSON pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
     // Our reader never reads the entries of these lists.

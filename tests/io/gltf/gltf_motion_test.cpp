@@ -102,7 +102,8 @@ TEST(GltfTargets, sums_are_rounded_once_to_the_nearest_float) {
   }
 }
 
-// Makes a document with three meshes, two of which morph, and with nodes in another order than the meshes:
+// Data of several_meshes(), which makes a document with three meshes, two of which morph, and with nodes in another
+// order than the meshes:
 //   mesh 0: primitive 0 is a triangle, primitive 1 the quad, primitive 2 points; one target
 //   mesh 1: no targets
 //   mesh 2: a triangle; two targets, of which the first has normals only
@@ -235,16 +236,15 @@ TEST(GltfLinear, normalised_integers_are_weights) {
   check(std::uint16_t{}, {0, 1, 1 / 65535.0, 0.2}, 0, 65535, 1, 13107);
 }
 
-// A weight track for a node. Two of the nodes have the same mesh, and a third node has another mesh and other key
-// times.
+// The weight track of one node: the key times in seconds, and the weights of all targets at each key.
 struct Track {
   std::size_t node;
   GltfInterpolation interpolation;
   std::vector<float> times, values;
 };
 
-// Returns the true positions of a part at a time. Evaluates the weights by the formulas of the specification, in code
-// that shares nothing with the reader.
+// Returns the true positions of the vertices of a part at a time. Evaluates the weights by the formulas of the
+// specification, in code that shares nothing with the reader.
 std::vector<double> true_positions(const Track& track, const std::vector<float>& base,
                                    const std::vector<std::vector<float>>& targets, double time) {
   return test::morphed(base, targets,
@@ -401,7 +401,8 @@ TEST(GltfSharedKeys, mean_different_weights_by_another_interpolation) {
   samplers[1]["input"] = samplers[0]["input"];
   samplers[1]["output"] = samplers[0]["output"];
   const GltfMotion result = motion_of(builder, "both");
-  // The second node rests until it jumps at 1 s, so in keyframe 1, just before 1 s, only the first node has moved.
+  // The second node rests until its weight jumps at 1 s, so in keyframe 1, just before 1 s, only the first node has
+  // moved.
   const Motion& motion = result.motion;
   ASSERT_EQ(motion.keyframes.size(), 4U);
   EXPECT_EQ(motion.keyframes[1].positions[3 * 2 + 2], 1);

@@ -168,11 +168,10 @@ TEST(GltfNotes, a_part_that_nobody_needs_is_passed_over_with_a_note_and_refused_
     }
     const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);
     EXPECT_EQ(reading.broken, "");
-    // If all parts of an animation are skipped, the animation keeps its number. Reading this animation is then an
-    // error.
+    // An animation whose parts are all skipped keeps its number, but reading this animation is an error.
     for (const Error& error : reading.errors)
       EXPECT_NE(error.message.find("drives no morph targets"), std::string::npos) << error.text();
-    // The targets themselves can still be read.
+    // The targets can still be read without the animation.
     const Result<GltfMotion> motion = read_gltf_motion(*file, {});
     ASSERT_TRUE(motion.ok()) << motion.error().text();
     EXPECT_GE(motion.value().motion.segments.size(), 2U);
@@ -193,8 +192,8 @@ TEST(GltfNotes, what_the_geometry_needs_is_an_error) {
               f.json["nodes"][0]["rotation"] = {0, 0, 0, 0};
             }).find("/nodes/0/rotation"),
             std::string::npos);
-  // If the reader uses a part of the file, an unknown extension of that part may change its meaning, and is therefore
-  // an error.
+  // If the reader uses a part of the file, an unknown extension of that part may change the meaning of the part, and is
+  // therefore an error.
   for (const char* const pointer : {"/meshes/0/primitives/0", "/meshes/0", "/accessors/0", "/bufferViews/0",
                                     "/buffers/0", "/animations/0/samplers/0"}) {
     GltfBuilder builder = animated();
@@ -231,7 +230,7 @@ TEST(GltfNotes, khr_meshopt_compression_is_decoded_where_it_can_be_and_named_whe
 }
 
 // If a strict reader accepts a file, a lenient reader must give the same result without a note. If only the lenient
-// reader accepts a file, it must give a note.
+// reader accepts a file, the lenient reader must give a note.
 TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
   constexpr std::uint32_t kSeed = 5404;
   std::cout << "seed " << kSeed << '\n';
@@ -263,7 +262,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     } else {
       ++noted;
       ASSERT_FALSE(strictly.errors.empty()) << file->notes()[0].text() << text;
-      // The file can still be edited and written: its arrays remain where other programs look for them.
+      // A file with notes can still be edited and written: its arrays remain where other programs look for them.
       ASSERT_TRUE(GltfEdit(*file).bytes("").ok());
     }
   }

@@ -21,8 +21,8 @@ namespace chronormal::gltf_octahedral_test {
 namespace {
 
 // Returns encoded normals for each number of bits from least_bits to most_bits: all (x, y) on a grid with at most
-// most_steps steps along each side of the square. If there are few bits, these are all possible values. The fourth
-// component, w, must not change. tests/viewers/filters.test.mjs has the same loop.
+// most_steps steps along each side of the square. For few bits, the grid has all possible values. The fourth component,
+// w, must not change. tests/viewers/filters.test.mjs has the same loop.
 template <class T>
 std::vector<T> lattice(int least_bits, int most_bits, int most_steps) {
   std::vector<T> elements;
@@ -57,7 +57,8 @@ std::array<double, 3> normal_of(int x, int y, int one, double length) {
   return {place[0] * scale, place[1] * scale, place[2] * scale};
 }
 
-// Returns the largest rounding error of a component, compared with the normal that is not rounded.
+// Returns the largest rounding error of any component of the decoded normals, compared with normals that are not
+// rounded.
 template <class T>
 double worst_rounding(const std::vector<T>& elements) {
   const std::vector<T> result = decoded(elements);

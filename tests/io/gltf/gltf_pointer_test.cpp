@@ -16,7 +16,7 @@ using test::GltfBuilder, test::GltfFixture;
 
 const std::vector<float> kTimes = {0, 1, 3};
 
-// Adds a channel that animates a single weight.
+// Adds a channel that animates a single weight, which the JSON pointer `pointer` names.
 void add_pointer(GltfBuilder& builder, const std::string& pointer, const std::vector<float>& times,
                  const std::vector<float>& values, const char* interpolation = "LINEAR") {
   builder.add_track(0, 0, times, values, interpolation);
@@ -31,7 +31,7 @@ GltfBuilder document() {
   return builder;
 }
 
-// Returns the error of reading a document and its first track, or "" if there is none.
+// Returns the error of reading a document and its first track, or "" if there is no error.
 std::string error_of(const GltfBuilder& builder) {
   const GltfFixture file(builder);
   if (!file.ok()) return file.error();

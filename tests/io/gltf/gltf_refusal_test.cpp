@@ -1,5 +1,5 @@
 // Checks that the reader refuses files that the glTF specification forbids, with a JSON pointer to the fault. Each line
-// of the table of cases makes one fault.
+// of the table of cases makes one fault in a valid document.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ struct Case {
   const char* pointer;  // the place of the error must begin with this
 };
 
-// Returns the first error from reading everything in a file, or "" if there is none.
+// Returns the first error from reading everything in a file, or "" if there is no error.
 std::string first_error(const GltfBuilder& builder) {
   const GltfFixture file(builder.gltf());
   const fuzz::GltfReading reading = fuzz::read_all_of(file.result(), "a.gltf", std::size_t{1} << 24);

@@ -51,7 +51,8 @@ struct Skinned {
   }
 };
 
-// Reads the skin of all parts of a file, as an audit does. Returns the joint weights of the vertices, or an error.
+// Reads the skin of all parts of a file, as an audit does. Returns the joints of the vertices with their weights, or an
+// error.
 Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std::size_t>* first = nullptr,
                                      std::optional<std::size_t> animation = std::nullopt) {
   EXPECT_TRUE(fixture.ok()) << fixture.error();
@@ -64,7 +65,8 @@ Result<std::vector<JointShare>> read(const GltfFixture& fixture, std::vector<std
   return shares;
 }
 
-// Returns the joints of every vertex and their weights in percent, as text: "0 100; 0 75, 1 25; ...".
+// Returns the joints of each vertex and their weights in percent, as text: "0 100; 0 75, 1 25; ...". A semicolon
+// separates vertices.
 std::string shares_of(const Skinned& skinned) {
   const GltfFixture fixture(skinned.builder);
   std::vector<std::size_t> first;
@@ -89,7 +91,7 @@ std::string error_of(const Skinned& skinned, std::optional<std::size_t> animatio
   return shares ? "" : shares.error().text();
 }
 
-// ---- possible contents of a file
+// ---- contents that a file may have -------------------------------------------------------------------------------
 
 constexpr const char* kExpected = "0 100; 0 75, 1 25; 0 50, 1 50; 0 25, 1 75";
 
@@ -228,7 +230,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
     Skinned skinned;
     spoilt.spoil(skinned);
     EXPECT_EQ(error_of(skinned), spoilt.error);
-    // Without the skin, the mesh can still be read.
+    // A fault in the skin must not keep the reader from reading the mesh.
     const GltfFixture fixture(skinned.builder);
     ASSERT_TRUE(fixture.ok()) << spoilt.error;
     EXPECT_TRUE(fixture->geometry(0, 0, {true, true}).ok()) << spoilt.error;
@@ -417,7 +419,7 @@ TEST(GltfSkin, faults_of_a_compressed_mesh_have_their_place) {
       << error_of(no_mesh);
 }
 
-// If many sets of weights share an accessor, they take few bytes of the file but much memory.
+// If many sets of weights share an accessor, the sets take few bytes of the file but much memory.
 TEST(GltfSkin, many_sets_are_held_to_the_limit_of_expansion) {
   Skinned skinned;
   constexpr std::size_t kVertices = 4096, kSets = 120;

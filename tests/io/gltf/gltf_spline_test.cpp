@@ -35,7 +35,7 @@ GltfMotion cut(const Spline& spline, double tolerance) {
   return motion ? std::move(motion).value() : GltfMotion{};
 }
 
-// Returns the largest distance between a vertex and its true position, at a thousand times.
+// Returns the largest distance between a vertex of the motion and its true position on the spline, at a thousand times.
 double largest_distance(const Spline& spline, const Motion& motion) {
   double largest = 0;
   const double first = spline.times.front(), last = spline.times.back();
@@ -74,7 +74,7 @@ TEST(GltfSpline, that_overshoots_is_within_the_stated_error) {
     EXPECT_LE(result.curve_error, tolerance * diagonal() * 1.0001);
     const double distance = largest_distance(spline, result.motion);
     EXPECT_LE(distance, result.curve_error + rounding(result.motion));
-    // The bound must not be needlessly large: the true error reaches at least a tenth of it.
+    // The stated error must not be needlessly large: the true distance is at least a tenth of the stated error.
     if (tolerance > 1e-4) {
       EXPECT_GE(distance, result.curve_error / 10);
     }

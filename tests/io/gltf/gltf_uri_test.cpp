@@ -1,4 +1,4 @@
-// Tests from which places the reader loads the buffers of an untrusted model.
+// Tests from which places (URIs and paths) the reader loads the buffers of an untrusted model.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -39,8 +39,8 @@ class GltfUris : public ::testing::Test {
     ASSERT_EQ(mkfifo((asset_ + "/pipe.bin").c_str(), 0600), 0);
   }
 
-  // Reads the geometry of a model whose buffer has this URI. Returns "" or the error. Reads in a child process, so that
-  // the test ends even if reading blocks.
+  // Reads the geometry of a model whose buffer has the given URI. Returns the error, or "". Reads in a child process,
+  // so that the test ends even if reading blocks.
   [[nodiscard]] std::string read(const std::string& uri, bool allow_external) const {
     const test::ChildRun run = test::run_in_child(20, [&]() -> std::string {
       GltfOptions options;

@@ -1,4 +1,4 @@
-// Tests meshes that the transformations of the scene's nodes move to other places.
+// Tests the reading of meshes in world space, to which the transformations of the scene's nodes move them.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// Checks that an edited file omits bytes that have become unused, in every buffer, and that all other arrays keep their
-// values. The test reads accessors with its own code.
+// Checks that a file edited by GltfEdit omits the bytes that no array uses any more, in every buffer, and that all
+// other arrays keep their values. The test reads accessors with its own code.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -112,7 +112,8 @@ TEST(UnusedArrays, nothing_is_left_out_unless_it_is_asked_for) {
   EXPECT_EQ(Parts(bytes_or_error(edit)).bin.size(), 48U);
 }
 
-// Bytes stay in the file if another accessor also uses them, or if an unknown extension might use them.
+// Bytes of an unused array stay in the file if another accessor also uses them, or if an unknown extension might use
+// them.
 TEST(UnusedArrays, bytes_that_something_else_needs_stay) {
   const auto sharing = [] {
     GltfBuilder builder;
@@ -176,8 +177,8 @@ TEST(UnusedArrays, sparse_arrays_that_share_a_view_are_found_where_they_have_mov
   EXPECT_EQ(after.json["accessors"][3]["sparse"]["values"]["byteOffset"], 2 * pair.size() + indices.size() - left_out);
 }
 
-// Makes a file with three buffers. Only the base uses the first, the base and old deltas use the second, and only old
-// deltas use the third.
+// Makes a file with three buffers. The first has only the base, the second has the base and old deltas, and the third
+// has only old deltas.
 GltfBuilder in_three_buffers(const std::vector<std::string>& uris) {
   GltfBuilder builder;
   const std::string one = bytes_of(kBase),

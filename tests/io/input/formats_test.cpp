@@ -24,8 +24,8 @@ namespace {
 struct Fixture {
   std::string label;
   std::string bytes;
-  // The smallest size in bytes of a file with this content that is still valid. A file that is cut off before this size
-  // must be an error. The size is 0 if the format cannot detect a cut.
+  // The smallest size, in bytes, to which the file can be cut and still be valid. A file that is cut off before this
+  // size must give an error. The size is 0 if the format cannot detect a cut.
   std::size_t declared_end = 0;
 };
 
@@ -68,7 +68,8 @@ class Readers : public ::testing::TestWithParam<std::string> {
     return found == fixture_table().end() ? none : found->second;
   }
 
-  // Reads arbitrary bytes and checks the result. Returns true if the bytes are a mesh.
+  // Reads arbitrary bytes with the tested reader, and checks the result. Returns true if the reader accepts the bytes
+  // as a mesh.
   bool read_anything(const std::string& bytes) {
     ++case_count_;
     const test::CpuClock clock;

@@ -308,7 +308,7 @@ TEST_F(OpenInput, motions_say_what_they_are_and_npz_keeps_it) {
   EXPECT_EQ(read({"quad.glb"}).value().kind, MotionKind::kTargets);
   folder_.write("body2.obj", kShaded);
 
-  // A base and one target are not a sequence of two keyframes.
+  // A base and one target have the kind kTargets, and are not a sequence of two keyframes.
   const Motion one = test::read_motion(test::targets_over(folder_ / "body.obj", {folder_ / "body2.obj"})).value();
   EXPECT_EQ(one.kind, MotionKind::kTargets);
   ASSERT_TRUE(write_motion(one, folder_ / "one.npz", false).ok());
@@ -323,7 +323,7 @@ TEST_F(OpenInput, motions_say_what_they_are_and_npz_keeps_it) {
     EXPECT_NE(refused.error().message.find(".npz"), std::string::npos) << refused.error().message;
   }
 
-  // Reading an animation at other times keeps its jumps.
+  // An animation that is read at other times keeps its jumps.
   Motion jumps = read({"body.obj", "walk.pc2"}).value();
   jumps.keyframes.insert(jumps.keyframes.end(), {jumps.keyframes[0], jumps.keyframes[1]});
   for (std::size_t k = 0; k < 4; ++k) jumps.keyframes[k].time = std::vector<double>{0, 1, 1, 2}[k];

@@ -52,7 +52,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// Checks that an error has a code, a place and a message.
+// Checks that an error has the code kInvalidInput, a place in the file, and a message.
 void check_error(const Error& error) {
   EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
   EXPECT_TRUE(error.place.starts_with("a.bin")) << error.text();
@@ -84,7 +84,7 @@ bool check(const Result<MayaCacheDescription>& result, std::size_t) {
   return true;
 }
 
-// Returns all readers by name. Each is a function that tells whether the reader accepts the bytes.
+// Returns all readers by name. Each reader is a function that tells whether it accepts the given bytes.
 std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   std::map<std::string, std::function<bool(const std::string&)>> readers;
   for (const Format& format : formats()) {
@@ -198,7 +198,8 @@ TEST_P(MotionReaders, boundary_numbers_in_text_are_errors_or_results) {
                                       "6148914691236517206", "9223372036854775808", "18446744073709551615",
                                       "18446744073709551616", "-1", "-2147483648", "-9223372036854775808", "", "1.5"}) {
         SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + " := " + value);
-        // In a text file, the new number may be longer or shorter than the old number; in a binary file, it may not.
+        // Replaces a number by another one, which may be longer or shorter. A text file then keeps its structure; a
+        // binary file may lose it.
         (void)read_anything(std::string(bytes).replace(at, end - at, value));
       }
     }

@@ -52,8 +52,7 @@ TEST(Numbering, an_exponent_counts_where_all_names_have_one) {
   EXPECT_EQ(sorted({"t_1e-05.obj", "t_2.5e-05.obj", "t_1e-04.obj", "t_9e-06.obj"}),
             (Names{"t_9e-06.obj", "t_1e-05.obj", "t_2.5e-05.obj", "t_1e-04.obj"}));
   EXPECT_EQ(times_of({"t_1e-05.obj", "t_1e+00.obj"}), (std::vector<double>{1e-05, 1}));
-  // If all names begin with something like s2e, the letter e does not begin an exponent: s2e1 means scene 2, letter e,
-  // number 1.
+  // If all names have the form s2e1, the letter e does not begin an exponent: s2e1 has the two numbers 2 and 1.
   EXPECT_EQ(sorted({"s2e1.obj", "s2e2.obj", "s2e10.obj"}), (Names{"s2e1.obj", "s2e2.obj", "s2e10.obj"}));
 }
 
@@ -70,7 +69,7 @@ TEST(Numbering, even_steps_of_whole_numbers_are_counted_and_uneven_ones_are_time
   EXPECT_EQ(times_of({"f_0010.obj", "f_0020.obj", "f_0030.obj", "f_0060.obj"}), (std::vector<double>{0, 10, 20, 50}));
   EXPECT_FALSE(times_of_files({"f_1.obj", "f_2.obj", "f_4.obj"}).series->is_even());
   EXPECT_EQ(times_of({"f_1.obj", "f_99999999999999999999.obj"}), (std::vector<double>{0, 1}));
-  // Files give no times if their order is not that of their numbers, or if their names have no numbers.
+  // The names of files give no times if the files are not in the order of the numbers, or if the names have no numbers.
   EXPECT_FALSE(times_of_files({"f_4.obj", "f_2.obj"}).series);
   EXPECT_FALSE(times_of_files({"a.obj", "b.obj", "c.obj"}).series);
   EXPECT_EQ(times_of_files({"a/f_1.obj", "b/f_9.obj"}).times, (std::vector<double>{0, 1}));
@@ -132,7 +131,7 @@ TEST(Numbering, names_that_are_drawn_stand_in_the_order_of_what_they_were_printe
       if (has_sign && random.below(2) == 0) value = -value;
       if (std::find(thousandths.begin(), thousandths.end(), value) == thousandths.end()) thousandths.push_back(value);
     }
-    // If no number were positive, all names would have a sign, which could also be a hyphen.
+    // If no drawn number were positive, all names would have a sign, which could also be a hyphen.
     if (std::none_of(thousandths.begin(), thousandths.end(), [](std::int64_t value) { return value > 0; }))
       thousandths.push_back(1000000000);
     std::vector<std::pair<std::int64_t, std::string>> drawn;

@@ -87,7 +87,8 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1}))
                 .find("begins with its number of corners"),
             std::string::npos);
-  // A single face after its number of corners gives the same message, although its vertices do not exist.
+  // A single face that follows its number of corners gives the same message as several faces, although its vertices do
+  // not exist.
   EXPECT_NE(
       read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
       std::string::npos);
@@ -139,7 +140,8 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
   std::cout << "seed " << kSeed << '\n';
   std::mt19937 random(kSeed);
   for (int round = 0; round < 60; ++round) {
-    // Coordinates are multiples of 1/1024. Ten decimals represent them exactly, and their sums are exact in double.
+    // The coordinates are multiples of 1/1024. Ten decimal places represent such numbers exactly, and their sums are
+    // exact in double.
     const auto number = [&](std::uint32_t most) { return static_cast<double>(random() % (most * 1024)) / 1024; };
     const std::vector<double> shift = {452312 + number(10000), 5411873 + number(10000), number(100)};
     const TemporaryFolder near, far;
@@ -170,7 +172,7 @@ TEST(FarOrigin, a_mesh_in_a_survey_has_the_positions_that_it_has_at_the_origin) 
           for (std::size_t i = 0; i < motion.keyframes[k].positions.size(); ++i)
             ASSERT_EQ(double{motion.keyframes[k].positions[i]} + motion.origin[i % 3],
                       double{at_origin.keyframes[k].positions[i]} + shift[i % 3]);
-        // The reader has subtracted an origin from the positions. The writers must add the origin again.
+        // The reader has subtracted an origin from the positions, and the writers must add this origin again.
         for (const std::string out : {"out.npz", "out_%d.obj", "out_%d.ply"}) {
           const TemporaryFolder written;
           ASSERT_TRUE(write_motion(motion, written / out, false).ok());
@@ -222,7 +224,7 @@ TEST(FarOrigin, any_keyframe_tells_that_there_are_more_digits) {
   std::mt19937 random(kSeed);
   const std::vector<std::uint32_t> corners = {0, 1, 2};
   for (int round = 0; round < 20; ++round) {
-    // Only one keyframe has numbers with more digits than float32 keeps.
+    // Only keyframe `telling` has numbers with more digits than float32 keeps.
     const std::size_t frames = 2 + random() % 10, telling = random() % frames;
     const TemporaryFolder folder;
     std::vector<double> all;

@@ -1,4 +1,4 @@
-// Tests how the poses of a rig are read from JSON, and the messages about files without valid poses.
+// Tests how a JSON file with poses of a rig is read, and the messages about files without valid poses.
 #include "chronormal/io/input.h"
 
 #include <gtest/gtest.h>

@@ -34,7 +34,8 @@ std::vector<float> vertices_of_obj(const fs::path& path) {
   return positions;
 }
 
-// Adds the deltas of a target compressed by gzip to the positions. Returns the number of lines in the target.
+// Adds the deltas of a target, a text file compressed by gzip, to the positions. Returns the number of lines in the
+// target.
 std::size_t add_target(const fs::path& path, std::vector<float>& positions) {
   const gzFile file = ::gzopen(path.c_str(), "rb");
   std::size_t lines = 0;

@@ -150,7 +150,7 @@ TEST(FindFrames, a_name_that_outputs_are_given_by_stands_for_its_numbered_files)
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "d\\\\\\e_%d.obj"}))), (Names{"d\\\\\\e_7.obj"}));
   (void)folder.write("fg_7.obj", "");
   EXPECT_EQ(error_of(find_frames(test::files(Names{folder / "\\f\\g_%d.obj"}))).code, ErrorCode::kFailed);
-  // If a file has exactly this name, the name is not a pattern.
+  // If a file has exactly the name a_%d.obj, this name is not a pattern.
   (void)folder.write("a_%d.obj", "");
   EXPECT_EQ(names_of(find_frames(test::files(Names{folder / "a_%d.obj"}))), (Names{"a_%d.obj"}));
 }

@@ -58,7 +58,8 @@ Motion wave(std::size_t keyframes) {
   return motion;
 }
 
-// Writes the motion in every format that can be read one keyframe at a time. Returns the names of the files.
+// Writes the motion in every format that can be read one keyframe at a time. Returns the names of the files of each
+// format.
 std::vector<std::vector<std::string>> write_all(const TemporaryFolder& folder, const Motion& motion) {
   for (const char* const name : {"walk.npz", "walk.pc2", "walk.mdd", "walk_%02d.ply", "walk_%02d.obj"})
     EXPECT_TRUE(write_motion(motion, folder / name, false).ok()) << name;
@@ -100,8 +101,8 @@ TEST(InputStream, keyframes_have_the_bits_of_the_input_read_whole) {
   }
 }
 
-// If only a part of a sequence is read, this part still follows the curves through all keyframes, so its pieces are the
-// same.
+// A part of a sequence follows the curves through all keyframes of the sequence, so its pieces are the same as those of
+// the whole.
 TEST(InputStream, the_ends_of_a_part_move_on_the_curves_of_the_whole) {
   const TemporaryFolder folder;
   for (const auto& names : write_all(folder, wave(14))) {

@@ -124,7 +124,7 @@ TEST_F(Targets, base_may_lie_among_its_targets) {
   const Error alone = error_of(read({base_}));
   EXPECT_EQ(alone.code, ErrorCode::kInvalidInput);
   EXPECT_EQ(alone.text(), base_ + ": there is no target, only the base itself; name the files of the targets");
-  // MakeHuman targets may be in the same folder as the base, which is an OBJ file: the base does not count as a second
+  // A folder of MakeHuman targets may also contain the base, an OBJ file. The base then does not count as a second
   // format.
   make_folder("mh");
   const std::string base = folder_.write("mh/base.obj", kSquareObj);

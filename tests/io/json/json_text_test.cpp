@@ -90,7 +90,7 @@ TEST(JsonText, added_members_and_items_take_the_blanks_of_the_last_sibling) {
   EXPECT_EQ(append("[ ]", "", "3"), "[3 ]");
   EXPECT_EQ(changed("{ }", {{"/a", "1"}, {"/b", "2"}}), R"({"a":1,"b":2 })");
   EXPECT_EQ(changed("[]", {{"", "1", true}, {"", "2", true}}), "[1,2]");
-  // An added element gets as many blanks before it as the other elements have, unless they have very many.
+  // append() puts as many blanks before a new element as the other elements have, unless they have very many.
   const std::string long_one = "[" + std::string(1000, ' ') + "1]";
   EXPECT_EQ(append(long_one, "", "3"), long_one.substr(0, 1002) + ",3]");
 }
@@ -237,7 +237,7 @@ TEST(ParseJson, numbers_beyond_double_are_infinite_and_all_others_what_they_are)
     ASSERT_TRUE(parsed.ok()) << number << ": " << parsed.error().text();
     EXPECT_EQ(parsed.value().get<double>(), std::strtod(number.c_str(), nullptr)) << number;
   }
-  // A malformed number must be refused and not repaired.
+  // The parser must refuse a malformed number and not repair it.
   for (const char* const number : {"1e400.5", "01e400", "-e400", "1.e400", ".1e400", "1e400-", "+1e400", "1e4001e400",
                                    "1e400x", "1e+-400", "[1e400"}) {
     const auto parsed = parse(number);

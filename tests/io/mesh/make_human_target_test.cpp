@@ -45,7 +45,8 @@ std::string error_text(const std::string& bytes, const std::vector<float>& base 
   return target.error().text();
 }
 
-// Reads these bytes and checks that the result breaks no invariant. Returns true if the bytes are a valid target.
+// Reads the given bytes as a target, and checks that the result breaks no invariant. Returns true if the bytes are a
+// valid target.
 bool check(const std::string& bytes, const std::vector<float>& base = kSquare) {
   const test::CpuClock clock;
   const Result<MakeHumanTarget> target = read(bytes, base);

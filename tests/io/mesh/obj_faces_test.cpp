@@ -33,7 +33,7 @@ TEST(ObjFaces, of_the_same_text_leave_only_vertices_to_read) {
   const auto positions = positions_like(vertices(0) + kFaces, vertices(7) + kFaces);
   ASSERT_TRUE(positions);
   EXPECT_TRUE(test::same_bits(*positions, read_obj(vertices(7) + kFaces, "x").value().positions));
-  // From file to file, programs may change comments, normals and line ends.
+  // A program may write other comments, normals and line ends in each file of a sequence.
   const std::string other = "# another frame\r\n" + vertices(8) + "vn 0 0 1\n" + kFaces;
   ASSERT_TRUE(positions_like(vertices(0) + kFaces, other));
 }

@@ -158,7 +158,7 @@ TEST(ReadObj, bad_indices_are_errors_with_line_face_and_corner) {
             "walk.obj, line 4: corner 2 of face 0 refers to vertex -4, but the file has 3 vertices so far");
   EXPECT_EQ(error_of(three + "f 1 0 2\n"),
             "walk.obj, line 4: corner 1 of face 0: '0' is not allowed, since vertices are counted from 1");
-  // The reader skips faces with fewer than three corners (see below), so this file has no faces.
+  // The reader skips faces with fewer than three corners, so this file has no faces.
   EXPECT_EQ(error_of(three + "f 1 2\n"), "walk.obj, line 4: the file has no faces (lines that begin with f)");
   EXPECT_EQ(error_of(three + "f 1 5\nf 1 2 3\n"),
             "walk.obj, line 4: corner 1 of face 0 refers to vertex 5, but the file has 3 vertices");
@@ -235,7 +235,7 @@ TEST(ReadObj, positions_count_from_the_origin_before_they_are_rounded) {
   EXPECT_NEAR(far.value().positions[0], 0.123, 1e-7);
   EXPECT_NEAR(far.value().positions[7], 1.009, 1e-6);
   EXPECT_EQ(far.value().positions[2], 101.5F);
-  // A coordinate with trailing digits that float32 keeps does not have more digits than float32.
+  // A number with trailing digits that float32 keeps does not count as a number with more digits than float32.
   EXPECT_FALSE(read_obj("v 1024.5 2048.25 4\nv 1024 2048 4\nv 1025 2049 4\nf 1 2 3\n", "a.obj", {1024, 2048, 4})
                    .value()
                    .has_more_digits);
