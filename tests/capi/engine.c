@@ -79,7 +79,7 @@ static int check_curves(int elements, size_t size) {
       EXPECT(degrees[i] < 1e-3F);
     }
   }
-  /* The next segment leads back, so it begins with the end of the first one. */
+  /* The next segment leads back to the start, so it begins with the end of the first segment. */
   float packed[36], first[36];
   EXPECT(chronormal_curves_unit_normals(curves, 1, (chronormal_result){first, 0}, NULL) == CHRONORMAL_DONE);
   EXPECT(chronormal_curves_next(curves, to, from) == CHRONORMAL_DONE);
@@ -93,7 +93,7 @@ static int check_curves(int elements, size_t size) {
   return 0;
 }
 
-/* Decodes an octahedral normal independently. */
+/* Decodes an octahedral normal without the library. */
 static void decode(const int16_t word[2], double n[3]) {
   const double x = word[0] / 32767.0, y = word[1] / 32767.0, z = 1 - fabs(x) - fabs(y);
   n[0] = z < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x;
@@ -103,7 +103,8 @@ static void decode(const int16_t word[2], double n[3]) {
   for (int c = 0; c < 3; ++c) n[c] /= length;
 }
 
-/* Checks that ranges and many t give the same bits as one call, and that packed normals are close to these. */
+/* Checks that calls for ranges of elements or for many t give the same bits as one call for all elements, and that
+ * packed normals are close to the same normals. */
 static int check_outputs(void) {
   const chronormal_mesh mesh = {5, 4, kCorners, NULL};
   const chronormal_vectors from = {kFrom[0].position, sizeof(vertex)}, to = {kTo[0].position, sizeof(vertex)};
@@ -219,7 +220,7 @@ static int check_blend(void) {
   return 0;
 }
 
-/* A vertex rises along a parabola, z = t (2 - t), which is the cubic through three keyframes. */
+/* Tests curved motion: a vertex moves on the parabola z = t (2 - t), which is the cubic through three keyframes. */
 static int check_paths(const char* folder) {
   char names[3][512];
   const char* files[3] = {names[0], names[1], names[2]};

@@ -34,8 +34,8 @@ TRIANGLES = ("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\nv 0 1 1\
 
 
 def setUpModule():
-    """Starts Wine's server. If a tested program started the server, the server would keep the pipes of that program
-    open."""
+    """Starts Wine's server before the tests. If a tested program started the server, the server would keep the pipes
+    of that program open."""
     if WINDOWS:
         quiet = {"env": ENVIRONMENT, "stdin": subprocess.DEVNULL, "stdout": subprocess.DEVNULL,
                  "stderr": subprocess.DEVNULL}

@@ -78,8 +78,8 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
 
 // Compares the normals of the straight pieces with the normals of the curve, at times between the keyframes, for all
 // faces or for all vertices. Returns the largest angle in degrees. Subtracts twice the angle that rounding positions to
-// float32 may cause: once because the pieces are rounded, and once because the library accepts a piece whose error is
-// only rounding.
+// float32 may cause: once because the positions of the pieces are rounded, and once because the library accepts a piece
+// if its error is no larger than a rounding error.
 double largest_error(const Motion& motion, const Motion& pieces, bool of_vertices, bool given) {
   double largest = 0;
   for (std::size_t p = 0; p < pieces.segments.size(); ++p) {
@@ -109,8 +109,8 @@ double largest_error(const Motion& motion, const Motion& pieces, bool of_vertice
           }
           const double size = static_cast<double>(
               std::sqrt(exact[e][0] * exact[e][0] + exact[e][1] * exact[e][1] + exact[e][2] * exact[e][2]));
-          // A triangle contributes two edges and a quad four. An edge is at most 1.8 times as long as its largest
-          // component. The factors include a safety margin.
+          // A triangle contributes two edges to the rounding error, and a quad four. An edge is at most 1.8 times as
+          // long as its largest component. The factors 16 and 1.2 include a safety margin.
           rounding = 2 * 57.3 * 0x1p-24 * 16 * static_cast<double>(face.size() - 2) * widest * 1.2 * furthest / size;
         }
         largest = std::max(largest, test::angle_of(exact[e], found[e]) * 57.29577951308232 - rounding);
@@ -144,7 +144,7 @@ TEST(Pieces, have_the_normals_of_the_curve_within_the_tolerance) {
   }
 }
 
-// The motions are random tetrahedra and quads that tumble, grow and wander. Some of them are thin.
+// The motions are random tetrahedra and quads that tumble, grow and wander. Some of the tetrahedra and quads are thin.
 TEST(Pieces, of_random_motions_are_within_the_tolerance) {
   const std::uint64_t seed = 20261127;
   RecordProperty("seed", std::to_string(seed));
@@ -229,7 +229,7 @@ TEST(Pieces, a_face_that_turns_over_decides_nothing) {
     EXPECT_LE(cut.cut.beyond, 1U);
     EXPECT_TRUE(validate(cut.motion).ok());
   }
-  // Now vertex 2 passes exactly through the line.
+  // The keyframes now move vertex 2 exactly through the line through vertices 0 and 1.
   for (Motion::Keyframe& key : motion.keyframes)
     key.positions[8] = 0, key.positions[7] += static_cast<float>(0.01 * key.time * key.time);
   const CutMotion through = cut_into_segments(motion, curve()).value();

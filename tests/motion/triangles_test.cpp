@@ -91,8 +91,8 @@ void expect_covers_once(const std::vector<Place>& polygon, std::size_t axis) {
 TEST(Triangles, convex_polygons_stay_fans) {
   EXPECT_EQ(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
   EXPECT_EQ(cut({{0, 0}, {2, 0}, {3, 1}, {2, 2}, {0, 2}}), (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}));
-  // A fan from the first corner covers this polygon although that corner is concave, so the polygon is still cut into a
-  // fan.
+  // A fan from corner 0 covers this polygon, although the angle at corner 0 is concave. The polygon is therefore cut
+  // into a fan.
   EXPECT_EQ(cut({{1, 1}, {4, 0}, {1, 4}, {0, 4}, {0, 0}}).front(), (Triangle{0, 1, 2}));
 }
 
@@ -116,7 +116,7 @@ TEST(Triangles, polygons_that_are_drawn_are_covered_once) {
   std::size_t tried = 0, concave = 0;
   while (tried < 400) {
     // Random points on a small grid become a polygon: parts of the outline are reversed until no two edges cross. Many
-    // points are on one line.
+    // of the points are on a common line.
     const std::size_t n = 4 + random() % 16;
     const std::int64_t grid = 3 + static_cast<std::int64_t>(random() % 40);
     std::vector<Place> polygon;

@@ -71,7 +71,7 @@ double hardest_time(const Segment& segment, std::size_t f) {
   return size_at(segment, f, low) < size_at(segment, f, best) ? low : best;
 }
 
-// Draws times at which the direction is hard to compute: for one of the faces, or for most faces.
+// Draws times at which the direction of a normal is hard to compute: for one of the faces, or for most faces.
 std::vector<double> some_times(const Segment& segment, fixtures::Random& random) {
   constexpr std::array<double, 16> kSimple{0,           1,           0.5,  0.25,    0.75,     0.125,
                                            1.0 / 3,     0.8,         1e-9, 0x1p-40, 0x1p-150, 0x1p-250,
@@ -89,7 +89,7 @@ std::vector<double> some_times(const Segment& segment, fixtures::Random& random)
   return times;
 }
 
-// The number of wrong results, and the largest error of all other results in radians.
+// The number of tested cases, the number of wrong results, and the largest error of all other results, in radians.
 struct Tally {
   std::size_t cases = 0, violations = 0;
   double largest = 0;
@@ -188,7 +188,7 @@ Tally judged(const Motion& motion, const std::vector<double>& times) {
   return tally;
 }
 
-// In an earlier version, normals of these small meshes had errors of up to 180 degrees.
+// The small meshes for which an earlier version computed normals with errors of up to 180 degrees.
 TEST(ExactDirections, are_right_where_an_attack_found_them_wrong) {
   struct Found {
     const char* name;

@@ -59,7 +59,8 @@ class ScopedControl {
   unsigned before_;
 };
 
-// The coordinates of these meshes are normal floating-point numbers, but so small that their squares may underflow.
+// The coordinates of the meshes in this test are normal floating-point numbers, but so small that their squares may
+// underflow.
 TEST(FlushToZero, changes_no_bit_where_coordinates_are_normal) {
   fixtures::Random random(61);
   std::vector<Motion> motions = {fixtures::smooth_morph(8), fixtures::tiny_soup(50),

@@ -27,8 +27,9 @@ using fixtures::Point;
 
 // ---- generators ----------------------------------------------------------------------------------------------------
 
-// Draws an integer in [-bound, bound]. rapidcheck draws from the low end of a range first, and from more of the range
-// in later cases. The low end here means 0, so the first cases are degenerate and later cases are general.
+// Draws an integer in [-bound, bound]. In its first cases, rapidcheck draws from the low end of a range, and in later
+// cases from more of the range. Here the low end stands for 0, so the first cases are degenerate and later cases are
+// general.
 rc::Gen<int> around_zero(int bound) {
   return rc::gen::map(rc::gen::inRange(0, 2 * bound + 1), [](int k) { return k % 2 == 0 ? k / 2 : -(k / 2) - 1; });
 }
@@ -135,7 +136,7 @@ RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, (
   const auto at = [&](std::size_t i) { return lerp(to_double(segment.from[i]), to_double(segment.to[i]), t); };
   const double edge = largest_edge(motion, 0);
   const double position = std::max({max_abs(at(0)), max_abs(at(1)), max_abs(at(2))});
-  // The test rounds the positions of the vertices at t to double, by a relative error of 2^-53.
+  // The test computes the positions of the vertices at t in double, with a relative rounding error of 2^-53.
   const double tolerance = 64 * 0x1p-53 * edge * edge * (edge + position);
   RC_ASSERT(std::fabs(dot(n, at(1) - at(0))) <= tolerance);
   RC_ASSERT(std::fabs(dot(n, at(2) - at(0))) <= tolerance);
@@ -318,8 +319,8 @@ RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
     for (std::size_t f = 0; f < left.size(); ++f) RC_ASSERT(right[f] == negated(left[f]));
   };
   expect_negated(motion, reordered(motion, {0, 2, 1}));
-  // If the order begins with another corner, other edges are multiplied. The bits are then the same only if nothing is
-  // rounded.
+  // If the order begins with another corner than corner 0, the library multiplies other edges. The bits are then the
+  // same only if nothing is rounded.
   expect_negated(on_grid_motion, reordered(on_grid_motion, {1, 0, 2}));
   expect_negated(on_grid_motion, reordered(on_grid_motion, {2, 1, 0}));
 }

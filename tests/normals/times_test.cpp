@@ -45,8 +45,8 @@ using test::IntegerVector;
 
 using Normals = std::vector<float>;
 
-// A way to compute the normals of some elements, which is prepared for a segment. Returns the normals at each of the
-// given times, in the same order.
+// A way to compute the normals of some elements of a segment. The function returns the normals at each of the given
+// times, in the same order.
 using Way = std::function<std::vector<Normals>(const std::vector<double>& times)>;
 
 struct NamedWay {
@@ -61,7 +61,7 @@ struct Elements {
   double crease_angle;         // in degrees, for corners
 };
 
-// A group of ways that must all give the same bytes. Their normals must have errors within a tolerance.
+// A group of ways that must all give the same bytes, and whose normals must have errors within `tolerance`.
 struct Kin {
   double tolerance;  // in radians; infinite if these normals are not compared with true normals
   std::vector<NamedWay> ways;
@@ -89,7 +89,7 @@ Way all_together(NormalCurves made, Threads threads) {
   };
 }
 
-// Makes a way from blend shapes with one target, whose weight is t.
+// Makes a way that blends shapes with one target, whose weight is t.
 Way blended(BlendNormals made, Threads threads, bool together) {
   const auto normals = std::make_shared<BlendNormals>(std::move(made));
   return [=](const std::vector<double>& times) {
@@ -135,7 +135,8 @@ struct MeshInC {
   }
 };
 
-// Makes a way from a function of the C interface: write(t, where) writes the normals of `size` elements at one time.
+// Makes a way from a function of the C interface. write(t, where) must write the normals of `size` elements at the time
+// t.
 template <class Write>
 Way written_in_c(std::size_t size, Write write) {
   return [=](const std::vector<double>& times) {
@@ -147,7 +148,7 @@ Way written_in_c(std::size_t size, Write write) {
 }
 
 // Makes a way from curves of the C interface. If is_next, creates the curves for the reversed segment first, and then
-// changes them to the segment.
+// changes the curves to the segment.
 Way curves_in_c(const MeshInC& in, bool is_next) {
   chronormal_curves* made = nullptr;
   expect_done(chronormal_curves_create(&in.mesh, in.from, is_next ? in.from : in.to, &in.options, &made));
@@ -197,8 +198,8 @@ MeshNormals mesh_normals(const Motion& motion, const Elements& elements, double 
   return normals;
 }
 
-// Adds the ways of the C interface. If C and C++ have the same elements, adds these ways to `curves`, which has the
-// ways of C++. Otherwise, adds them to `all` as a separate group.
+// Adds ways of MeshNormals and of the C interface. If C and C++ have the same elements, adds the ways to `curves`,
+// which has the ways of C++. Otherwise, adds the ways to `all` as a separate group.
 void add_ways_of_outputs(const Motion& motion, const Elements& elements, double tolerance, Kin& curves,
                          std::vector<Kin>& all) {
   Kin own{std::numeric_limits<double>::infinity(), {}};  // in C, each corner has its own normal
@@ -217,7 +218,7 @@ void add_ways_of_outputs(const Motion& motion, const Elements& elements, double 
   if (!own.ways.empty()) all.push_back(std::move(own));
 }
 
-// Adds the ways of the C interface that blend targets or read files.
+// Adds ways of the C interface that blend targets or read files.
 void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   std::vector<float> deltas = motion.keyframes[1].positions;
@@ -295,21 +296,21 @@ std::vector<Kin> all_ways(const Motion& motion, const Segment& segment, const El
   return all;
 }
 
-// Checks that one way gives the same bytes for any choice of times. `expected` has the normals at each of the times; if
-// it is empty, fills it with the results of this way. Describes the first fault, or returns "".
+// Checks that one way gives the same bytes for any choice of times. `expected` has the normals at each of `times`. If
+// `expected` is empty, fills it with the results of this way. Describes the first fault, or returns "".
 std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times, Random& random,
                            std::vector<Normals>& expected) {
   const auto same = [](const Normals& a, const Normals& b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0);
   };
-  // First, a new object computes each time.
+  // First, a new object computes the normals at each time alone.
   std::vector<Normals> alone;
   for (const double t : times) alone.push_back(way.make()({t})[0]);
   if (expected.empty()) expected = alone;
   for (std::size_t i = 0; i < times.size(); ++i) {
     if (!same(alone[i], expected[i])) return way.name + ": other bytes at t = " + std::to_string(times[i]);
   }
-  // Then, one object computes two times together, and after that all times in random order.
+  // Then, a single object computes two times together, and after that all times in random order.
   std::vector<std::size_t> order(times.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
   for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);

@@ -59,7 +59,7 @@ class RanksTest(unittest.TestCase):
         os.chdir(cls.folder.name)
         write_mesh("small.obj", 12)
         write_cache("small.pc2", 12, [pose(12, k) for k in range(7)])
-        # Keyframes of up to 64 MiB stay in memory, so this input has more.
+        # Inputs whose keyframes take up to 64 MiB stay in memory. The keyframes of large.pc2 take more.
         side, poses = 200, [pose(200, k) for k in range(5)]
         write_mesh("large.obj", side)
         write_cache("large.pc2", side, poses * 30)

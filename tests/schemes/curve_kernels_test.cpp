@@ -1,5 +1,5 @@
-// Checks that formulas give the same bits on every instruction set and in every layout, also if the last vector of
-// elements is not full. oracle_test.cpp compares the results with an independent oracle.
+// Checks that the formulas of curves give the same bits on every instruction set and in every layout, also if the last
+// vector of elements is not full. oracle_test.cpp compares the results with an independent oracle.
 
 #include "schemes/kernels/curve_kernels.h"
 
@@ -21,7 +21,8 @@
 namespace chronormal::curve_kernels_test {
 namespace {
 
-// Schemes that together use all formulas, among them every formula with sequential access (playback step by step).
+// Schemes that together use all formulas of curves, and every formula that has sequential access (playback step by
+// step).
 const std::vector<std::string> kSchemes = {
     "linear",          "quadratic", "cubic",         "lagrange:4",       "lagrange:9",        "linear:scaled",
     "rational",        "slerp",     "decasteljau:2", "decasteljau:4",    "decasteljau:5",     "quaternion:matrix",
@@ -104,7 +105,7 @@ class Layout {
 
   [[nodiscard]] VectorView<float> view() const { return view_; }
 
-  // Returns the number of values that were overwritten.
+  // Returns the number of floats in the memory that were overwritten.
   [[nodiscard]] std::size_t touched() const {
     std::size_t count = 0;
     for (const float value : values_) count += value != kUntouched ? 1 : 0;

@@ -61,7 +61,7 @@ struct Subject {
   std::vector<ControlNormals> normals;
 };
 
-// The results of a scheme for all faces, at equidistant times.
+// The normals of a scheme for all faces, at equidistant times.
 class Output {
  public:
   Output(const std::string& name, const Subject& subject, std::size_t sample_count)
@@ -112,8 +112,8 @@ const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // If normals turn little, as between two frames of an animation, the ends are so close that circles differ visibly
-    // only if phi is near +-pi/2.
+    // If normals turn little, as between two frames of an animation, the ends are so close that the circles of the
+    // family differ visibly only if their angle phi is near +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
   return label;
 });
 
-// The angle of quaternion:random depends on the index of the segment, too.
+// The angles of quaternion:random depend on the index of the segment, too.
 TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   Motion motion = fixtures::large_soup(50, 36);
   motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);

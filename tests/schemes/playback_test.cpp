@@ -95,8 +95,8 @@ std::unique_ptr<Scheme> polynomial_of(const std::vector<ControlNormals>& normals
 }
 
 TEST(Playback, a_face_that_shrinks_keeps_its_direction) {
-  // The rounding error of sequential access does not shrink together with the element, so elements that shrink must use
-  // random access.
+  // The rounding error of sequential access does not shrink together with the normal of an element, so elements whose
+  // normals shrink must use random access.
   const Segment segment;
   for (const double shrink : {0.1, 1e-2, 1e-4, 1e-8}) {
     for (const double tilt : {0.0, 0.2}) {
@@ -122,8 +122,8 @@ TEST(Playback, one_anchor_per_step_is_random_access) {
 }
 
 TEST(Playback, is_anchored_at_every_nth_step_and_at_no_other) {
-  // Anchors compute the state anew from t. Between two anchors, the bits must equal those of a playback without anchors
-  // that begins at the first of the two.
+  // An anchor is a step that computes the state of the playback anew from t. Between two anchors, the bits must equal
+  // those of a playback without anchors that begins at the first of the two.
   constexpr std::size_t kInterval = 8;
   constexpr double kStep = 0x1p-6;  // a power of two, so all times are exact
   const Prepared twist("twist");
@@ -194,7 +194,8 @@ TEST(Playback, schemes_without_an_incremental_form_say_so) {
 }
 
 TEST(Playback, a_quadratic_steps_with_two_additions_per_component) {
-  // Normalising takes 2 of the additions, 6 products, a quotient and a root.
+  // The five counts are additions, products, quotients, roots and trigonometric functions. Normalising takes 2 of the
+  // additions, 6 products, a quotient and a root.
   EXPECT_EQ(*make_scheme("polynomial").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("quadratic").value()->sequential_operations(), (OperationCounts{6 + 2, 6, 1, 1, 0}));
   EXPECT_EQ(*make_scheme("cubic").value()->sequential_operations(), (OperationCounts{9 + 2, 6, 1, 1, 0}));

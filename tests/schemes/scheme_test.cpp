@@ -145,8 +145,8 @@ TEST(Schemes, antipodal_ends_give_unit_normals) {
 }
 
 TEST(Schemes, antipodal_ends_through_a_third_direction_are_met_by_the_circle) {
-  // The triangle turns by 180 degrees about the x axis. The circle passes through the normal at t = 1/2, which is
-  // perpendicular to the normals at both ends.
+  // The triangle turns by 180 degrees about the x axis. The scheme circle:timed passes through the normal at t = 1/2,
+  // which is perpendicular to the normals at both ends.
   const Prepared flip({{0, -1, 0, 1, -1, 0, 0, 1, 0}, {0, 1, 0, 1, 1, 0.01f, 0, -1, 0}});
   const Vec3d middle = unit_normal_at(flip.normals[0], 0.5).vector;
   EXPECT_LT(angle(evaluate("circle:timed", flip, 0.5).normal, middle), 1e-5);
@@ -219,7 +219,7 @@ TEST(Schemes, a_collapse_inside_the_segment_gives_unit_normals) {
 }
 
 TEST(Schemes, a_collapse_exactly_at_a_node_takes_the_side_before_and_is_counted) {
-  // n(t) is zero at t = 1/2, and has opposite directions before and after that.
+  // n(t) is zero at t = 1/2. Just before t = 1/2 and just after it, n(t) has opposite directions.
   const Prepared crossing({kFlat, {0, 0, 0, 1, 0, 0, 0, -1, 0}});
   for (const char* name : {"quadratic", "decasteljau:3", "circle", "circle:timed"}) {
     EXPECT_EQ(evaluate(name, crossing, 0.5).fallbacks, 1u) << name;

@@ -60,7 +60,7 @@ static void release(void* memory) noexcept {
 
 }  // namespace chronormal::test
 
-// All other forms of operator new and delete call these functions.
+// The forms of operator new and operator delete below count memory. The standard library's other forms call these.
 void* operator new(std::size_t size) { return chronormal::test::counted(std::malloc(std::max<std::size_t>(size, 1))); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);

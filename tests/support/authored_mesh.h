@@ -89,7 +89,8 @@ class AuthoredMesh {
     return unit_of(sum);
   }
 
-  // Returns the unit normals of all points. Each is the weighted sum of the normals of the polygons around the point.
+  // Returns the unit normals of all points. The normal of a point is the sum of the normals of the polygons around the
+  // point, weighted by the angles of the polygons at the point.
   [[nodiscard]] std::vector<Vector> point_normals(const std::vector<Vector>& p) const {
     std::vector<Vector> sums(p.size(), Vector{0, 0, 0});
     for (const Polygon& polygon : polygons_) {
@@ -117,7 +118,8 @@ class AuthoredMesh {
     }
   }
 
-  // Adds a vertex at a point, with its normals in the base and in each target.
+  // Adds a vertex at a point of the sheet, with its normals in the base and in each target. Returns the index of the
+  // vertex.
   std::uint32_t add(std::size_t point, const std::vector<Vector>& normals) {
     const auto push = [](std::vector<float>& values, const Vector& v) {
       for (const Real c : v) values.push_back(static_cast<float>(c));
@@ -157,7 +159,8 @@ class AuthoredMesh {
   std::size_t n_;
   double flat_;
   std::vector<Polygon> polygons_;
-  // Indexed by key and point. Key 0 is the base, and the others are the targets at weight 1.
+  // The positions and the normals, indexed by key and point. Key 0 is the base, and the other keys are the targets at
+  // weight 1.
   std::vector<std::vector<Vector>> keys_, normals_;
   ShadedMesh mesh_;
 };

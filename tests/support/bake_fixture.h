@@ -105,7 +105,8 @@ class Hills {
     return result;
   }
 
-  /// Makes a primitive of the sheet with these targets. If with_normals is false, the base has no normals.
+  /// Makes a primitive of the sheet. `targets` has the position deltas of each target. If with_normals is false, the
+  /// base has no normals.
   [[nodiscard]] GltfBuilder::Json primitive(GltfBuilder& builder, const std::vector<std::vector<float>>& targets,
                                             bool with_normals = true) const {
     std::vector<GltfBuilder::Json> of_targets;
@@ -139,8 +140,8 @@ class Hills {
   return builder;
 }
 
-/// Returns the document with normal deltas that have large errors at every weight except 0, so every bake improves the
-/// document.
+/// Returns the document with added normal deltas. These deltas cause large errors at every weight except 0, so every
+/// bake improves the document.
 [[nodiscard]] inline GltfBuilder with_misleading_normals(GltfBuilder builder) {
   for (auto& mesh : builder.json["meshes"]) {
     for (auto& primitive : mesh["primitives"]) {

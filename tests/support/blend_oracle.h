@@ -93,7 +93,7 @@ struct BlendShapeOptions {
   return weights;
 }
 
-/// Returns the faces of each element. If `groups` is nullptr, each face is an element.
+/// Returns the list of faces of each element. If `groups` is nullptr, each face is an element.
 [[nodiscard]] inline std::vector<std::vector<std::uint32_t>> faces_of_elements(const BlendSet& set,
                                                                                const NormalGroups* groups) {
   std::vector<std::vector<std::uint32_t>> result;
@@ -140,7 +140,7 @@ using ExactPositions = std::vector<exact::Vector>;
   return result;
 }
 
-/// Returns n(w), the normals of all elements at these weights, without rounding.
+/// Returns n(w), the normals of all elements at the given weights, without rounding.
 [[nodiscard]] inline std::vector<exact::Vector> exact_normals(const BlendSet& set, const NormalGroups* groups,
                                                               std::span<const double> weights) {
   ExactPositions positions = exact_base(set);

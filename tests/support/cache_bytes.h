@@ -17,7 +17,7 @@ namespace chronormal::test {
 /// Positions of three vertices at two times: a triangle that turns.
 inline const std::vector<float> kTurning[2] = {{0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 1, 0, 0, 0, 1.5F}};
 
-/// Returns the triangle of kTurning as a motion with keyframes at these times.
+/// Returns the triangle of kTurning as a motion with keyframes at the given times.
 [[nodiscard]] inline Motion turning_motion(double first_time, double second_time) {
   Motion motion;
   motion.topology = Topology::triangles(3, {0, 1, 2}).value();
@@ -65,8 +65,8 @@ class MayaWriter {
  public:
   explicit MayaWriter(bool wide) : wide_(wide) {}
 
-  /// Returns a chunk with this tag. Unless it is a group, its content is padded to a multiple of four bytes or, if
-  /// `wide`, of eight bytes.
+  /// Returns a chunk with the given tag and content. Unless the chunk is a group, its content is padded to a multiple
+  /// of four bytes or, if `wide`, of eight bytes.
   [[nodiscard]] std::string chunk(const std::string& tag, const std::string& content, bool is_group = false) const {
     ByteWriter writer(tag, true);
     if (wide_) {
@@ -124,8 +124,8 @@ template <class Real>
          "\n</Channels>\n</Autodesk_Cache_File>\n";
 }
 
-/// Makes a NumPy array with this header. The length of the header has 16 bits in version 1 of the format, and 32 bits
-/// in later versions.
+/// Makes a NumPy array from its header and its data. The length of the header is stored in 16 bits in version 1 of the
+/// format, and in 32 bits in later versions.
 [[nodiscard]] inline std::string npy(const std::string& header, const std::string& data, std::uint8_t version = 1) {
   ByteWriter writer("\x93NUMPY", false);
   writer.add(version).add(std::uint8_t{0});
@@ -148,7 +148,7 @@ template <class T>
   return writer.bytes();
 }
 
-/// Returns the two keyframes of kTurning as the elements of an array (2, 3, 3), in Fortran order if `fortran`.
+/// Returns the two keyframes of kTurning as the elements of an array of shape (2, 3, 3), in Fortran order if `fortran`.
 template <class Real>
 [[nodiscard]] std::vector<Real> turning_elements(bool fortran) {
   std::vector<Real> elements(18);

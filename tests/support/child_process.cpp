@@ -22,7 +22,8 @@
 #define CHRONORMAL_SANITIZED
 #endif
 
-// The compiler provides this function only if it adds coverage counters (CHRONORMAL_COVERAGE).
+// Writes the coverage counters. The compiler provides __llvm_profile_write_file() only if it adds coverage counters
+// (CHRONORMAL_COVERAGE).
 extern "C" __attribute__((weak)) int __llvm_profile_write_file(void);
 
 namespace chronormal::test {
@@ -73,12 +74,12 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-// Does the work in the child. Writes to the pipe the growth of memory in bytes, a line feed, and the text that the work
-// returned.
+// Runs work() in the child process. Writes to the pipe the growth of memory in bytes, a line feed, and the text that
+// work() returned.
 [[noreturn]] void work_and_exit(int out, unsigned most_seconds, const std::function<std::string()>& work,
                                 const std::function<void()>& prepare) {
-  // The limit of elapsed time is this many times the limit of processor time, since a process also waits for files and
-  // for other processes.
+  // The limit of elapsed time is kWaits times the limit of processor time, since a process also waits for files and for
+  // other processes.
   constexpr unsigned kWaits = 20;
   const rlimit limit{most_seconds, most_seconds};
   setrlimit(RLIMIT_CPU, &limit);

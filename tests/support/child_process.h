@@ -1,5 +1,5 @@
-/// Runs a part of a test in a child process. Its time and memory can then be measured, and a crash does not end the
-/// test program.
+/// Runs a part of a test in a child process. The time and the memory of this part can then be measured, and a crash
+/// does not end the test program.
 #ifndef CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 #define CHRONORMAL_TESTS_SUPPORT_CHILD_PROCESS_H_
 
@@ -19,9 +19,9 @@ struct ChildRun {
 /// Tells whether a sanitizer is active. Sanitizers need additional memory and time.
 [[nodiscard]] bool is_sanitized();
 
-/// Does the work in a forked process, which is stopped after most_seconds of processor time. Unless a sanitizer is
-/// active, its address space may grow by at most 1 GiB. `prepare` runs first in the forked process. Memory that
-/// `prepare` touches, such as the pages of the program, does not count as growth.
+/// Runs work() in a forked process, which is stopped after most_seconds of processor time. Unless a sanitizer is
+/// active, the address space of the process may grow by at most 1 GiB. `prepare` runs first in the forked process.
+/// Memory that `prepare` touches, such as the pages of the program, does not count as growth.
 [[nodiscard]] ChildRun run_in_child(unsigned most_seconds, const std::function<std::string()>& work,
                                     const std::function<void()>& prepare = {});
 

@@ -14,7 +14,8 @@
 
 namespace chronormal::test {
 
-/// Returns the processor time of all threads in seconds, in the program and in the system.
+/// Returns the processor time in `usage`, in seconds: the time in the program plus the time in the system, over all
+/// threads.
 [[nodiscard]] inline double cpu_seconds(const rusage& usage) {
   const auto seconds = [](const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);

@@ -88,8 +88,8 @@ namespace chronormal::test {
   return result;
 }
 
-/// Returns the normals of all faces at these positions or, if of_vertices, the area-weighted normals of all vertices.
-/// The normals do not have unit length.
+/// Returns the normals of all faces at the given positions of the vertices or, if of_vertices, the area-weighted
+/// normals of all vertices. The normals do not have unit length.
 [[nodiscard]] inline std::vector<std::array<long double, 3>> normals_of(const Motion& motion,
                                                                         const std::vector<long double>& positions,
                                                                         bool of_vertices) {

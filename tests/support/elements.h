@@ -20,7 +20,7 @@ namespace chronormal::test {
 [[nodiscard]] inline reference::Vector to_real(const Vec3d& v) { return {v.x, v.y, v.z}; }
 [[nodiscard]] inline reference::Vector to_real(const Vec3f& v) { return {v.x, v.y, v.z}; }
 
-/// Converts a segment into a mesh for the oracle.
+/// Converts a segment into a mesh of the oracle in reference_elements.h.
 [[nodiscard]] inline reference::Mesh reference_mesh(const Segment& segment) {
   reference::Mesh mesh;
   for (std::size_t f = 0; f < segment.topology->face_count(); ++f) {
@@ -101,7 +101,7 @@ namespace chronormal::test {
   return result;
 }
 
-/// Makes a motion in which both keyframes have these points.
+/// Makes a motion that stands still: both keyframes have the given points.
 [[nodiscard]] inline Motion still(Topology topology, const std::vector<fixtures::Point>& points) {
   return fixtures::make_motion(std::move(topology), points, points);
 }

@@ -21,10 +21,10 @@ namespace chronormal::test {
   if (full != nullptr) return static_cast<std::size_t>(std::strtoull(full, nullptr, 10));
   return is_sanitized() ? 10000 : 100000;
 }
-/// Draws the number of instants at which a case is tested: 64 for one case in fifty, and 3 for all other cases.
+/// Draws the number of instants at which a case is tested: 64 in one case of fifty, and 3 in all other cases.
 [[nodiscard]] inline std::size_t wanted_times(Random& random) { return random.below(50) == 0 ? 64 : 3; }
 
-/// Makes a moving triangle with integer coordinates from -3 to 3. In half of the cases, it stays in a plane.
+/// Makes a moving triangle with integer coordinates from -3 to 3. In half of the cases, the triangle stays in a plane.
 [[nodiscard]] inline MovingTriangle on_a_lattice(Random& random) {
   MovingTriangle triangle;
   const bool is_flat = random.below(2) == 0;

@@ -229,7 +229,7 @@ struct SoupOptions {
     const auto place = static_cast<double>(f) / static_cast<double>(face_count);
     const double step = std::ldexp(1.0, -static_cast<int>(30 * place));
     for (int corner = 0; corner < 3; ++corner) {
-      // Near the origin, neighbouring floats are close enough to represent small steps.
+      // Begins near the origin, where neighbouring floats are close enough to represent small steps.
       const Point start = random.in_cube(0.5), by = random.in_cube(0.5);
       from.push_back(start);
       to.push_back({start[0] + step * by[0], start[1] + step * by[1], start[2] + step * by[2]});
@@ -298,8 +298,9 @@ struct SoupOptions {
 /// The shape of the triangles of degenerate_soup() at one end of the segment.
 enum class Shape { kTriangle, kLine, kPoint };
 
-/// Makes triangles that have these shapes at t = 0 and t = 1. The coordinates are small integers, so the normal of a
-/// line is exactly zero. If a triangle moves from one line to another, it has a normal at the times between.
+/// Makes triangles that have the shape `start` at t = 0 and the shape `end` at t = 1. The coordinates are small
+/// integers, so the normal of a line is exactly zero. If a triangle moves from one line to another, it has a normal at
+/// the times between.
 [[nodiscard]] inline Motion degenerate_soup(Shape start, Shape end, std::size_t face_count = 200,
                                             std::uint64_t seed = 9) {
   Random random(seed);

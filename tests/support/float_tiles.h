@@ -20,9 +20,9 @@
 
 namespace chronormal::test {
 
-/// Changes the positions at the end of the motion, so that normals have degree 1 or 0. If `kind` is 0, each point moves
-/// along z by a different distance. If it is 1, all points move by the same vector; if it is 2, the mesh is stretched
-/// along x; and if it is 3, nothing moves.
+/// Changes the positions at the end of the motion, so that normals have degree 1 or 0. With `kind` 0, each point moves
+/// along z by a different distance; with 1, all points move by the same vector; with 2, the mesh is stretched along x;
+/// with 3, nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
   const auto& from = motion.keyframes[0].positions;
   auto& to = motion.keyframes[1].positions;
@@ -43,7 +43,8 @@ namespace chronormal::test {
   return motion;
 }
 
-/// The results of comparing some elements. `fault` describes the last fault, or is "".
+/// The results of comparing the elements of float32 tiles with control normals in double. `fault` describes the last
+/// fault, or is "".
 struct FloatTileFaults {
   std::size_t elements = 0;
   std::size_t bending = 0;           ///< elements with a stated degree of 2
@@ -53,8 +54,8 @@ struct FloatTileFaults {
   double largest_bound = 0;          ///< the largest error bound, relative to the sum of absolute products
   std::string fault;
 
-  /// Checks one element of a tile. `right` is the true control normals. `products` must be at least the sum of the
-  /// absolute products in each component, and `count` is the number of cross products in the sum.
+  /// Checks one element of a tile. `right` has the true control normals of the element. `products` must be at least the
+  /// sum of the absolute products in each component, and `count` is the number of cross products in the sum.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);

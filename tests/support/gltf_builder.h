@@ -3,8 +3,8 @@
 ///     GltfBuilder builder;
 ///     const auto base = builder.add_positions({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
 ///     const auto lift = builder.add_positions({0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0});
-///     const auto mesh = builder.add_mesh(GltfBuilder::primitive(base, builder.add_indices<std::uint8_t>({0, 1, 2}),
-///                                                               {{{"POSITION", lift}}}));
+///     const auto corners = builder.add_indices<std::uint8_t>({0, 1, 2, 0, 2, 3});
+///     const auto mesh = builder.add_mesh(GltfBuilder::primitive(base, corners, {{{"POSITION", lift}}}));
 ///     builder.glb();
 ///
 /// Tests change everything else through the public members json and buffer. They can therefore make invalid files, too.
@@ -78,7 +78,8 @@ class GltfBuilder {
     return add("bufferViews", std::move(view));
   }
 
-  /// Adds an accessor with a buffer view of its own, in which the elements are packed without gaps.
+  /// Adds an accessor with its own buffer view, in which the elements are packed without gaps. Returns the index of the
+  /// accessor.
   template <class T>
   std::size_t add_accessor(const char* type, const std::vector<T>& values, bool normalized = false) {
     return add_accessor_over(add_view(bytes_of(values)), type, component_type<T>(), values.size() / components(type),
@@ -157,7 +158,7 @@ class GltfBuilder {
   [[nodiscard]] std::string gltf() const {
     return gltf_with_uri("data:application/octet-stream;base64," + base64(buffer));
   }
-  /// Returns the document as a .gltf file in which buffer 0 is a separate file with this URI.
+  /// Returns the document as a .gltf file in which buffer 0 is a separate file with the given URI.
   [[nodiscard]] std::string gltf_with_uri(const std::string& uri) const { return with_buffer(uri).dump(); }
   [[nodiscard]] std::string glb() const { return glb_bytes(with_buffer(std::nullopt).dump(), buffer); }
 
@@ -181,8 +182,8 @@ class GltfBuilder {
   [[nodiscard]] static std::size_t components(std::string_view type) {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
-  // If a test has added buffers to the JSON, the first of them stands for buffer 0 and gets its length and URI here.
-  // The others are kept.
+  // Returns the JSON with the length and the URI of buffer 0. If a test has added buffers to the JSON, the first of
+  // these stands for buffer 0. The others are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;

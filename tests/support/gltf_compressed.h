@@ -103,9 +103,9 @@ struct DracoShares {
   std::vector<float> weights = {};
 };
 
-/// Encodes a triangle mesh with Draco. The attributes that are given get the numbers 0, 1, ... in the order POSITION,
-/// NORMAL, JOINTS, WEIGHTS. If `bits` is 0, the encoding is lossless. Otherwise, coordinates are rounded to this number
-/// of bits.
+/// Encodes a triangle mesh with Draco. The given attributes get the numbers 0, 1, ... in the order POSITION, NORMAL,
+/// JOINTS, WEIGHTS. If `bits` is 0, the encoding is lossless. Otherwise, coordinates are rounded to the given number of
+/// bits.
 template <class T>
 [[nodiscard]] std::string draco_mesh(const std::vector<T>& positions, const std::vector<std::uint32_t>& corners,
                                      DracoOrder order, const std::vector<float>& normals = {}, int bits = 0,

@@ -61,7 +61,8 @@ class GltfTruth {
   std::vector<Vertex> vertices;
   bool uniform = false;  ///< true if all faces have equal weight, instead of their area
 
-  /// Returns n(w) for each vertex. Ignores weights beyond the number of targets in the file.
+  /// Returns n(w), the sum of the face normals at the weights w, for each vertex. Ignores weights beyond the number of
+  /// targets in the file.
   [[nodiscard]] std::vector<Vector> normals_at(const std::vector<double>& weights) const {
     std::vector<Vector> at(vertices.size());
     for (std::size_t v = 0; v < at.size(); ++v) {
@@ -139,7 +140,7 @@ class GltfTruth {
   std::vector<std::size_t> group_;
 };
 
-/// Statistics of the angles between rendered and true normals, in degrees.
+/// The sum, the largest and the number of the angles between rendered and true normals, in degrees.
 struct ShownError {
   double sum = 0, worst = 0;
   std::size_t judged = 0, left_out = 0;
@@ -158,8 +159,8 @@ struct Pose {
   std::vector<float> after;
 };
 
-/// Compares the normals that viewers render after the bake with the true normals before the bake, in these poses. Skips
-/// samples in which |n(w)| is below 1e-4 of the largest |n| of the same vertex in these poses.
+/// Compares the normals that viewers render after the bake with the true normals before the bake, in the given poses.
+/// Skips samples in which |n(w)| is below 1e-4 of the largest |n| of the same vertex in the given poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
   ShownError error;

@@ -77,7 +77,7 @@ struct MovingTriangle {
 }
 
 /// Makes a triangle whose corner c passes the line through corners a and b at t = 1/2, at a distance of exactly `gap`.
-/// All coordinates that have nothing to do with the gap are integers in a plane.
+/// Apart from the gap, all coordinates are integers in a plane.
 [[nodiscard]] inline MovingTriangle passing_collapse(Random& random, double gap) {
   const Point a = whole_point(random), step = whole_point(random), by = whole_point(random);
   const double along = static_cast<double>(random.below(5)) - 2;
@@ -237,8 +237,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes a dozen faces with few vertices, so the normals at a vertex partly cancel. Sometimes some of the faces are
-/// quads.
+/// Makes a dozen faces with few vertices, so the normals of the faces at a vertex partly cancel. Sometimes some of the
+/// faces are quads.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;
@@ -259,8 +259,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_polygons(vertices, std::move(offsets), std::move(corners)), from, to);
 }
 
-/// Makes a vertex with many faces, some of which have opposite normals. Their sum has larger rounding errors than a sum
-/// of few faces.
+/// Makes a vertex with many faces, some of which have opposite normals. The sum of these normals has larger rounding
+/// errors than a sum over few faces.
 [[nodiscard]] inline Motion many_faces(Random& random) {
   const std::size_t rim = 90 + random.below(400);
   const double height = random_decade(random, -9, 0);

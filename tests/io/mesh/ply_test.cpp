@@ -66,8 +66,8 @@ TEST(ReadPly, passes_over_what_is_not_ours_in_any_order) {
   EXPECT_EQ(ascii.positions, (Positions{3.5F, 2, 1, 6, 5, 4, 9, 8, 7}));
 }
 
-// Makes an ASCII PLY file of three vertices. The names and the type of the velocities are given, and other properties
-// are between them.
+// Makes an ASCII PLY file of three vertices with velocities. first, second and third are the names of the velocity
+// properties, and `type` is the type of the second. Other properties are between them.
 std::string moving_file(const std::string& first, const std::string& second, const std::string& third,
                         const std::string& type = "float") {
   return "ply\nformat ascii 1.0\nelement vertex 3\nproperty " + type + " " + second +
@@ -269,7 +269,8 @@ TEST(ReadPly, bad_ascii_rows_are_errors_with_line_element_and_index) {
     return error_of(test::ply_header("ascii", "4", "2") + replaced(kRows, what, by));
   };
   EXPECT_EQ(with("1 0 0", "1 nan 0"), "walk.ply, line 11, vertex 1: 'nan' is NaN or infinite");
-  // A row may continue in the next line, so the reader finds out only there that a number is missing.
+  // The numbers of a row may continue in the next line. If a row has one number too few, the reader therefore finds the
+  // error only in the next line.
   EXPECT_EQ(with("1 0 0", "1 0"),
             "walk.ply, line 12, vertex 1: '1' is one value more than the header declares for a row");
   EXPECT_EQ(with("1 0 0", "1 0 0 0"),
@@ -325,7 +326,7 @@ TEST(ReadPly, bad_binary_values_are_errors_with_byte_element_and_index) {
             place(45) + ", face 0: corner 1 refers to vertex 3, but the file has 3 vertices");
   EXPECT_EQ(with(41, "\xFF\xFF\xFF\xFF"),
             place(45) + ", face 0: corner 1 refers to vertex -1, but the file has 3 vertices");
-  // The only face has no corners, so the reader skips it.
+  // The only face of the file has no corners, so the reader skips this face.
   EXPECT_EQ(with(36, std::string("\0", 1)),
             place(37) + ": no face has three or more corners, so the mesh has no normals");
   EXPECT_EQ(

@@ -1,4 +1,4 @@
-// Tests blends that compute in float32, which a caller can request.
+// Tests blends whose normals are computed in float32, which a caller can request.
 
 #include <gtest/gtest.h>
 

@@ -167,8 +167,8 @@ RC_GTEST_PROP(BlendNormals, scale_by_a_power_of_two_gives_the_same_bits, ()) {
   }
 }
 
-// The weights move a vertex exactly onto the line through the other two vertices, or very close to this line. The
-// library must then recompute the face in double.
+// The weights of this test move a vertex exactly onto the line through the other two vertices, or very close to this
+// line. The library must then recompute the face in double.
 TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted_zeros) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -185,15 +185,16 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // At this weight, the face is so close to collapsing that double cannot decide its direction. The result must count
-    // it as zero or as uncertain.
+    // With the weight 1 - 2^-50, the face is so close to collapsing that double cannot decide its direction. The result
+    // must count the face as zero or as uncertain.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
     EXPECT_EQ(evaluate(normals, std::vector{0.0, 0.7}).evaluation.zeros, 0U);
   }
 }
 
-// Far from the origin, the rounding errors of blended positions are large against the edges, and change the normals.
+// Far from the origin, the rounding errors of blended positions are large relative to the edges, and change the
+// normals.
 TEST(BlendNormals, what_double_cannot_promise_far_from_the_origin_is_counted) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -242,7 +243,7 @@ TEST(BlendNormals, what_double_cannot_promise_of_a_triangle_with_one_short_edge_
   EXPECT_GT(sure, 3U);
 }
 
-// This normal is so short that the square of its length is subnormal or zero in double.
+// The blended normal of this test is so short that the square of its length is subnormal or zero in double.
 TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
   BlendSet set;
   set.topology = fixtures::make_triangles(3, {0, 1, 2});
@@ -317,7 +318,7 @@ TEST(BlendNormals, faces_without_area_in_the_base_count_until_a_target_opens_the
   }
 }
 
-// If large terms nearly cancel, their sum still has the rounding errors of the large terms.
+// If large terms of a sum nearly cancel, the sum still has the rounding errors of the large terms.
 TEST(BlendNormals, large_weights_that_nearly_cancel_are_seen) {
   BlendSet set = test::random_blend_set(11, {.targets = 1, .reach = 0.9});
   set.targets.push_back(set.targets[0]);

@@ -108,7 +108,7 @@ RC_GTEST_PROP(BlendTerms, counts_say_beforehand_where_terms_are_not_zero, ()) {
       for (std::uint32_t e = 0; e < touched.size(); ++e)
         if (touched[e]) listed.push_back(e);
       RC_ASSERT(terms.elements(i) == listed);
-      // Counts, from all faces, the elements with a face that both targets move.
+      // Counts, face by face, the elements that have a face that both targets of a pair move.
       std::vector<BlendTerms::PairCount> expected;
       for (std::size_t j = 0; j < set.targets.size(); ++j) {
         std::uint32_t count = 0;
@@ -200,8 +200,8 @@ TEST(BlendTerms, sets_without_faces_vertices_or_targets_have_none) {
   EXPECT_TRUE(terms.linear(0).elements.empty() && terms.pair(0, 0).elements.empty());
 }
 
-// For small meshes, lists keep the contribution of every face. For meshes with more than 100,000 faces, each requested
-// term is computed anew.
+// For small meshes, BlendTerms stores the contribution of every face in lists. For meshes with more than 100,000 faces,
+// BlendTerms computes each requested term anew.
 TEST(BlendTerms, have_the_same_bits_in_lists_and_element_by_element_on_large_meshes) {
   const Motion motion = fixtures::smooth_morph(230);  // 105,800 faces
   const std::size_t count = motion.topology.vertex_count();

@@ -129,7 +129,7 @@ TEST(ExactCurve, adds_up_faces) {
     all.push_back(f);
     if (f % 3 == 0) sum = sum + ExactCurve::of_polygon(segment, motion.topology.face(f)).normal_at(0.25);
   }
-  // The normals of the faces of a closed surface add up to exactly zero.
+  // The mesh is a closed surface, so the normals of all its faces add up to exactly zero.
   EXPECT_EQ(ExactCurve::of_faces(segment, all).unit_normal_at(0.3).direction, Direction::kNone);
   std::vector<std::uint32_t> some;
   for (std::uint32_t f = 0; f < all.size(); f += 3) some.push_back(f);

@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A mesh file, including what chronormal's reader of OBJ files leaves out here: the normal of each corner, and the
-// smoothing group of each face.
+// A mesh file from another tool: the mesh as a motion, the stored normal of each corner, and the smoothing group of
+// each face. chronormal's reader of OBJ files leaves out the last two here.
 struct Golden {
   Motion motion;  // a motion whose two keyframes are both the mesh
   std::vector<float> normal_of_corner;
@@ -117,8 +117,8 @@ NormalGroups split_normals_of(const Golden& golden) {
 }
 
 // Checks that the normals of a file follow the weighting of the tool that wrote it, within 0.01 degrees, whether hard
-// edges are found from smoothing groups or from the stored normals. All other weightings must have larger errors;
-// otherwise the file could not distinguish them.
+// edges are found from smoothing groups or from the stored normals. The weightings `others` must have larger errors;
+// otherwise the file could not tell the weightings apart.
 void expect_weighting(const Golden& golden, Weighting weighting, const std::vector<Weighting>& others) {
   for (const NormalGroups& groups : {smoothing_groups_of(golden), split_normals_of(golden)}) {
     EXPECT_LT(largest_difference(golden, groups, weighting), 0.01);

@@ -40,8 +40,8 @@ TEST(LocalTime, is_moved_into_the_segment) {
   EXPECT_TRUE(std::isnan(local_time(kNan)));
 }
 
-// A time between two keys. All three times are doubles. The differences between the time and the keys are small
-// integers times powers of two.
+// A time between two keys. All three are doubles. The differences between the time and the keys are small integers
+// times powers of two, so local times are exactly known fractions.
 struct Times {
   double start, time, end;
   double before, after;  // time - start and end - time, as multiples of the same unit
@@ -200,7 +200,8 @@ TEST(LocalTime, that_is_a_double_keeps_its_bits) {
   EXPECT_TRUE(std::isnan(LocalTime::between(1, kNan, 2).t));
 }
 
-// A function that writes the normals at t, and returns how many of them are (0, 0, 0).
+// A function of the library that writes the normals of `size` elements at t, and returns how many of the normals are
+// (0, 0, 0).
 struct Door {
   std::string name;
   std::size_t size;

@@ -57,7 +57,7 @@ TEST(Transform, normals_are_those_of_the_transformed_face_on_the_outer_side) {
     expect_near(matrix(before), matrix.mirrored ? -after : after);
     mirrored += matrix.mirrored ? 1U : 0U;
 
-    // A point on the front side of the face must be on the front side of the transformed face, too.
+    // A point on the front side of a face must be on the front side of the transformed face, too.
     const Vec3d above = a + before;
     EXPECT_GT(dot(matrix(before), transform(above) - transform(a)), 0);
   }

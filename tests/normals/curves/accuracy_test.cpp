@@ -179,8 +179,8 @@ TEST(ExactAngle, tells_the_smallest_angles_apart) {
   EXPECT_TRUE(std::isnan(exact::angle(0.0, 0.0, 0.0, x)));
 }
 
-// Each component of a control normal is a sum of a few products of edges. Its error is a few roundings of the largest
-// of these products, which may be much larger than the component itself.
+// Each component of a control normal is a sum of a few products of edges. The error of a component is a few roundings
+// of the largest of these products, which may be much larger than the component itself.
 TEST(FaceControlNormals, are_within_a_few_roundings_of_exact_arithmetic) {
   for (const Family& family : kFamilies) {
     SCOPED_TRACE(family.name);
@@ -288,8 +288,8 @@ TEST(NormalCurvesAccuracy, keep_their_accuracy_among_neighbours_of_any_size_and_
 
 // ---- where n(t) = 0 ------------------------------------------------------------------------------------------------
 
-// Returns the exact direction that is documented for n(t) = 0: at t = 0 the first control normal that is not zero, at t
-// = 1 the last one, and at other times the direction just before t.
+// Returns the exact direction of n(t) just before t = 1, which is documented as the direction if n(1) = 0: the last
+// control normal that is not zero.
 exact::Vector limit_before(const exact::ControlNormals& normals) {
   if (!exact::is_zero(normals.n1)) return normals.n1;
   return exact::is_zero(normals.m) ? normals.n0 : normals.m;

@@ -71,8 +71,8 @@ void describe(const ControlNormals& c, double t) {
   std::cout.precision(precision);
 }
 
-// Prepares each element alone. Otherwise, neighbours that need more accuracy could give its block a more precise
-// format.
+// Prepares each element without neighbours. Otherwise, neighbours that need more accuracy could give the block of the
+// element a more precise format.
 TEST(CompactCurves, keep_the_tolerance_of_every_element_alone) {
   for (const test::HardFamily& family : test::hard_families()) {
     SCOPED_TRACE(family.name);
@@ -322,15 +322,16 @@ struct Format {
   double tolerance;
 };
 
-// Returns the error of the element divided by the tolerance, or 0 if the curves do not store the element in this
-// format.
+// Returns the error of the candidate's element divided by the tolerance, or 0 if the curves do not store the element in
+// the given format.
 double used_up(const Format& format, const Candidate& candidate) {
   const NormalCurves curves(std::span(&candidate.c, 1), {format.tolerance});
   if (curves.flagged_count() != 0 || curves.byte_counts().front().bytes != bytes_of(format.kind)) return 0;
   if (curves.degree_counts()[format.kind == BlockKind::kLinear16 || format.kind == BlockKind::kLinear32 ? 1 : 2] == 0)
     return 0;
   const Vec3f u = unit_normals(curves, candidate.t).front();
-  // Two kinds of blocks take 20 bytes per element. Returns 0 if the curves chose the other kind.
+  // Two kinds of blocks take 20 bytes per element. Returns 0 if the curves have chosen the kind that is not
+  // format.kind.
   if (bytes_of(format.kind) == 20 && !(u == kept_as(format.kind, candidate.c, candidate.t))) return 0;
   return angle_to(u, candidate.c, candidate.t) / format.tolerance;
 }
@@ -443,7 +444,7 @@ TEST(CompactCurves, low_degrees_take_12_bytes) {
 }
 
 TEST(CompactCurves, slivers_take_20_bytes_with_scales_of_their_own) {
-  // The length of n0 is about 2^-20, which an int16 without its own scale would round to zero.
+  // n0 has a length of about 2^-20. An int16 without a scale for each control normal would round n0 to zero.
   const ControlNormals sliver{{0x1p-20, 0, 0x1p-22}, {0x1p-11, 0x1p-13, 0x1p-12}, {1, 0.25, 0.5}};
   const NormalCurves curves(repeated(sliver, 100), {1e-3});
   EXPECT_EQ(share_in(20, curves), 1);
@@ -466,7 +467,7 @@ TEST(CompactCurves, short_runs_join_a_neighbour_that_can_hold_them) {
     EXPECT_EQ(share_in(20, among(other, 2)), 1);
     EXPECT_LT(share_in(20, among(other, 8)), 0.8);
   }
-  // Even a short run is never stored with fewer bytes than it needs.
+  // A short run is never stored with fewer bytes than its elements need.
   const ControlNormals hard{{1, 0, 0}, {0, 1e-3, 0}, {-1, 0, 0}};
   const NormalCurves curves = among(hard, 1);
   EXPECT_GT(share_in(36, curves) + static_cast<double>(curves.flagged_count()), 0);
@@ -511,7 +512,7 @@ TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
         ASSERT_LE(v, 32767) << t;
         sum += v;
       }
-      // The components of the control normals are at most 32767 here, so the sum fits into 32 bits.
+      // The components of the control normals are at most 32767 here, so their weighted sum fits into 32 bits.
       ASSERT_LE(sum * 32767, std::numeric_limits<std::int32_t>::max()) << t;
       // Only the ratios of the weights matter. The test therefore compares the weights at each scale at which one of
       // them is exact, and takes the smallest error.

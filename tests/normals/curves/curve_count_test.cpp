@@ -1,4 +1,4 @@
-// Compares the predicted sizes of curves with the sizes of curves that are made.
+// Compares the predicted sizes of curves with the sizes of curves that are really made.
 
 #include "normals/curves/curve_count.h"
 

@@ -57,7 +57,7 @@ TEST(Octahedral, has_its_components_where_the_header_says) {
   EXPECT_EQ(encode_octahedral({0, -1, 0}).bits, 0x80010000u);
   EXPECT_EQ(encode_octahedral({0, 0, -1}).bits, 0x7FFF7FFFu);
   EXPECT_EQ(encode_octahedral({0.6f, 0, 0.8f}).bits, 14043u);  // (0.6 / 1.4) * 32767
-  // On the lower half of the octahedron, x = -(1 - 0) and y = 1 - 0.6 / 1.4.
+  // The direction is on the lower half of the octahedron, with x = -(1 - 0) and y = 1 - 0.6 / 1.4.
   EXPECT_EQ(encode_octahedral({-0.6f, 0, -0.8f}).bits, (32767u - 14043u) << 16 | 0x8001u);
   EXPECT_EQ(encode_octahedral({}).bits, 0u);
   EXPECT_EQ(decode(Octahedral{0}), (Vec3f{0, 0, 1}));
@@ -122,7 +122,7 @@ TEST(Octahedral, is_the_nearest_point_of_the_grid) {
       x = folded;
     }
     const std::uint32_t bits = encode_octahedral(v).bits;
-    // The error is at most half an integer, plus the error of an earlier rounding to float32.
+    // The error of each integer is at most 1/2, plus the error of an earlier rounding to float32.
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits & 0xFFFF) - x * 32767), 0.51L) << i;
     EXPECT_LE(std::fabs(static_cast<std::int16_t>(bits >> 16) - y * 32767), 0.51L) << i;
   }
@@ -164,7 +164,8 @@ TEST(EncodedResults, are_within_both_tolerances) {
   }
 }
 
-// The kernels compute the integers differently from the functions for single normals, so the integers may differ by 1.
+// The kernels compute the integers of an encoded normal differently from the functions for single normals, so these
+// integers may differ by 1.
 TEST(EncodedResults, are_those_of_the_functions) {
   fixtures::Random random(86);
   std::vector<ControlNormals> normals;

@@ -50,8 +50,8 @@ struct Elements {
   std::function<BoundedNormals(std::size_t)> alone, of_tile;  // return element i, computed alone or as a part of a tile
 };
 
-// Returns control normals that were computed in double, or the exact ones if the former are hardly more than rounding
-// error.
+// Returns the control normals that were computed in double or, if these are hardly more than rounding error, the exact
+// control normals.
 BoundedNormals settled(const BoundedNormals& rounded, const std::function<ExactCurve()>& exact) {
   return rounded.largest_share() <= kLargestShare ? rounded : BoundedNormals{exact().rounded(), {}};
 }
@@ -96,7 +96,7 @@ bool is_like(const FlaggedElements& flagged, std::size_t index, const BoundedNor
   return flagged.scaled_normals(index) == expected.normals && flagged.exponents[index] == expected.exponent;
 }
 
-// Checks the flagged elements of curves. Describes the first fault, or returns "".
+// Checks which elements of the curves are flagged, and their control normals. Describes the first fault, or returns "".
 std::string fault_of(const CurveData& curves, const Elements& elements, double tolerance) {
   const PrecisionLimits limits = PrecisionLimits::for_tolerance(tolerance);
   std::size_t next = 0;

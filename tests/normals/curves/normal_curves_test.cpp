@@ -1,5 +1,5 @@
-// Tests all that accuracy_test.cpp and theorems_test.cpp do not: runs of elements of equal degree, layouts of memory,
-// degenerate elements, and extreme values.
+// Tests properties of NormalCurves that accuracy_test.cpp and theorems_test.cpp do not test: runs of elements of equal
+// degree, layouts of memory, degenerate elements, and extreme values.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -59,8 +59,8 @@ TEST(NormalCurves, counts_degrees_as_they_are) {
 }
 
 TEST(NormalCurves, every_mixture_of_degrees_gives_what_each_element_gives_alone) {
-  // The runs are short or long, and at the ends or in the middle. Some short runs are therefore stored with a higher
-  // degree.
+  // The runs of elements of equal degree are short or long, and at the ends or in the middle. Some short runs are
+  // therefore stored with a higher degree.
   const auto mixed = repeated({{kStill, 2},
                                {kQuadratic, 9},
                                {kLinear, 1},
@@ -154,7 +154,8 @@ TEST(UnitNormal, nothing_at_all_is_none) {
 }
 
 TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
-  // The products of these coordinates are not exact in double. Their rounding errors must not become a direction.
+  // The products of the coordinates in this test are not exact in double. The rounding errors of these products must
+  // not become a direction.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   std::vector<float> p(9);
   int tested = 0;

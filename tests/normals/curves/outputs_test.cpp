@@ -157,7 +157,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
       for (const double tolerance : kTolerances)
         expect_all_forms_agree(NormalCurves(some, {tolerance}), size % 3 == 0 ? 0 : 0.37);
     }
-    // Tests more elements than the library keeps on the stack at a time.
+    // The number of elements exceeds the number that the library keeps on the stack at a time.
     for (const double tolerance : kTolerances) expect_all_forms_agree(NormalCurves(elements, {tolerance}), 0.71);
   }
 }
@@ -301,8 +301,8 @@ TEST(ThreadsOfCurves, prepare_the_same_curves) {
     const CurveOptions options{tolerance};
     const auto faces = everything(NormalCurves::of_faces(segment, options));
     const auto vertices = everything(NormalCurves::of_groups(segment, groups, options));
-    // Compact curves are prepared in float32 if float32 is accurate enough, while control normals are always computed
-    // in double.
+    // Compact curves from positions are prepared in float32 if float32 is accurate enough, but control normals are
+    // always in double. Only exact curves must therefore be equal.
     if (tolerance <= kExactTolerance) {
       EXPECT_EQ(everything(NormalCurves::of_faces(segment, options), Say::kNoLengths),
                 everything(NormalCurves(normals, options), Say::kNoLengths))
@@ -460,7 +460,7 @@ TEST(StreamedResults, at_many_t_have_the_bits_of_stored_ones) {
     SCOPED_TRACE(target_name(target));
     for (const double tolerance : {1e-6, 5e-3}) {
       const NormalCurves curves(elements, {tolerance});
-      // The results for all times go to the same memory, so the result for the last t remains.
+      // All times write their results to the same memory, so the results for the last t remain.
       Guarded<float> packed(3 * elements.size(), 0), planes(3 * plane, 0);
       Guarded<Octahedral> words(elements.size(), 0);
       const auto times = [](std::size_t count) {

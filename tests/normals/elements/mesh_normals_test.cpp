@@ -166,8 +166,8 @@ TEST(MeshNormals, a_fitted_weighting_states_its_bound) {
   EXPECT_EQ(normals_at(normals.value(), 0), shown);
 }
 
-// The first segment decides which vertices share a normal: there, vertices 4 and 5 coincide with 1 and 2. In other
-// segments, these vertices may be apart.
+// The first segment of the first object decides which vertices share a normal: there, vertices 4 and 5 coincide with
+// vertices 1 and 2. In other segments, vertices that share a normal may be apart.
 TEST(MeshNormals, another_object_knows_who_shares_a_normal_and_nothing_of_where_vertices_are) {
   std::vector<float> apart = kTo;
   apart[3 * 4] += 0.25F;
@@ -306,7 +306,7 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         EXPECT_EQ(normals.unit_normals(t, std::span(octahedral)), zeros);
         EXPECT_EQ(normals.unit_normals(t, std::span(rgb)), zeros);
 
-        // Eight threads compute the ranges, each taking the next range that is left.
+        // Eight threads compute the ranges. Each thread computes every eighth range.
         std::vector<IndexRange> ranges;
         for_pieces(n, random, [&](IndexRange range) { ranges.push_back(range); });
         std::atomic<std::size_t> zeros_of_pieces = 0, blended_of_pieces = 0;
@@ -334,7 +334,8 @@ TEST(MeshNormals, ranges_of_any_size_on_any_threads_have_the_bits_of_one_call) {
         for (std::size_t i = 0; i < n; ++i) counted += view(all)[i] == Vec3f{} ? 1U : 0U;
         EXPECT_EQ(counted, zeros);
 
-        // One call computes two times at once, and another call uses the thread pool.
+        // One call computes two times at once, and another call uses all threads. Both must give the same normals as a
+        // call for t alone.
         std::vector<float> two(3 * n), other(3 * n);
         const double times[] = {0.5, t};
         const VectorView<float> views[] = {VectorView<float>::packed(other), VectorView<float>::packed(two)};
@@ -414,7 +415,7 @@ std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
   return static_cast<std::int32_t>(word << (32 - first - count)) >> (32 - count);
 }
 
-// Decodes a record as a shader does.
+// Decodes the record of one element's control normals as a shader does.
 ControlNormals decoded(ControlFormat format, const std::byte* record) {
   std::array<double, 9> v{};
   if (format == ControlFormat::kFloat32) {

@@ -47,8 +47,8 @@ ControlNormals difference(const ControlNormals& a, const ControlNormals& b) {
   return {a.n0 - b.n0, a.m - b.m, a.n1 - b.n1};
 }
 
-// Compares the normal of every element with that of the oracle, at several times. Returns the largest angle between the
-// two, in radians. Skips elements whose terms cancel by a factor of more than 1e6.
+// Compares the normal of every element with the normal that the oracle computes, at several times. Returns the largest
+// angle between the two normals, in radians. Skips elements whose terms cancel by a factor of more than 1e6.
 double largest_error(const Motion& motion, const NormalGroups& groups, const std::string& weighting = "area") {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const auto corners = test::reference_corners(mesh, groups);
@@ -160,7 +160,8 @@ RC_GTEST_PROP(GroupNormals, time_reversal_swaps_the_ends_bit_for_bit, ()) {
 RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   Motion motion = any_mesh(1, seed, *rc::gen::arbitrary<bool>());
-  // Every face occurs twice in the mesh. In half of the copies, the list of corners begins with another corner.
+  // Every face occurs twice in the new mesh. In half of the second copies, the list of corners begins with another
+  // corner.
   auto order = test::shuffled_order(motion.topology.face_count(), seed);
   const std::size_t face_count = order.size();
   for (std::size_t i = 0; i < face_count; ++i) order.push_back(i);

@@ -145,7 +145,7 @@ TEST(CreaseAngle, fans_that_touch_in_a_point_stay_apart) {
 }
 
 TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close) {
-  // Faces 0 and 1 lie in one plane, and face 2 meets their common edge at a right angle to both.
+  // Faces 0 and 1 lie in one plane. Face 2 meets their common edge, at a right angle to both faces.
   const Motion motion = pages({0, 180, 90});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[4]);
@@ -153,7 +153,7 @@ TEST(CreaseAngle, an_edge_of_three_faces_is_smooth_between_those_that_are_close)
 }
 
 TEST(CreaseAngle, every_pair_of_the_faces_at_an_edge_counts_and_not_only_neighbours_in_the_file) {
-  // In the file, the perpendicular face is now between the two others.
+  // In the list of faces, the perpendicular face is now between the two faces that lie in one plane.
   const Motion motion = test::with_faces_in_order(pages({0, 180, 90}), {0, 2, 1});
   const NormalGroups groups = creased(motion, 30);
   EXPECT_EQ(groups.element_of_corner()[0], groups.element_of_corner()[7]);
@@ -201,8 +201,8 @@ TEST(CreaseAngle, outside_0_to_180_degrees_is_an_error) {
   }
 }
 
-// Makes a mesh with random displacements from `seed`. Tells whether corners share normals exactly as in a flood fill,
-// which compares all pairs of corners.
+// Makes a mesh with random displacements from `seed`. Tells whether corners share normals exactly as by a flood fill
+// that compares all pairs of corners.
 bool equals_a_flood(std::uint64_t seed, bool of_polygons, bool tear, double degrees) {
   Motion motion = fixtures::shaken(of_polygons ? fixtures::box_grid(2) : fixtures::icosphere(0), 0.8, seed);
   std::swap(motion.keyframes[0].positions, motion.keyframes[1].positions);  // puts the irregular keyframe first

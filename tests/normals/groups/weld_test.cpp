@@ -49,7 +49,8 @@ TEST(Weld, minus_zero_is_zero_and_the_next_float_is_not) {
 TEST(Weld, no_vertices_are_no_points) { EXPECT_EQ(weld_coincident(Motion{}).count, 0u); }
 
 RC_GTEST_PROP(Weld, equals_a_comparison_of_all_pairs, ()) {
-  // There are few different positions, so many vertices coincide in one keyframe, and some in both.
+  // Vertices have few different positions, so many vertices coincide in one keyframe, and some coincide in both
+  // keyframes.
   const auto count = *rc::gen::inRange<std::size_t>(3, 40);
   const auto place = rc::gen::container<Point>(rc::gen::map(rc::gen::inRange(0, 2), [](int k) { return double(k); }));
   const auto from = *rc::gen::container<std::vector<Point>>(count, place);
@@ -65,7 +66,8 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   fixtures::Random random(20261125);
   std::vector<Point> from(kCount), to(kCount);
   for (std::size_t v = 0; v < kCount; ++v) {
-    // A third of the vertices are at a few thousand positions, and some of these separate in the second keyframe.
+    // A third of the vertices share a few thousand positions, and some vertices at one position separate in the second
+    // keyframe.
     const auto wide = v % 3 == 0 ? std::size_t{15} : std::size_t{1000};
     for (double& c : from[v]) c = static_cast<double>(random.below(wide));
     to[v] = from[v];
@@ -88,7 +90,8 @@ TEST(Weld, many_vertices_are_welded_as_a_map_of_places_says) {
   EXPECT_LT(always.size(), kCount);
 }
 
-// The library first sorts positions by a 32-bit key. Here, there are so many positions that some have the same key.
+// The library first sorts positions by a 32-bit key. This test has so many positions that some different positions have
+// the same key.
 TEST(Weld, places_that_only_look_alike_stay_apart) {
   constexpr std::size_t kCount = 500000;
   Motion motion;

@@ -182,7 +182,7 @@ TEST(FloatRecompute, corners_across_creases_and_seams_are_as_right) {
   ASSERT_EQ(welded.size(), smooth.topology.vertex_count());
   check_groups(torn, welded, "seams");
 
-  // Each point consists of three vertices that are at different positions.
+  // Each point of this mesh consists of three vertices that are at different positions.
   const Motion tangled = tangle(60, 200);
   Points points{std::vector<std::uint32_t>(60), 20};
   for (std::uint32_t v = 0; v < 60; ++v) points.point_of_vertex[v] = v / 3;
@@ -213,7 +213,7 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
   EXPECT_EQ(zeros, 1U);
   EXPECT_EQ(of_vertices[64], Vec3f{});
 
-  // An infinite coordinate must affect only the faces of its vertex.
+  // An infinite coordinate must affect only the faces of its own vertex.
   motion.keyframes[0].positions[3 * 30] = std::numeric_limits<float>::infinity();
   const Normals beside = evaluate(faces, motion.segment(0), 0.5, Threads::kOne, &zeros);
   EXPECT_GT(zeros, 2U);
@@ -222,7 +222,8 @@ TEST(FloatRecompute, what_has_no_normal_in_float32_gets_zeros_and_is_counted) {
     const bool is_touched = std::find(face.begin(), face.end(), 30U) != face.end();
     EXPECT_EQ(beside[f], is_touched ? Vec3f{} : of_faces[f]) << f;
   }
-  // The edges are so short or so long that the squares of their lengths leave the range of float32.
+  // The edges of the scaled meshes are so short or so long that the squares of their lengths leave the range of
+  // float32.
   for (const float size : {1e-13F, 1e11F}) {
     Motion scaled = fixtures::smooth_morph(3);
     for (auto& keyframe : scaled.keyframes) {
@@ -265,7 +266,7 @@ TEST(FloatRecompute, every_layout_and_number_of_elements_has_the_same_bits_and_n
   for (std::size_t count = 1; count <= 40; ++count) {
     Motion motion = fixtures::smooth_morph(8);
     const auto corners = motion.topology.corners().subspan(0, 3 * count);
-    // The arrays of positions end with the last vertex that is used, so that reading beyond it is detected.
+    // Each array of positions ends with the last vertex that is used, so that a sanitizer can detect reads beyond it.
     const std::size_t vertices = 1 + *std::max_element(corners.begin(), corners.end());
     motion.topology = fixtures::make_triangles(vertices, {corners.begin(), corners.end()});
     std::array<std::unique_ptr<float[]>, 2> positions;

@@ -360,8 +360,8 @@ MovingTriangles triangles_of(const Motion& motion) {
 }
 
 TEST(Recompute, thin_triangles_are_left_to_nobody) {
-  // The heights of these triangles are 0.05 to 1e-6 of their sides. Edges in float32 are not accurate enough for such
-  // triangles.
+  // The heights of the triangles in this test are 0.05 to 1e-6 of their sides. Edges in float32 are not accurate enough
+  // for such triangles.
   for (const double needle : {0.05, 1e-3, 1e-6}) {
     const Motion motion = fixtures::soup({.face_count = 203, .seed = 43, .needle = needle});
     std::vector<float> result(3 * 203);
@@ -445,7 +445,8 @@ TEST(Recompute, threads_do_not_share_windows) {
 TEST(Recompute, a_vertex_with_faces_everywhere_does_not_slow_or_change_the_others) {
   Motion motion = fixtures::smooth_morph(100);
   std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
-  // Vertex 5 gets thousands of faces, inside and outside of the window.
+  // Vertex 5 gets thousands of faces, inside and outside of the window of face normals that the library keeps at a
+  // time.
   for (std::size_t i = 0; i < corners.size(); i += 30) corners[i] = 5;
   motion.topology = fixtures::make_triangles(motion.topology.vertex_count(), corners);
   const Normals expected = of_groups(motion.segment(0), vertices_of(motion), 0.3);

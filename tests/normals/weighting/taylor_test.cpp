@@ -1,4 +1,5 @@
-// Tests intervals, and Taylor coefficients that are intervals. Both kinds of intervals must contain the true values.
+// Tests interval arithmetic, and Taylor series whose coefficients are intervals. All intervals must contain the true
+// values.
 
 #include "normals/weighting/taylor.h"
 
@@ -100,7 +101,7 @@ RC_GTEST_PROP(Taylor, polynomial_and_remainder_contain_the_function, ()) {
 }
 
 RC_GTEST_PROP(Taylor, the_polynomial_alone_does_not_contain_the_function, ()) {
-  // The enclosure here is so narrow that the test would notice a missing remainder.
+  // In this test, the enclosure is so narrow that a missing remainder would be noticed.
   fixtures::Random random(*rc::gen::arbitrary<std::uint64_t>());
   const Quadratic p{random.uniform(0.3, 0.6), random.uniform(-0.3, 0.3)};
   const Series<6> taylor = power<6>(p.about(0), -0.5, reciprocal(square_root(p.about(0)[0])));

@@ -72,7 +72,7 @@ struct Summary {
   double largest_ratio = 0;
 };
 
-// Compares the bounds of all elements of a motion with errors at equidistant times.
+// Compares the stated bounds of the fitted curves of all elements with the errors of these curves at equidistant times.
 Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samples, std::size_t elements = 1) {
   const reference::Mesh mesh = test::reference_mesh(motion.segment(0));
   const NormalGroups groups = vertices_of(motion);
@@ -82,8 +82,8 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
   for (std::size_t e = 0; e < std::min(elements, groups.size()); ++e) {
     const double error =
         sampled_error(mesh, corners[e], std::string(weighting_name(weighting)), fit.normals[e], samples);
-    // For a single triangle, the direction is exact and the bound is 0, which does not include rounding of the last
-    // bits.
+    // If an element has a single triangle, the direction of its fitted curve is exact and the bound is 0. The bound
+    // does not include the rounding of the last bits.
     const double rounding = fit.bounds[e] == 0 ? 1e-12 : 0;
     EXPECT_LE(error, fit.bounds[e] + rounding) << weighting_name(weighting) << ", element " << e;
     EXPECT_LE(fit.bounds[e], std::numbers::pi);
@@ -131,7 +131,7 @@ RC_GTEST_PROP(WeightingFit, the_bound_is_never_below_the_error_of_polygons, ()) 
 }
 
 TEST(WeightingFit, the_bound_is_never_below_the_error_where_faces_nearly_collapse) {
-  // Two triangles share an edge. The first of the two nearly collapses.
+  // Two triangles share an edge, and one of the two nearly collapses.
   fixtures::Random random(77);
   for (const double gap : {1e-1, 1e-3, 1e-6}) {
     const Motion lone = fixtures::collapsing_soup(gap, 40, 5);
@@ -179,8 +179,8 @@ TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in
         EXPECT_LT(angle_between(normal_at(fit.normals[e], t), truth[e]), 1e-12);
     }
   }
-  // By every weighting, a vertex with a single face has the normal of this face. Its length is the same as with area
-  // weights.
+  // By every weighting, a vertex with a single face has the direction of the normal of this face. The length is the
+  // same as with area weights.
   const Motion lone = fixtures::moderate_soup(50);
   const auto exact = all_group_control_normals(lone.segment(0), vertices_of(lone));
   for (const Weighting weighting : kFitted) {

@@ -131,8 +131,8 @@ RC_GTEST_PROP(Weighting, shuffled_faces_give_the_same_bits, ()) {
     RC_ASSERT(weighted(shuffled, info.weighting, 0.3) == weighted(motion, info.weighting, 0.3));
 }
 
-// The criterion for whether double is accurate enough does not depend on units, so a face of any size is treated in the
-// same way.
+// The library decides by a criterion without units whether double is accurate enough, so it treats a face of any size
+// in the same way.
 TEST(Weighting, slivers_of_any_size_have_the_same_normal) {
   constexpr std::uint64_t kSeed = 20261126;
   fixtures::Random random(kSeed);
@@ -171,7 +171,8 @@ double angle_to(const Vec3d& u, const std::array<double, 3>& n) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
 
-// The normals of these faces are only rounding error in double, so the library computes their directions in integers.
+// In double, the normals of the faces in this test are only rounding error, so the library computes their directions in
+// integers.
 TEST(Weighting, normals_of_hard_faces_are_those_of_whole_numbers) {
   constexpr std::uint64_t kSeed = 49100;
   constexpr double kMost = 0x1p-29;
@@ -234,8 +235,8 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
 TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};
   const Motion plain = test::still(fixtures::make_triangles(6, {0, 1, 2}), points);
-  // The additional faces add nothing: their corners are on a line or nearly on a line, or they repeat a vertex once or
-  // twice.
+  // The additional faces of the second mesh add nothing: their corners are on a line or nearly on a line, or they
+  // repeat a vertex once or twice.
   const Motion more = test::still(fixtures::make_triangles(6, {0, 1, 2, 0, 4, 1, 1, 1, 2, 0, 0, 0, 1, 3, 2}), points);
   for (const WeightingInfo& info : kAllWeightings) {
     const auto expected = weighted(plain, info.weighting), found = weighted(more, info.weighting);
@@ -296,8 +297,8 @@ TEST(Weighting, extreme_sizes_neither_overflow_nor_vanish) {
   }
 }
 
-// Compares weighted normals with eq. 19 of docs/theory.md. The equation is about two triangles that share an edge; one
-// of them rests.
+// Compares weighted normals with eq. 19 of docs/theory.md, which is about two triangles that share an edge. One of the
+// two triangles rests.
 TEST(Weighting, is_along_what_the_theory_says_of_two_triangles) {
   Motion motion{Topology::triangles(4, {0, 1, 2, 1, 0, 3}).value(), std::vector<Motion::Keyframe>(2), {}};
   motion.keyframes[0] = {{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1, 0}, 0, {}};

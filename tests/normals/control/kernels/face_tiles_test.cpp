@@ -28,8 +28,8 @@ namespace {
 
 using fixtures::Point;
 
-// Returns the control normals of a single face. For fewer than four faces, the function does not use the kernel, and so
-// no lanes.
+// Returns the control normals of a single face. For fewer than four faces, face_control_normals() does not use the
+// kernel, and therefore no SIMD lanes.
 ControlNormals one_face(const Segment& segment, std::size_t f) {
   ControlNormals normals;
   face_control_normals(segment, {f, 1}, {&normals, 1});
@@ -201,8 +201,8 @@ TEST(FaceTiles, have_no_noise_where_a_component_vanishes_and_no_negative_zero) {
     for (const auto end : kShapes)
       ASSERT_EQ(difference_on_all_targets(fixtures::degenerate_soup(start, end).segment(0)), "");
   }
-  // The faces lie in planes that are parallel to axes or diagonals, where products are zero or cancel. All orientations
-  // occur.
+  // The faces of this test lie in planes that are parallel to axes or diagonals, where products are zero or cancel. The
+  // planes have all orientations.
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double slope : {0.0, 1.0, -1.0, 1.0 / 3}) {
       const Motion motion = test::with_positions(fixtures::moderate_soup(100), [k, slope](const Point& p) {
@@ -222,7 +222,7 @@ TEST(FaceTiles, overflow_to_infinity_and_underflow_to_zero_as_rounding_does) {
     });
     ASSERT_EQ(difference_on_all_targets(motion.segment(0)), "") << scale;
   }
-  // One edge exceeds the range of float32, and the other is zero or tiny.
+  // In each face, one edge exceeds the range of float32, and the other edge is zero or tiny.
   const float huge = std::numeric_limits<float>::max(), tiny = std::numeric_limits<float>::denorm_min();
   Motion motion = fixtures::moderate_soup(16);
   for (auto& keyframe : motion.keyframes) {

@@ -31,8 +31,8 @@ Vec3d vector(fixtures::Random& random) {
 
 double decade(fixtures::Random& random, double low, double high) { return std::pow(10, random.uniform(low, high)); }
 
-// Draws the control normals of a curve. Most curves come about as close to zero as the limits allow. Some are ordinary,
-// and some are so hard that the kernel should decide nothing.
+// Draws the control normals of a curve. Most curves come about as close to zero as the limits allow. Some curves are
+// ordinary, and some are so hard that the kernel should decide nothing.
 BoundedNormals element(fixtures::Random& random) {
   const Vec3d n0 = vector(random);
   BoundedNormals result;
@@ -153,7 +153,7 @@ TEST(CertifyTile, decides_as_for_one_element_on_every_target) {
       }
     }
   }
-  // Makes sure that every possible answer has occurred often.
+  // Makes sure that every possible certificate has occurred often.
   EXPECT_GT(flagged, 3000U);
   EXPECT_GT(needing_exact, 1000U);
   EXPECT_GT(flagged - needing_exact, 1000U);

@@ -42,7 +42,7 @@ ControlNormals element(fixtures::Random& random, int exponent) {
     return Vec3d{std::ldexp(x, exponent), std::ldexp(y, exponent), std::ldexp(z, exponent)};
   };
   ControlNormals result{vector(), vector(), vector()};
-  // The curve passes close to zero at t = 1/2 in half of the cases.
+  // In half of the cases, the curve passes close to zero at t = 1/2.
   if (random.below(2) == 0) result = {result.n0, -1.0 * result.n0, result.n0};
   result.m.x += std::ldexp(random.uniform(-1e-9, 1e-3), exponent);
   return result;
@@ -82,7 +82,7 @@ TEST(FlaggedNormals, have_the_direction_of_the_quadratic_at_any_size) {
               << exponent << " " << i << " at " << t;
           if (is_uncertain) continue;
           const LongVector found{units[lane].x, units[lane].y, units[lane].z};
-          // If terms cancel, n(t) has an error even in double. This error is largest for subnormal numbers.
+          // If the terms of n(t) cancel, n(t) has an error even in double. This error is largest for subnormal numbers.
           const long double in_double = (exponent < -1000 ? 0x1p-36L : 0x1p-52L) * size / max_abs(n);
           ASSERT_LE(off(found, expected), 1.3e-7L + 10 * in_double) << exponent << " " << i << " at " << t;
           ASSERT_NEAR(static_cast<double>(std::hypot(found[0], found[1], found[2])), 1, 4e-7);

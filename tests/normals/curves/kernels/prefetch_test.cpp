@@ -1,5 +1,5 @@
-// Checks that evaluations prefetch curves at the best distance, and that the number of trials is limited. The best
-// distance is the one whose trials took the shortest time, in the median.
+// Tests the search for the best prefetch distance, with which evaluations read curves ahead of time, and the limit on
+// the number of trials. The best distance is the one whose trials took the shortest time, in the median.
 
 #include "normals/curves/kernels/prefetch.h"
 
@@ -121,7 +121,7 @@ TEST(PrefetchRule, large_evaluations_try_until_they_know_and_keep_their_bits) {
   (void)curves.unit_normals(0.3, VectorView<float>::packed(first));
   for (std::size_t i = 0; i < PrefetchRule::kTrials; ++i)
     (void)curves.unit_normals(0.3, VectorView<float>::packed(later));
-  // All trials are done now, unless tests that ran earlier in the same process have begun new trials.
+  // All trials are done now, unless tests that ran earlier in the same process have begun a new round of trials.
   std::size_t left = 0;
   while (left <= PrefetchRule::kTrials * PrefetchRule::kDistances.size() &&
          prefetch_of_curves(WorkingSet::kSharedCache).next())

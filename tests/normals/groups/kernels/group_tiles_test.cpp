@@ -35,7 +35,7 @@ NormalGroups vertices_of(const Motion& motion) {
   return NormalGroups::of_vertices(motion.topology, separate_points(motion.topology.vertex_count()));
 }
 
-// The expected control normals: sums over faces. The public function computes the faces one by one, and therefore
+// The expected control normals: sums over faces. face_control_normals() computes the faces one by one, and therefore
 // without SIMD lanes. `magnitudes` measures rounding errors: for each element, the largest component of the sums of
 // absolute products along the path around the element.
 struct Expected {
@@ -43,7 +43,8 @@ struct Expected {
   std::vector<double> magnitudes;
 };
 
-// Returns an edge with the absolute value of each component at the end of the segment where it is larger.
+// Returns, for each component of the edge from b to a, the larger of its absolute values at the two ends of the
+// segment.
 Vec3d larger_of_ends(const Segment& segment, std::uint32_t a, std::uint32_t b) {
   const Vec3d from = to_double(segment.from[a]) - to_double(segment.from[b]);
   const Vec3d to = to_double(segment.to[a]) - to_double(segment.to[b]);
@@ -106,8 +107,9 @@ std::string difference(const Expected& expected, IndexRange elements, std::span<
   return "";
 }
 
-// Compares all elements from element `first` on, on all instruction sets. One object computes them in ranges of `step`
-// elements. `first` and `step` are multiples of 16.
+// Compares the tiles of all elements from element `first` on with the expected control normals, on all instruction
+// sets. The kernel writes the tiles in ranges of `step` elements. `first` and `step` are multiples of 16. Describes the
+// first difference, or returns "".
 std::string difference_on_all_targets(const Segment& segment, const NormalGroups& groups, std::size_t first = 0,
                                       std::size_t step = 256) {
   const Expected expected = expected_of(segment, groups);
@@ -271,7 +273,7 @@ TEST(GroupTiles, take_a_vertex_of_many_faces) {
 }
 
 TEST(GroupTiles, have_no_noise_where_faces_cancel) {
-  // Every face occurs twice, in both orientations and in random order. In the second case, some faces occur once more.
+  // Every face occurs twice, in both orientations and in random order. In the second case, three faces occur once more.
   for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
     Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
     std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
