@@ -75,7 +75,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// Splits a path into its parts.
+// Splits a path into the names of its folders and of its file.
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
   for (const fs::path& part : fs::path(path)) parts.push_back(part.string());
@@ -374,7 +374,7 @@ TEST(Layers, files_hold_one_idea) {
   }
 }
 
-// Several test files are compiled as one (CHRONORMAL_UNITY), so each needs its own namespace.
+// Several test files are compiled as one source (CHRONORMAL_UNITY), so each test file needs its own namespace.
 TEST(Layers, every_test_file_has_a_namespace_of_its_own) {
   std::size_t count = 0;
   for (const auto& entry : fs::recursive_directory_iterator(kRoot / "tests")) {

@@ -36,7 +36,8 @@ class QueryCli : public testing::Test {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     return Json::parse(result.out);
   }
-  // Expects numbers that differ by at most 1e-12. This tolerance is wider than the brackets around the computed times.
+  // Expects numbers that differ from the wanted numbers by at most 1e-12. This tolerance is wider than the brackets
+  // around the computed times.
   static void expect_near(const Json& values, const std::vector<double>& wanted) {
     ASSERT_EQ(values.size(), wanted.size());
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(values[i].get<double>(), wanted[i], 1e-12) << i;

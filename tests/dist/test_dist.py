@@ -377,7 +377,7 @@ class Wheel(Unpacked):
         self.assertIn("zlib", {path.name for path in (self.folder / "chronormal/THIRD_PARTY").iterdir()})
 
     def test_computes_in_a_fresh_environment(self):
-        # The virtual environment also has the packages of the system, one of which is NumPy.
+        # The virtual environment can also use the packages of the system, one of which is NumPy.
         run(sys.executable, "-m", "venv", "--system-site-packages", self.folder / "venv")
         python = self.folder / "venv/bin/python"
         run(python, "-m", "pip", "install", "-q", "--no-index", "--no-deps", artefact("*.whl"))

@@ -88,8 +88,8 @@ function(vcpkg_cmake_install)
   run(${CMAKE_COMMAND} --install ${FOLDER}/build --prefix ${CURRENT_PACKAGES_DIR})
 endfunction()
 
-# Moves the files for find_package() as vcpkg does. From the new place, the folder of the package is two levels up
-# instead of three, so the path in the files is adapted.
+# Moves the files that find_package() reads to the folder to which vcpkg moves them. From the new place, the folder of
+# the package is two levels up instead of three, so the path in the files is adapted.
 function(vcpkg_cmake_config_fixup)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "CONFIG_PATH" "")
   file(GLOB files ${CURRENT_PACKAGES_DIR}/${arg_CONFIG_PATH}/*)

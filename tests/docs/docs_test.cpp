@@ -193,7 +193,7 @@ INSTANTIATE_TEST_SUITE_P(Documents, Commands, testing::ValuesIn(documents_with_c
   return name;
 });
 
-// Writes small files. The indented commands of README.md and of the pages use files with these names.
+// Writes small files with the names that the indented commands of README.md and of the pages use.
 void write_files_of_commands(const test::TemporaryFolder& folder) {
   const std::string faces = "f 1 2 3\nf 1 3 4\n";
   const std::string still = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n" + faces;

@@ -26,7 +26,7 @@ std::vector<const Motion::Keyframe*> keys_of(const Motion& motion) {
 
 Path curve(double tolerance = kPathTolerance) { return {PathKind::kCatmullRom, tolerance}; }
 
-// ---- curves --------------------------------------------------------------------------------------------------------
+// ---- curves through keyframes ---------------------------------------------------------------------------------------
 
 TEST(CubicSegment, is_the_curve_of_the_textbook_with_or_without_velocities) {
   Motion motion = test::curved_motion({0, 0.2, 0.5, 0.6, 1}, 2, 6, 4);
@@ -74,7 +74,7 @@ TEST(Path, hermite_needs_a_velocity_and_curves_a_sequence) {
   EXPECT_EQ(cut_into_segments(motion, curve()).error().code, ErrorCode::kUsage);
 }
 
-// ---- pieces --------------------------------------------------------------------------------------------------------
+// ---- the straight pieces of curves ----------------------------------------------------------------------------------
 
 // Compares the normals of the straight pieces with the normals of the curve, at times between the keyframes, for all
 // faces or for all vertices. Returns the largest angle in degrees. Subtracts twice the angle that rounding positions to

@@ -25,7 +25,7 @@ namespace {
 
 using fixtures::Point;
 
-// ---- generators ----------------------------------------------------------------------------------------------------
+// ---- generators of random motions -----------------------------------------------------------------------------------
 
 // Draws an integer in [-bound, bound]. In its first cases, rapidcheck draws from the low end of a range, and in later
 // cases from more of the range. Here the low end stands for 0, so the first cases are degenerate and later cases are
@@ -60,7 +60,7 @@ Motion any_soup(std::size_t face_count = 3) {
   return fixtures::soup({.face_count = face_count, .seed = seed, .size = size, .offset = offset});
 }
 
-// ---- measures ------------------------------------------------------------------------------------------------------
+// ---- measures of control normals and motions ------------------------------------------------------------------------
 
 std::vector<ControlNormals> control_normals(const Motion& motion) {
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -125,7 +125,7 @@ Motion reordered(const Motion& motion, const std::array<std::size_t, 3>& order) 
   return result;
 }
 
-// ---- perpendicular -------------------------------------------------------------------------------------------------
+// ---- the normal is perpendicular to the face ------------------------------------------------------------------------
 
 RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, ()) {
   const Motion motion = any_soup(1);
@@ -142,7 +142,7 @@ RC_GTEST_PROP(Theorems, normals_are_perpendicular_to_both_edges_at_every_time, (
   RC_ASSERT(std::fabs(dot(n, at(2) - at(0))) <= tolerance);
 }
 
-// ---- closed meshes -------------------------------------------------------------------------------------------------
+// ---- the normals of closed meshes add up to zero --------------------------------------------------------------------
 
 Motion snapped_to_grid(const Motion& motion) {
   return changed(motion, [](Point p) {
@@ -167,7 +167,7 @@ RC_GTEST_PROP(Theorems, closed_mesh_normals_sum_to_zero_in_every_coefficient, ()
   RC_ASSERT(exact_sum == ControlNormals{});
 }
 
-// ---- similarities --------------------------------------------------------------------------------------------------
+// ---- scaled, translated and rotated meshes --------------------------------------------------------------------------
 
 RC_GTEST_PROP(Theorems, scaled_mesh_has_normals_times_the_square, ()) {
   const Motion motion = any_soup();
@@ -268,7 +268,7 @@ RC_GTEST_PROP(Theorems, rigidly_moved_mesh_has_rotated_normals, ()) {
   }
 }
 
-// ---- time ----------------------------------------------------------------------------------------------------------
+// ---- reversed and divided segments of time --------------------------------------------------------------------------
 
 RC_GTEST_PROP(Theorems, reversed_motion_swaps_the_end_normals_and_keeps_the_middle, ()) {
   const Motion motion = any_soup();
@@ -310,7 +310,7 @@ RC_GTEST_PROP(Theorems, split_segment_gives_the_same_curve, ()) {
   }
 }
 
-// ---- corners -------------------------------------------------------------------------------------------------------
+// ---- other orders of corners ----------------------------------------------------------------------------------------
 
 RC_GTEST_PROP(Theorems, swapped_corners_negate_bit_for_bit, ()) {
   const Motion on_grid_motion = grid_soup(), motion = any_soup();
@@ -369,7 +369,7 @@ RC_GTEST_PROP(Theorems, polygon_of_three_corners_is_a_triangle_bit_for_bit, ()) 
   RC_ASSERT(control_normals(mixed)[0] == control_normals(motion)[0]);
 }
 
-// ---- degrees -------------------------------------------------------------------------------------------------------
+// ---- the degree of n(t) ---------------------------------------------------------------------------------------------
 
 // Returns the control normals of a triangle whose corners begin at `start` and move by `steps`.
 ControlNormals moved_triangle(const std::array<Point, 3>& start, const std::array<Point, 3>& steps) {

@@ -234,7 +234,7 @@ TEST(Schemes, linear_of_opposite_ends_is_the_start_where_it_vanishes) {
 }
 
 TEST(Schemes, no_input_makes_nan) {
-  // Coordinates have all magnitudes, and many coordinates are equal, so all kinds of degenerate faces occur.
+  // The coordinates have all magnitudes, and many coordinates are equal, so all kinds of degenerate faces occur.
   const float values[] = {0, 0, 0, 1, -1, 1, 0.5f, 1e-38f, 1e-20f, -1e-7f, 1e7f, 1e18f, -3e38f, 1.0000001f};
   std::mt19937 random(7);
   for (int i = 0; i < 3000; ++i) {

@@ -21,8 +21,8 @@ class AllocationCounter {
   [[nodiscard]] std::size_t allocations() const noexcept;
   /// Returns the largest number of bytes that were in use at once, beyond the bytes in use at the start.
   [[nodiscard]] std::size_t peak_bytes() const noexcept;
-  /// Returns the number of bytes in use now, beyond those at the start. The number is negative if more bytes were freed
-  /// than allocated.
+  /// Returns the number of bytes in use now, beyond the bytes in use at the start. The number is negative if more bytes
+  /// were freed than allocated.
   [[nodiscard]] std::ptrdiff_t bytes() const noexcept;
 };
 

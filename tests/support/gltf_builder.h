@@ -217,7 +217,8 @@ class GltfFixture {
   Result<GltfDocument> document_;
 };
 
-// A quad that is not planar, its triangles, and two targets. All numbers are exact in float32.
+// A quad that is not planar (positions and triangles), and the position deltas of two targets. All numbers are exact in
+// float32.
 inline const std::vector<float> kQuad = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.5F};
 inline const std::vector<std::uint16_t> kQuadCorners = {0, 1, 2, 0, 2, 3};
 inline const std::vector<float> kLift = {0, 0, 1, 0, 0, -1, 0, 0, 2, 0.5F, 0, 0};

@@ -237,8 +237,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes a dozen faces with few vertices, so the normals of the faces at a vertex partly cancel. Sometimes some of the
-/// faces are quads.
+/// Makes 4 to 15 faces with only 4 to 8 vertices, so the normals of the faces at a vertex partly cancel. Sometimes some
+/// of the faces are quads.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;

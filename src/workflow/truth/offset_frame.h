@@ -46,8 +46,8 @@ template <class PositionOf>
   return count > 0 && sum > 0 ? sum / static_cast<double>(count) : 1;
 }
 
-/// Returns the direction of azimuth 0. It is perpendicular to z, on the side of z to which the edge leads. Returns zero
-/// if the edge has no such direction.
+/// Returns the direction of azimuth 0 for an edge: perpendicular to z, on the side of z to which the edge leads.
+/// Returns zero if the edge is zero or parallel to z.
 template <class PositionOf>
 [[nodiscard]] Vec3d zero_azimuth(const OffsetEdge& edge, const Vec3d& z, const PositionOf& position) {
   const Vec3d along = unit(position(edge.to) - position(edge.from));

@@ -51,8 +51,8 @@ class StoredKey {
 /// has replaced the author's normals.
 [[nodiscard]] std::vector<std::size_t> targets_with_normals(const GltfShading& shading);
 
-/// Returns for each element one of its vertices, or GltfShading::kNoElement if no vertex shows the element. All
-/// vertices of an element store the same normal.
+/// Returns for each element the index of one of its vertices, or GltfShading::kNoElement if the element has no vertex.
+/// All vertices of an element store the same normal.
 [[nodiscard]] std::vector<std::uint32_t> vertices_of_elements(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -1,5 +1,5 @@
-/// Computes the weights that a viewer plays from a track of a file. They may differ from those that glTF specifies.
-/// Private to workflow.
+/// Computes the weights that a viewer plays from a track of a file. These weights may differ from the weights that glTF
+/// specifies. Private to workflow.
 ///
 /// Some viewers sample a track again at fixed steps. For such a viewer, only the two samples around the requested time
 /// are computed.

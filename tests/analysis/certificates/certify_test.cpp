@@ -339,7 +339,7 @@ TEST(Certificates, give_the_same_bits_on_any_number_of_threads) {
   EXPECT_EQ(certify("no such scheme", motion.segment(0)).error().code, ErrorCode::kUsage);
 }
 
-// ---- sums that cancel ----------------------------------------------------------------------------------------------
+// ---- vertices whose face normals cancel -----------------------------------------------------------------------------
 
 // If the normals of the faces cancel, their sum in double is only rounding error. The certificate must include this
 // error, or the normals must be computed more precisely.

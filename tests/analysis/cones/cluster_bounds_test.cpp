@@ -336,7 +336,7 @@ Powers dot_of(const std::array<Powers, 3>& a, const std::array<Powers, 3>& b) {
 }
 
 // Returns the Bernstein coefficients of a cubic, given its coefficients of 1, x, x^2 and x^3. Each Bernstein
-// coefficient is a weighted sum of these, and the weights are ratios of binomial coefficients.
+// coefficient is a weighted sum of the given coefficients, and the weights are ratios of binomial coefficients.
 std::array<Rational, 4> bernstein_of(const Powers& p) {
   return {p[0], p[0] + p[1] / 3, p[0] + p[1] * 2 / 3 + p[2] / 3, p[0] + p[1] + p[2] + p[3]};
 }

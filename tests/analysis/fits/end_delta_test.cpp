@@ -168,7 +168,7 @@ TEST(EndDelta, zero_ends_stand_for_their_limits) {
   const EndDelta middle = best_end_delta({{}, y, {}});
   EXPECT_EQ(middle.delta, Vec3d{});
   EXPECT_EQ(middle.error, 0);
-  // All control normals may be zero.
+  // The function also accepts control normals that are all zero.
   const EndDelta nothing = best_end_delta({});
   EXPECT_EQ(nothing.delta, Vec3d{});
   EXPECT_EQ(nothing.scale, 1);

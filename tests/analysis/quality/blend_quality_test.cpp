@@ -136,7 +136,7 @@ TEST(BlendQuality, rows_that_tell_nothing_leave_the_endpoint_deltas) {
     const DeltaNormals best = best_deltas(normals, weights);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(best.deltas[k].deltas, ends.deltas[k].deltas);
   }
-  // With a single pose, deltas can give the exact normals of all elements. Every delta must be finite.
+  // If there is a single pose, deltas can give the exact normals of all elements. Every delta must be finite.
   const std::vector<double> one = {0.5, 1, 0};
   const DeltaNormals best = best_deltas(normals, one);
   EXPECT_LT(delta_quality(best, normals, one).max, 1e-4);

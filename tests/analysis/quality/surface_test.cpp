@@ -101,8 +101,8 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // The outlines of these polygons cross themselves. Such polygons with the same four points are neither copies nor
-  // backs of each other.
+  // The outlines of the four polygons below cross themselves. Each has the points of the first polygon, but is neither
+  // its copy nor its back.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});

@@ -158,7 +158,7 @@ TEST(Collapse, a_face_that_shrinks_to_a_point_and_comes_back_does_not_turn_over)
 TEST(Collapse, one_unit_in_the_last_place_beside_the_line_is_no_collapse) {
   const std::vector<fixtures::Point> from{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}};
   EXPECT_EQ(collapses_of(from, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0}}).count, 1U);
-  // At both ends, the third corner is 2^-149 (the smallest float) above the plane of motion.
+  // At both ends, corner c is 2^-149 (the smallest float) above the plane z = 0, so the face never collapses.
   const std::vector<fixtures::Point> beside{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0x1p-149}};
   EXPECT_EQ(collapses_of(beside, {{0, 0, 0}, {1, 0, 0}, {0.5, -1, 0x1p-149}}).count, 0U);
 }

@@ -336,8 +336,8 @@ TEST(Facing, a_face_that_only_touches_edge_on_keeps_its_side) {
 }
 
 TEST(Facing, an_eye_may_pass_the_plane_of_a_face_three_times) {
-  // The face turns over twice while the eye moves down through its plane. The polynomial is then a cubic with three
-  // roots.
+  // The face turns over twice, and the eye moves down through the plane of the face. The polynomial whose sign is the
+  // visible side is then a cubic with three roots.
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), {{0, 0, 0}, {1, 0, 0}, {0, 3, 0}},
                                               {{0, 0, 0}, {-3, 0, 0}, {0, -1, 0}});
   const Facing facing = find_facing(motion.segment(0), 0, View::of_moving_eye({0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}));

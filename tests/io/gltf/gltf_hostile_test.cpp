@@ -315,7 +315,7 @@ const std::set<std::string_view> kOnlyWarned = {"unknown_type.gltf"};
 // the message also occurs for other parts, the JSON pointer decides.
 bool is_about_what_is_read(const std::string& code, const std::string& pointer) {
   if (kRead.contains(code)) {
-    // Our reader never reads the entries of these lists.
+    // Our reader never reads the entries of the lists below.
     for (const char* const list : {"/materials", "/textures", "/images", "/samplers", "/skins", "/cameras", "/scenes"})
       if (pointer.starts_with(list)) return false;
     return !pointer.ends_with("/material");

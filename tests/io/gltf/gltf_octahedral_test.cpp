@@ -1,5 +1,5 @@
 // Tests how octahedral normals of EXT_meshopt_compression are decoded. Compares the results with the formula of the
-// specification in double and, bit by bit, with those of the npm package meshoptimizer in browsers.
+// specification in double and, bit by bit, with the results of the npm package meshoptimizer in browsers.
 #include "io/gltf/decode/gltf_octahedral.h"
 
 #include <gtest/gtest.h>

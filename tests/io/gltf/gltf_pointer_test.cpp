@@ -170,7 +170,7 @@ TEST(GltfPointers, equal_times_in_arrays_of_their_own_are_counted_once) {
 }
 
 TEST(GltfPointers, keys_of_many_channels_count_against_the_expansion_that_is_allowed) {
-  // Each key of each channel becomes a row with all weights, so few bytes become many numbers.
+  // In memory, each key of each channel becomes a row with all weights, so few bytes of the file become many numbers.
   GltfBuilder builder = document();
   std::vector<float> times(40000);
   for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<float>(k);

@@ -91,7 +91,7 @@ std::string error_of(const Skinned& skinned, std::optional<std::size_t> animatio
   return shares ? "" : shares.error().text();
 }
 
-// ---- contents that a file may have -------------------------------------------------------------------------------
+// ---- contents that a file may have
 
 constexpr const char* kExpected = "0 100; 0 75, 1 25; 0 50, 1 50; 0 25, 1 75";
 

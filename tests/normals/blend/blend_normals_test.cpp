@@ -185,7 +185,7 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
     EXPECT_EQ(zero.xyz, (std::vector<float>{0, 0, 0}));
     EXPECT_EQ(zero.evaluation.zeros, 1U);
-    // With the weight 1 - 2^-50, the face is so close to collapsing that double cannot decide its direction. The result
+    // At the weight 1 - 2^-50, the face is so close to collapsing that double cannot decide its direction. The result
     // must count the face as zero or as uncertain.
     const Evaluated near = evaluate(normals, std::vector{1 - 0x1p-50, 0.7});
     EXPECT_EQ(near.evaluation.zeros + near.evaluation.uncertain_elements, 1U);
@@ -367,7 +367,7 @@ RC_GTEST_PROP(BlendNormals, untouched_elements_keep_their_base_normals_to_the_bi
   }
 }
 
-// ---- memory --------------------------------------------------------------------------------------------------------
+// ---- memory and its limit -------------------------------------------------------------------------------------------
 
 RC_GTEST_PROP(BlendNormals, cost_is_known_from_counts_and_a_limit_leaves_the_normals_as_they_are, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
@@ -521,7 +521,7 @@ TEST(BlendNormals, targets_can_be_added_to_a_set_that_has_none) {
   expect_exact(evaluate(normals, weights), test::real_normals(normals.set(), &groups, weights), "one");
 }
 
-// ---- choice --------------------------------------------------------------------------------------------------------
+// ---- the choice of a path of computation ----------------------------------------------------------------------------
 
 TEST(BlendNormals, choice_is_a_function_of_set_weights_and_options_and_takes_the_cheapest) {
   const BlendSet set = test::random_blend_set(2, {.cells = 40, .targets = 40, .reach = 0.4});
@@ -551,7 +551,7 @@ TEST(BlendNormals, names_of_paths_are_those_of_reports) {
   EXPECT_EQ(name_of(BlendPath::kWhole), "whole");
 }
 
-// ---- many vectors, threads, layouts --------------------------------------------------------------------------------
+// ---- many vectors of weights, threads, layouts ----------------------------------------------------------------------
 
 TEST(BlendNormals, an_animation_has_the_bits_of_its_frames_on_any_number_of_threads) {
   const BlendSet set = test::random_blend_set(7, {.cells = 150, .targets = 10, .reach = 0.6});
@@ -650,7 +650,7 @@ TEST(BlendNormals, moved_objects_go_on) {
   EXPECT_EQ(evaluate(first, weights).xyz, before);
 }
 
-// ---- real files ----------------------------------------------------------------------------------------------------
+// ---- files from other projects --------------------------------------------------------------------------------------
 
 namespace fs = std::filesystem;
 

@@ -405,7 +405,7 @@ TEST(CompactCurves, keep_the_tolerance_in_the_worst_cases_that_a_search_finds) {
   }
 }
 
-// ---- the choice of a format ----------------------------------------------------------------------------------------
+// ---- the choice of a format of blocks -------------------------------------------------------------------------------
 
 std::vector<ControlNormals> faces_of(const Motion& motion) {
   std::vector<ControlNormals> normals(motion.topology.face_count());
@@ -491,7 +491,7 @@ TEST(CompactCurves, lengths_are_kept_at_the_exact_tolerance_alone) {
   EXPECT_TRUE(NormalCurves().keeps_lengths());
 }
 
-// ---- integer weights -----------------------------------------------------------------------------------------------
+// ---- weights as integers --------------------------------------------------------------------------------------------
 
 TEST(CurveWeights, as_integers_stay_within_the_error_that_the_bounds_assume) {
   fixtures::Random random(79);

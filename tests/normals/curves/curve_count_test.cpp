@@ -18,7 +18,7 @@ namespace chronormal::curve_count_test {
 namespace {
 
 // Counts the faces of a segment in ranges of `together` faces, by the bytes and the degrees of their curves. Compares
-// the counts with those of NormalCurves and face_control_normals().
+// the result with the counts that NormalCurves and face_control_normals() give.
 void expect_same(const Segment& segment, std::size_t together, const char* name) {
   const std::size_t faces = segment.topology->face_count();
   const NormalCurves curves = NormalCurves::of_faces(segment);

@@ -162,7 +162,7 @@ TEST(Outputs, of_every_form_and_size_are_the_same_bits_and_touch_nothing_else) {
   }
 }
 
-// ---- many t --------------------------------------------------------------------------------------------------------
+// ---- many times t in one call ---------------------------------------------------------------------------------------
 
 void expect_many_times_equal_one(const NormalCurves& curves, const std::vector<double>& times, Threads threads) {
   const std::size_t n = curves.size(), count = times.size();
@@ -231,7 +231,7 @@ TEST(ManyTimes, may_mix_forms) {
   }
 }
 
-// ---- threads -------------------------------------------------------------------------------------------------------
+// ---- any number of threads ------------------------------------------------------------------------------------------
 
 TEST(ThreadsOfCurves, give_the_bits_of_one) {
   const auto elements = mixed_elements(100003, 95);
@@ -373,7 +373,7 @@ TEST(ReusedCurves, take_scratch_of_any_size_from_the_ones_before) {
   EXPECT_GT(lines_per_face(large.topology), 1);
 }
 
-// ---- results that go past the caches -------------------------------------------------------------------------------
+// ---- results that streaming stores write past the caches ------------------------------------------------------------
 
 // Makes a topology with `faces` faces, by repeating the faces of a grid.
 Topology repeated_grid(const Topology& grid, std::size_t faces) {

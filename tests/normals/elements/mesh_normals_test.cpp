@@ -225,7 +225,7 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
   EXPECT_EQ(weighted.set_targets({pair_of_triangles(), kFrom, {}}).error().code, ErrorCode::kUsage);
 }
 
-// ---- ranges, threads, forms ----------------------------------------------------------------------------------------
+// ---- ranges of elements, threads, output formats --------------------------------------------------------------------
 
 // Makes a mesh with seams, whose vertices and faces are in random order. Some faces are thin, and some collapse.
 Motion hard_mesh(Random& random, std::uint32_t cells) {
@@ -409,7 +409,7 @@ TEST(MeshNormals, blend_shapes_have_the_normals_of_their_positions) {
   }
 }
 
-// ---- vertex buffers ------------------------------------------------------------------------------------------------
+// ---- records for vertex buffers -------------------------------------------------------------------------------------
 
 std::int32_t signed_bits(std::uint32_t word, unsigned first, unsigned count) {
   return static_cast<std::int32_t>(word << (32 - first - count)) >> (32 - count);

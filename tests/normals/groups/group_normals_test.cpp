@@ -72,7 +72,7 @@ Motion any_mesh(double distance, std::uint64_t seed, bool of_polygons) {
   return fixtures::shaken(of_polygons ? fixtures::box_grid(3) : fixtures::icosphere(1), distance, seed);
 }
 
-// ---- exact ---------------------------------------------------------------------------------------------------------
+// ---- accuracy of the normals of vertices and corners ----------------------------------------------------------------
 
 RC_GTEST_PROP(GroupNormals, vertices_and_corners_equal_recomputing_at_every_t_within_1e_6_rad, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
@@ -93,7 +93,7 @@ RC_GTEST_PROP(GroupNormals, a_range_of_elements_has_the_bits_that_it_has_in_all,
   RC_ASSERT(std::equal(part.begin(), part.end(), all.begin() + static_cast<std::ptrdiff_t>(first)));
 }
 
-// ---- theorems ------------------------------------------------------------------------------------------------------
+// ---- theorems about the normals of vertices and corners -------------------------------------------------------------
 
 RC_GTEST_PROP(GroupNormals, triangles_give_each_vertex_their_normal_so_a_closed_mesh_sums_to_zero, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
@@ -230,7 +230,7 @@ TEST(GroupNormals, near_and_far_from_the_origin_within_2e_6_rad_of_the_truth_of_
   }
 }
 
-// ---- degenerate ----------------------------------------------------------------------------------------------------
+// ---- degenerate normals ---------------------------------------------------------------------------------------------
 
 TEST(GroupNormals, isolated_vertices_are_zero_and_counted) {
   const Motion motion =

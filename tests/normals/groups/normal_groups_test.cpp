@@ -35,7 +35,7 @@ NormalGroups creased(const Motion& motion, double degrees) {
   return NormalGroups::by_crease_angle(motion, no_welding(motion), degrees).value();
 }
 
-// Makes triangles around the z axis, like the pages of a book, at the given angles in degrees. All of them share the
+// Makes triangles around the z axis, like the pages of a book, at the given angles in degrees. All triangles share the
 // edge from (0, 0, 0) to (0, 0, 1), whose vertices are 0 and 1. Corner 3 f + 2 of face f is its third point.
 // Neighbouring faces pass the common edge in opposite directions, as on a surface.
 Motion pages(const std::vector<double>& angles) {
@@ -53,7 +53,7 @@ Motion pages(const std::vector<double>& angles) {
   return test::still(make_triangles(points.size(), corners), points);
 }
 
-// ---- the partition -------------------------------------------------------------------------------------------------
+// ---- the partition of corners into groups ---------------------------------------------------------------------------
 
 TEST(NormalGroups, the_example_of_the_header) {
   const Topology topology = make_triangles(5, {0, 1, 2, 2, 1, 3});
@@ -102,7 +102,7 @@ TEST(NormalGroups, copies_show_the_normal_of_their_element) {
   EXPECT_EQ(of_outputs, (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 4, 5, 6}));
 }
 
-// ---- crease angles -------------------------------------------------------------------------------------------------
+// ---- groups by crease angle -----------------------------------------------------------------------------------------
 
 TEST(CreaseAngle, an_edge_is_hard_above_it_and_smooth_at_it) {
   const Motion motion = pages({0, 150});  // the normals are 30 degrees apart
@@ -234,7 +234,7 @@ TEST(CreaseAngle, allows_a_millionth_more_for_the_rounding_of_positions) {
   EXPECT_NE(creased(motion, 29).size(), creased(motion, 31).size());
 }
 
-// ---- smoothing groups ----------------------------------------------------------------------------------------------
+// ---- groups by smoothing group --------------------------------------------------------------------------------------
 
 TEST(SmoothingGroups, faces_of_one_group_share_and_those_of_group_0_do_not) {
   const Topology strip = make_triangles(6, {0, 1, 2, 2, 1, 3, 2, 3, 4, 4, 3, 5});
@@ -262,7 +262,7 @@ TEST(SmoothingGroups, must_be_one_for_each_face) {
   EXPECT_EQ(result.error().text(), "the list of smoothing groups has 3 entries for 2 faces");
 }
 
-// ---- split normals -------------------------------------------------------------------------------------------------
+// ---- groups by split normals ----------------------------------------------------------------------------------------
 
 Result<NormalGroups> split(const Topology& topology, const std::vector<float>& normals, double degrees = 0.1) {
   return NormalGroups::by_split_normals(topology, separate_points(topology.vertex_count()),

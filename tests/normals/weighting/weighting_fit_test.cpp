@@ -101,7 +101,7 @@ Summary check_bounds(const Motion& motion, Weighting weighting, std::size_t samp
 constexpr std::array<Weighting, 6> kFitted = {Weighting::kAngle, Weighting::kUniform,      Weighting::kAreaAngle,
                                               Weighting::kMax,   Weighting::kInverseEdges, Weighting::kInverseRoots};
 
-// ---- the bound -----------------------------------------------------------------------------------------------------
+// ---- the bound of the error -----------------------------------------------------------------------------------------
 
 TEST(WeightingFit, the_bound_is_never_below_the_error_of_random_fans) {
   fixtures::Random random(2024);
@@ -166,7 +166,7 @@ TEST(WeightingFit, the_bound_does_not_depend_on_the_size) {
   }
 }
 
-// ---- the quadratic -------------------------------------------------------------------------------------------------
+// ---- the fitted quadratic curve -------------------------------------------------------------------------------------
 
 TEST(WeightingFit, meets_the_weighted_direction_and_the_area_at_both_ends_and_in_the_middle) {
   const Motion motion = fixtures::shaken(fixtures::box_grid(3), 0.3, 8);

@@ -45,7 +45,7 @@ void expect_near(const Vec3d& found, const Vec3d& expected, double tolerance = 1
   EXPECT_NEAR(found.z, expected.z, tolerance);
 }
 
-// ---- names ---------------------------------------------------------------------------------------------------------
+// ---- names of weightings --------------------------------------------------------------------------------------------
 
 TEST(Weighting, names_lead_there_and_back) {
   for (const WeightingInfo& info : kAllWeightings) {
@@ -60,7 +60,7 @@ TEST(Weighting, names_lead_there_and_back) {
             "inverse-edges, inverse-roots");
 }
 
-// ---- definitions ---------------------------------------------------------------------------------------------------
+// ---- the definitions of weightings ----------------------------------------------------------------------------------
 
 TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
   // Quads of 2 x 1, 1 x 3 and 3 x 2 meet at the origin. Their edges along x, y and z have the lengths 2, 1 and 3, and
@@ -230,7 +230,7 @@ TEST(Weighting, polygons_count_as_polygons_and_not_as_their_triangles) {
   }
 }
 
-// ---- degenerate ----------------------------------------------------------------------------------------------------
+// ---- degenerate faces -----------------------------------------------------------------------------------------------
 
 TEST(Weighting, faces_without_area_add_nothing_whatever_the_weighting) {
   const std::vector<Point> points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0}, {0.7, 0, 0}, {0.1, 0.3, 0.9}};

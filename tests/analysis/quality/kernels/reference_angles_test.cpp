@@ -1,5 +1,5 @@
-// Checks angles and reference normals that the kernel computes in SIMD lanes. On every instruction set, they must have
-// the same bits as the scalar functions. Also compares angles with long double.
+// Checks angles and reference normals that the kernel computes in SIMD lanes. On every instruction set, the results of
+// the kernel must have the same bits as the scalar functions. Also compares angles with long double.
 #include "analysis/quality/kernels/reference_angles.h"
 
 #include <gtest/gtest.h>

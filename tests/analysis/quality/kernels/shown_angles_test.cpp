@@ -1,5 +1,5 @@
-// Checks the angles that an audit computes in SIMD lanes. On every instruction set, they must have the same bits as the
-// functions of core/vec3.h.
+// Checks the angles that an audit computes in SIMD lanes. On every instruction set, the angles must have the same bits
+// as the functions of core/vec3.h.
 #include "analysis/quality/kernels/shown_angles.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Tests the glance, a cheap check that recognises faces that are far from a collapse. Compares its claims with long
-// double and with the search for collapses, on every instruction set.
+// Tests the glance, a cheap check that recognises faces that are far from a collapse. Compares the claims of the glance
+// with long double and with the search for collapses, on every instruction set.
 
 #include "analysis/signs/kernels/face_glance.h"
 
