@@ -216,8 +216,8 @@ TEST_F(BakeCli, errors_in_its_table_are_those_that_audit_finds) {
 }
 
 TEST_F(BakeCli, a_result_that_is_worse_than_the_input_is_told_of) {
-  // In these cases, products of deltas and squares of weights exceed the range of float32, so a bake is written only
-  // with --force.
+  // In the files of this test, products of deltas and squares of weights exceed the range of float32, so a bake is
+  // written only with --force.
   std::size_t worse = 0;
   for (unsigned seed = 1; seed <= 8; ++seed) {
     test::GltfBuilder builder = test::hills_document(1, seed);

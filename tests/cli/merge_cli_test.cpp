@@ -49,7 +49,7 @@ TEST_F(Merge, parts_of_every_command_give_the_bytes_of_one_run) {
   EXPECT_NE(merged.err.find("the worst error is beyond the tolerance that the shards were made with"),
             std::string::npos);
   ASSERT_EQ(run(sample + "-o one.npy").exit_code, 0);
-  // merge recognises the format of a part by its content, not by its name.
+  // The command `merge` recognises the format of a shard by its content, not by its name.
   std::filesystem::rename(folder_ / "sample2.npy", folder_ / "sample2.part");
   ASSERT_EQ(run("merge sample3.npy sample1.npy sample2.part -o merged.npy").exit_code, 0);
   EXPECT_TRUE(file("merged.npy") == file("one.npy"));

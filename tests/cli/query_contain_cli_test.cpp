@@ -60,8 +60,8 @@ TEST_F(QueryContainCli, points_that_move_do_so_from_the_first_keyframe_to_the_la
   const Json arrays = arrays_of("a.obj b.obj c.obj --points move.npy");
   EXPECT_EQ(arrays.at("inside"), Json({false}));
   EXPECT_EQ(arrays.at("crossing_inward"), Json({true, false}));
-  // After s seconds, the point is at x = -1 + 4 s. The point enters the tetrahedron at x = 0. The slanted face meets
-  // the point where x + 1 = 2 + 2 s or, in the second segment, 6 - 2 s.
+  // After s seconds, the point is at x = -1 + 4 s, with y + z = 1. The point enters the tetrahedron at x = 0. The
+  // slanted face is the plane x + y + z = 2 + 2 s or, in the second segment, x + y + z = 6 - 2 s.
   EXPECT_NEAR(arrays.at("crossing_time").at(0).get<double>(), 0.25, 1e-12);
   EXPECT_NEAR(arrays.at("crossing_time").at(1).get<double>(), 1, 1e-12);
 }

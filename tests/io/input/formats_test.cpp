@@ -55,7 +55,7 @@ const std::map<std::string, std::vector<Fixture>, std::less<>>& fixture_table() 
   return table;
 }
 
-// A fixture for the tests of one reader, whose name is the parameter.
+// A fixture for the tests of one reader. The parameter of a test is the name of the reader.
 class Readers : public ::testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] static const Format& reader() {

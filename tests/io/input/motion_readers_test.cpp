@@ -102,7 +102,7 @@ std::map<std::string, std::function<bool(const std::string&)>> all_readers() {
   return readers;
 }
 
-// A fixture for the tests of one reader, whose name is the parameter.
+// A fixture for the tests of one reader. The parameter of a test is the name of the reader.
 class MotionReaders : public ::testing::TestWithParam<std::string> {
  protected:
   [[nodiscard]] static const std::vector<Fixture>& reader_fixtures() {

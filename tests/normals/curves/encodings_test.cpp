@@ -138,7 +138,8 @@ TEST(Octahedral, decoded_and_encoded_again_is_the_same_direction) {
   }
 }
 
-// ---- as results of curves ------------------------------------------------------------------------------------------
+// ---- encoded normals as results of curves
+// ----------------------------------------------------------------------------
 
 TEST(EncodedResults, are_within_both_tolerances) {
   fixtures::Random random(85);

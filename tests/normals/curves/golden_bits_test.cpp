@@ -19,7 +19,7 @@
 namespace chronormal::golden_bits_test {
 namespace {
 
-// Hashes 32-bit words by FNV-1a. The order of the bytes of a word in memory does not matter.
+// A hash of 32-bit words by FNV-1a. The order of the bytes of a word in memory does not matter.
 class Hash {
  public:
   void add(std::uint32_t word) { value_ = (value_ ^ word) * 0x100000001B3u; }

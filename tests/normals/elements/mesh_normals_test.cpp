@@ -97,7 +97,8 @@ TEST(MeshNormals, vertices_across_a_seam_share_a_normal_unless_they_are_separate
 }
 
 TEST(MeshNormals, a_motion_says_in_all_its_keyframes_which_vertices_are_one) {
-  // The seam opens in a third keyframe, so it is also a seam in the first segment.
+  // In the third keyframe, vertices 1 and 4 are apart. Vertices share a normal only if they coincide in all keyframes,
+  // so vertices 1 and 4 have separate normals in the first segment, too.
   Motion motion;
   motion.topology = pair_of_triangles();
   std::vector<float> open = kTo;

@@ -1,5 +1,5 @@
-// Checks every kind of memory access, on every instruction set and for every kind of block: each must write the same
-// bits as plain stores, and must not change other memory.
+// Checks every kind of memory access, on every instruction set and for every kind of block: each kind must write the
+// same bits as plain stores, and must not change memory outside of the results.
 
 #include <gtest/gtest.h>
 
