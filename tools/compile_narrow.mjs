@@ -1,6 +1,6 @@
-// Compiles both libraries for a 32-bit machine, where std::size_t cannot hold most counts that a file can contain, and
-// shows the warnings of the compiler. This is a part of `./test --full embedding`. Nothing is linked or run, since
-// Debian's libraries are 64-bit.
+// Compiles the libraries chronormal and chronormal_io for a 32-bit machine, where std::size_t cannot hold most counts
+// that a file can contain, and shows the warnings of the compiler. `./test --full embedding` runs this script. Nothing
+// is linked or run, since Debian's libraries are 64-bit.
 //
 //   node tools/compile_narrow.mjs BUILD      BUILD has compile_commands.json
 import { execFile } from 'node:child_process';
@@ -10,8 +10,8 @@ import { join } from 'node:path';
 import { promisify } from 'node:util';
 
 const run = promisify(execFile);
-// The commands that compile the sources of both libraries. Each compiles one source, or a generated file that includes
-// several sources.
+// The commands that compile the sources of chronormal and chronormal_io. Each compiles one source, or a generated file
+// that includes several sources.
 const commands = JSON.parse(readFileSync(join(process.argv[2], 'compile_commands.json'), 'utf8')).filter(({ command }) =>
   / -o CMakeFiles\/chronormal(_io)?\.dir\//.test(command),
 );

@@ -16,7 +16,7 @@ dist() {
     say "this folder is no clone of the repository, but a release is made from a commit; clone the repository first"
     return 1
   fi
-  # This is the time of all files in archives, so that an archive has the same bytes when it is made again.
+  # SOURCE_DATE_EPOCH is the time of all files in archives, so that an archive has the same bytes when it is made again.
   export SOURCE_DATE_EPOCH
   [ -z "$(git -C "$root" status --porcelain)" ] || say "some files here differ from the commit; the archive has the files of the commit"
   mkdir -p "$dist"

@@ -98,7 +98,7 @@ run_ctest() {
   rm -rf "build/$preset/results"
   ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$(nproc)" "$@" |
     tee "build/$preset/$name.log" || status=$?
-  # This pattern matches "99% tests passed, 2 tests failed out of 61". The numbers count test programs; report_results
+  # The pattern matches "99% tests passed, 2 tests failed out of 61". The numbers count test programs; report_results
   # counts the tests inside them.
   sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "build/$preset/$name.log" >>build/counts.txt
   report_results "build/$preset/results" || status=1
@@ -128,7 +128,7 @@ wrong_reasons() {
   [ ! -c /dev/full ] || printf '|no /dev/full'
 }
 
-# show_counts NAME...: prints the numbers of tests that the test runner of Node.js counted in these runs.
+# show_counts NAME...: prints the numbers of tests that the test runner of Node.js counted in the named runs.
 show_counts() {
   local name
   for name; do

@@ -89,8 +89,8 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Returns three vectors close to n. Each vector is n plus a random vector of up to `turn`, multiplied by a number from
-/// factor().
+/// Returns control normals close to n. Each of the three vectors is the sum of n and `turn` times a random vector,
+/// multiplied by a number from factor().
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -106,7 +106,8 @@ struct HardFamily {
   ControlNormals (*make)(fixtures::Random&);
 };
 
-/// Returns the families of control normals that are hard to store. Each family is a function that makes one element.
+/// Returns the families of control normals that are hard to store. Each family has a name, and a function that makes
+/// the control normals of one element at random.
 [[nodiscard]] inline const std::vector<HardFamily>& hard_families() {
   using fixtures::Random;
   static const std::vector<HardFamily> families{
@@ -195,8 +196,8 @@ struct HardFamily {
            return Vec3d{x, y, component()};
          };
          ControlNormals c{vector(), vector(), vector()};
-         // The z of all vectors is positive, so they do not cancel, and most sums are long enough to be stored as
-         // integers.
+         // No z is negative, so the three vectors do not cancel, and most sums n(t) of them are long enough to be
+         // stored as integers.
          for (Vec3d* v : {&c.n0, &c.m, &c.n1}) v->z = std::fabs(v->z);
          if (r.below(2) == 0) c.m.z = largest;
          return c;

@@ -116,7 +116,7 @@ class IntegerNormals {
 
 [[nodiscard]] inline bool is_zero(const IntegerVector& v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
 
-/// Returns the sum of the normals of these faces.
+/// Returns the sum of the normals of some faces. `faces` has the indices of these faces in `normals`.
 [[nodiscard]] inline IntegerVector sum_of(const std::vector<IntegerVector>& normals,
                                           std::span<const std::uint32_t> faces) {
   IntegerVector sum;

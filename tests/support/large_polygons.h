@@ -24,7 +24,7 @@ enum class LargePolygons {
   kPrism,  ///< two polygons, joined by a band of quadrilaterals
 };
 
-/// Makes a motion of one or two wavy polygons with this number of keyframes.
+/// Makes a motion of one or two wavy polygons, each with `corners` corners. The motion has `keyframes` keyframes.
 [[nodiscard]] inline Motion large_polygons(LargePolygons kind, std::uint32_t corners, fixtures::Random& random,
                                            int keyframes = 2) {
   const double height = kind == LargePolygons::kPrism ? std::ldexp(random.uniform(1, 2), -40) : 0;

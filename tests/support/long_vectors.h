@@ -1,5 +1,5 @@
-/// Functions for vectors of long double and the angles between them. Oracles use these functions, which share no code
-/// with chronormal.
+/// Arithmetic of vectors of long double, and the angles between them, for oracles. The file shares no code with
+/// chronormal.
 #ifndef TESTS_SUPPORT_LONG_VECTORS_H_
 #define TESTS_SUPPORT_LONG_VECTORS_H_
 

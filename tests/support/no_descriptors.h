@@ -7,7 +7,7 @@
 
 namespace chronormal::test {
 
-/// As long as such an object lives, this process can open no files and folders.
+/// An object that keeps this process from opening files and folders as long as the object lives.
 class NoDescriptors {
  public:
   NoDescriptors() {

@@ -8,8 +8,8 @@
 
 namespace chronormal::test {
 
-/// Makes one to six random edits. Each edit changes a byte, inserts a byte, erases some bytes, or copies some bytes
-/// from elsewhere.
+/// Returns the bytes after one to six random edits. Each edit changes a byte, inserts a byte, erases some bytes, or
+/// repeats some of the bytes at another place.
 [[nodiscard]] inline std::string with_random_edits(std::string bytes, std::mt19937& random) {
   for (std::size_t edits = 1 + random() % 6; edits > 0 && !bytes.empty(); --edits) {
     const std::size_t at = random() % bytes.size();

@@ -26,7 +26,7 @@ namespace chronormal::test {
   return options;
 }
 
-/// Returns the options that open a base and its targets.
+/// Returns the options that open a base mesh and its morph targets. `base` and `names` are the files.
 [[nodiscard]] inline InputOptions targets_over(std::string base, std::vector<std::string> names) {
   InputOptions options = files(std::move(names));
   options.base = std::move(base);

@@ -363,7 +363,8 @@ template <std::size_t N>
   return 2 * kPi * (static_cast<Real>(z) / 0x1p64L);
 }
 
-/// Returns the frames at both ends by one rule: "matrix", "edge", "polar" or "random".
+/// Returns the frames of a triangle at t = 0 and at t = 1. `choice` is the rule for their tangents: "matrix", "edge",
+/// "polar" or "random".
 [[nodiscard]] inline std::optional<std::pair<Frame, Frame>> frames(std::string_view choice, const Triangle& triangle,
                                                                    std::uint64_t seed, const Place& place) {
   const auto normal0 = exact_unit_normal(triangle, 0);
@@ -504,9 +505,10 @@ struct SchemeName {
 /// Returns the unit normal that a scheme must give at t, or nothing if the scheme is not defined there or `name` is
 /// unknown.
 ///
-/// Some schemes search for a number. For these schemes, `observed_middle` is the result of the tested scheme at t =
-/// 1/2, which determines the number, and thereby the result at every other t. Without `observed_middle`, the function
-/// returns nothing for such schemes. optimal_circle_error() and scaled_linear_error() test the search itself.
+/// Some schemes search for a number, for which is_searched() is true. For such a scheme, `observed_middle` is the
+/// result of the tested scheme at t = 1/2, which determines the number, and thereby the result at every other t.
+/// Without `observed_middle`, the function returns nothing for such a scheme. optimal_circle_error() and
+/// scaled_linear_error() test the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -534,8 +536,8 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The observed middle is parallel to u0 + s u1. The number s is the ratio of two areas: the middle spans one with
-      // u0, and the other with u1.
+      // The observed middle is parallel to u0 + s u1, where u0 and u1 are the normals at both ends. The number s is |u0
+      // x middle| divided by |middle x u1|.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -662,7 +664,8 @@ template <class Coarse, class Fine>
   for (std::size_t i = 0; i <= density; ++i) {
     const double even = quarter * (2 * static_cast<double>(i) / static_cast<double>(density) - 1);
     grid.push_back(even);
-    // The angle between the circle and the great circle at u0 is atan(-tan(phi) sin(T/2)).
+    // If T is the angle between u0 and u1, the angle at u0 between the circle and the great circle is atan(-tan(phi)
+    // sin(T/2)).
     grid.push_back(std::atan2(std::sin(even), std::cos(even) * half_sine));
   }
   std::sort(grid.begin(), grid.end());

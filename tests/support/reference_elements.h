@@ -46,7 +46,7 @@ struct Corner {
   return add(scaled(1 - t, mesh.from[vertex]), scaled(t, mesh.to[vertex]));
 }
 
-/// Returns twice the vector area of a polygon at t, or zero if it is only rounding error.
+/// Returns twice the vector area of a polygon at t. Returns zero if the vector is not longer than its rounding error.
 [[nodiscard]] inline Vector vector_area(const Mesh& mesh, std::size_t face, Real t) {
   const auto& vertices = mesh.faces[face];
   std::vector<Vector> points;
@@ -138,9 +138,9 @@ struct MovingElement {
   return class_of;
 }
 
-/// Returns the class of each corner. Corners of one class share a normal at this crease angle, in degrees. `point` is
-/// the point of each vertex. All faces must have normals at t = 0, and no angle may be so close to the crease angle
-/// that rounding decides.
+/// Returns the class of each corner. Corners of one class share a normal at a crease angle of `degrees`. point[v] is
+/// the number of the point at which vertex v is. All faces must have normals at t = 0, and no angle may be so close to
+/// the crease angle that rounding decides.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);

@@ -9,7 +9,8 @@
 
 namespace chronormal::test {
 
-/// Returns a name for each scheme that make_scheme() accepts, with numbers in place of K and SEED.
+/// Returns names that make_scheme() accepts, at least one for each scheme. A scheme like lagrange:K gets several names,
+/// in which numbers replace its parameter.
 [[nodiscard]] inline std::vector<std::string> scheme_names() {
   std::vector<std::string> names;
   for (const SchemeDescription& description : scheme_descriptions()) {

@@ -91,7 +91,8 @@ struct ShadedMesh {
     return p;
   }
 
-  /// Returns the sum of the cross products of all faces at the element of vertex v, for these weights.
+  /// Returns the sum of the cross products of all faces around vertex v, and around the vertices that share its normal,
+  /// for these weights.
   [[nodiscard]] Vector normal(std::size_t v, const std::vector<double>& weights) const {
     Vector sum = {0, 0, 0};
     for (std::size_t c = 0; c < corners.size(); ++c) {

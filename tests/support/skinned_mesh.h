@@ -53,8 +53,8 @@ struct Trs {
   std::array<Real, 4> rotation = {0, 0, 0, 1};
   std::array<Real, 3> scale = {1, 1, 1};
 
-  /// Returns the transform as a matrix. Rotates the axes by v + 2 w (u x v) + 2 u x (u x v), where u = (x, y, z) is a
-  /// part of the quaternion.
+  /// Returns the transform as a matrix. The rotation turns an axis v into v + 2 w (u x v) + 2 u x (u x v), where w and
+  /// u = (x, y, z) are the parts of the unit quaternion.
   [[nodiscard]] Rows rows() const {
     Real length = 0;
     for (const Real c : rotation) length += c * c;

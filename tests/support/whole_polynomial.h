@@ -126,7 +126,8 @@ class WholePolynomial {
     std::vector<Whole> moved;
     Whole power = 1;
     for (std::size_t k = a_.size(); k-- > 0;) {
-      // Computes moved = moved * (from + s step) + a_k power.
+      // A step of Horner's scheme: multiplies `moved` by from + s step, and adds the coefficient a_k. The factor
+      // `power` brings a_k to the common denominator.
       std::vector<Whole> next(moved.size() + 1);
       for (std::size_t i = 0; i < moved.size(); ++i) {
         next[i] += moved[i] * from;
@@ -192,10 +193,12 @@ class WholePolynomial {
     return count;
   }
 
-  // Returns the number of roots in the open interval (0, 1). All roots must be simple.
+  // Returns the number of roots in the open interval (0, 1) of the polynomial with the Bernstein coefficients b. All
+  // roots must be simple.
   static std::size_t count_in(const std::vector<Whole>& b) {
     if (variations(b) < 2) return variations(b);
-    // The coefficients of both halves are multiplied by 2^n, so that they are integers.
+    // Halves the interval by de Casteljau's algorithm. The coefficients on both halves are multiplied by 2^n, so that
+    // they are integers.
     std::vector<Whole> before = b, after = b, row = b;
     const std::size_t n = b.size() - 1;
     for (std::size_t level = 0; level <= n; ++level) {

@@ -118,8 +118,8 @@ template <class Integer>
   }
   const std::array<Integers, 4> directions{{{3, 7, 11}, {-13, 5, 8}, {17, -19, 6}, {-5, -23, 29}}};
   if (const auto number = winding_along(vertices, faces, directions[0])) return *number;
-  // Moves the point by steps that are small compared with every volume and area that is not zero. In these units,
-  // volumes and areas are integers, and areas are below size^2.
+  // Moves the point by steps that are small compared with every volume and area that is not zero. Coordinates are
+  // integers, so such volumes and areas are at least 1, up to a constant factor. Areas are below 2^(2 size).
   const mp_bitcnt_t size = mpz_sizeinbase(largest.get_mpz_t(), 2) + 8, finest = 7 * size;
   for (Integers& v : vertices) {
     for (std::size_t k = 0; k < 3; ++k) v[k] = (v[k] << finest) - (mpz_class(1) << (finest - (2 * k + 3) * size));

@@ -1,5 +1,5 @@
-// Makes Babylon.js a viewer in the test page. Uses its loader, its animation groups, and its glTF material, which can
-// show normals as colours.
+// Makes Babylon.js a viewer of the test page. Uses the loader, the animation groups and the glTF material of
+// Babylon.js. The material can show normals as colours.
 import { Animation } from '@babylonjs/core/Animations/animation.js';
 import { AnimationGroup } from '@babylonjs/core/Animations/animationGroup.js';
 import { FreeCamera } from '@babylonjs/core/Cameras/freeCamera.js';
@@ -46,15 +46,16 @@ export function play(model, animation, time) {
   group.goToFrame(time * FRAMES_PER_SECOND);
 }
 
-// Sets the weights of the first targets of every mesh. drive() sets the weights of correction targets.
+// Sets the weights of the author's targets, which are the first targets of every mesh. drive() sets the weights of
+// correction targets.
 export function setWeights({ scene }, weights) {
   for (const { morphTargetManager } of scene.meshes)
     if (morphTargetManager)
       weights.forEach((weight, i) => (morphTargetManager.getTarget(i).influence = weight));
 }
 
-// Sets the weights by blending: plays an animation group for each weight, and all groups have the same share in the
-// blend.
+// Makes Babylon.js blend animations so that the targets get these weights. Plays one animation group for each weight,
+// and every group has the same share in the blend.
 export function blend({ scene }, weights) {
   weights.forEach((weight, k) => {
     const group = new AnimationGroup(`group ${k}`, scene);

@@ -41,8 +41,8 @@ def select(o):
 
 
 def looked_at(o, over, judged):
-    """Lets the panel check an object. Returns the average and the worst error in degrees, the rows of the list, and the
-    colours."""
+    """Lets the panel check an object. Returns the average and the worst error in degrees, the largest error that the
+    mesh stores as colour, and the rows of the panel's list."""
     select(o)
     state = bpy.context.window_manager.chronormal
     state.judged = judged
@@ -118,7 +118,7 @@ def jumps(o):
 
 
 def failures(folder, program):
-    """Exports once as usual, then where a bake may fail. `folder` contains programs that fail."""
+    """Exports once as usual, then in cases in which a bake fails or may fail. `folder` contains programs that fail."""
     truth, how = blender_truth.make(1, "triangles")
     path = lambda name: os.path.join(folder, name)  # noqa: E731
     blender_truth.export(path("plain.glb"), how)
@@ -172,7 +172,8 @@ def leaves(folder, program):
     preferences.use = True
     looked_at(truth.object, "NOW", "BAKED")
     blender_truth.export(os.path.join(folder, "left.glb"), how)
-    # If an export fails before it writes a file, the function that the add-on replaces remains in the exporter.
+    # Stands for an export that fails before it writes a file. Such an export leaves a function of the add-on in the
+    # exporter.
     part("export").before_export({})
     part("colours").show()
     during = state()

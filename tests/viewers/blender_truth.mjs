@@ -9,7 +9,8 @@ import { nodeWeights, read, shownNormals } from './reader.mjs';
 // Two positions at this distance or less count as equal. Models are about two units wide.
 const ROUNDING = 1e-5;
 
-// Reads a file of blender_truth.py. Returns {loops, instants, place(instant, loop), normal(instant, loop)}.
+// Reads the files that blender_truth.py wrote for a model. `loops` is the number of loops, and `instants` lists the
+// instants. place() and normal() return the position and the normal of a loop at an instant.
 export function readTruth(path) {
   const { loops, instants } = JSON.parse(readFileSync(`${path}.json`, 'utf8'));
   const bytes = readFileSync(`${path}.bin`);
@@ -53,8 +54,8 @@ export function truthOf({ truth }, instant, loops) {
   return Float32Array.from({ length: 3 * loops.length }, (_, i) => truth.normal(instant, loops[Math.floor(i / 3)])[i % 3]);
 }
 
-// Reads a model: {name, path, truth, exported, loops}. `path` has no extension, and `loops` has an array for each
-// primitive.
+// Reads a model by its path without extension. Returns {name, path, truth, exported, loops}: the result of readTruth(),
+// the exported file, and for each primitive an array with the loop of each vertex.
 export async function readModel(path) {
   const [truth, exported] = [readTruth(path), await read(`${path}.glb`)];
   const loops = exported.meshes[0].primitives.map((primitive) => loopsOf(primitive, truth));

@@ -242,12 +242,13 @@ def triangles(draw):
 
 
 def sheet(draw):
-    """Makes a planar grid of quads, in which only the keys depend on the weighting of normals."""
+    """Makes a planar grid of quads. In the base, its normals are the same by every weighting; in the keys, they
+    differ."""
     return grid(draw, 0)
 
 
 def darts(draw):
-    """Makes a grid of uneven quads. Some are concave, so Blender cuts them along their other diagonal."""
+    """Makes a grid of uneven quads. Some quads are concave, so Blender cuts them along the other diagonal."""
     o = grid(draw, 0.2)
     for vertex in o.data.vertices:
         vertex.co += Vector([draw.uniform(-size, size) for size in (0.1, 0.1, 0.02)])
@@ -342,7 +343,7 @@ class Truth:
         self.instants.append({**more, "weights": [key.value for key in self.keys]})
 
     def write(self, path):
-        """Writes PATH.json and PATH.bin."""
+        """Writes the instants to PATH.json, and the positions and normals of all loops to PATH.bin."""
         numpy.concatenate(self.loops).astype("<f4").tofile(path + ".bin")
         with open(path + ".json", "w", encoding="utf-8") as file:
             json.dump({"loops": len(self.loops[0]), "instants": self.instants}, file)

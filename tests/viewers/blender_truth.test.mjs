@@ -41,7 +41,8 @@ function assertNoFaultAtKeys({ subjects, findings }) {
   for (const { name, worst_at_keys_degrees: worst } of targets) assert.ok(worst <= AT_KEYS, `${name}: ${worst}`);
 }
 
-// Checks the audit of an animation. The audit takes samples at all recorded times and at other times.
+// Checks that the audit of an animation finds about the errors that were measured with Blender's normals (`times`). The
+// audit takes samples at all recorded times and at other times.
 function assertSameBetween({ subjects }, { times }) {
   const { mean_degrees: mean, worst_degrees: worst } = subjects.find(({ kind }) => kind === 'track');
   const message = `audit ${mean} / ${worst} degrees, Blender ${times.mean} / ${times.worst}`;

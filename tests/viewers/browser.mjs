@@ -1,5 +1,5 @@
-// Runs headless Chromium with the page of page.mjs. The page can load only the files that serve() gets; requests for
-// other files are refused.
+// Runs headless Chromium with the page of page.mjs. The page can load only the files that are passed to serve().
+// Requests for other files are refused.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { join } from 'node:path';
@@ -10,7 +10,8 @@ import puppeteer from 'puppeteer-core';
 const ADDRESS = 'http://chronormal.invalid/';
 const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
 
-// The script filament.js defines the global variable `Filament`, which loads a wasm module when it starts.
+// The page of the tests. The script filament.js defines the global variable `Filament`, which loads a wasm module when
+// it starts.
 const HTML = `<!doctype html><title>chronormal</title><link rel="icon" href="data:,">
 <script src="filament.js"></script><script src="page.js"></script>`;
 

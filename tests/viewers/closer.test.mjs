@@ -28,7 +28,8 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/head.png', import.met
 const PICTURE_TIME = 1.25;
 const VIEWERS = FULL ? ['three', 'babylon', 'playcanvas', 'filament'] : ['playcanvas', 'filament'];
 
-// Differences of less than this, in degrees, are ignored: PlayCanvas loses as much by rounding to 16-bit floats.
+// The largest difference between errors, in degrees, that is ignored. In PlayCanvas, rounding to 16-bit floats causes
+// differences of this size.
 const ROUNDING = 0.05;
 
 describe('what is baked is closer to the truth', () => {

@@ -38,8 +38,9 @@ const vector = (array, v) => array.subarray(3 * v, 3 * v + 3);
 const minus = (a, b) => a.map((x, c) => x - b[c]);
 const unit = (a) => a.map((x) => x / (length(a) || 1));
 
-// Returns the instant and the place at which an exported file has the most torn edges: {time, at, from, radius}. `from`
-// is the direction from which to look at the place.
+// Returns the instant and the place at which an exported file has the most torn edges, as {time, instant, at, from,
+// radius}. At a torn edge, the errors of its two vertices differ by more than TORN degrees. `from` is the direction
+// from which to look at the place.
 function mostTorn({ exported, truth, loops }) {
   let most = { count: -1 };
   truth.instants.forEach(({ time }, instant) => {

@@ -57,7 +57,8 @@ export class ExactNormals {
     return result;
   }
 
-  // Returns n(w) of every element. The vectors do not have length 1.
+  // Returns the sum of cross products of every element, a group of vertices that share a normal, at these weights. The
+  // vectors do not have length 1.
   sums(weights) {
     const sums = new Float64Array(3 * this.elements);
     this.primitives.forEach((primitive, p) => {

@@ -1,5 +1,5 @@
 // Tests the panel of a page that shows one face of a mesh. Compares the values in the panel with the output of `compare
-// --face`, and its pictures with values that are computed from this output.
+// --face`, and the pictures in the panel with values that are computed from this output.
 import assert from 'node:assert/strict';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

@@ -1,11 +1,11 @@
-// Makes Filament a viewer in the test page. Uses its loader, its animator, and a light under which its glTF material
-// shows normals as colours. browser.mjs loads `Filament` itself into the page.
+// Makes Filament a viewer of the test page. Uses the loader and the animator of Filament, and a light under which its
+// glTF material shows normals as colours. browser.mjs loads `Filament` itself into the page.
 //
-// Under a light from all sides with the irradiance (n + 1) / 2 in three colours, a white and rough surface shows k (n +
-// 1) / 2, where k depends on the material and the view. Under a light of 1 from all sides, the same surface shows k, so
-// the quotient of the two pictures gives n.
+// The light comes from all sides, with the irradiance (n + 1) / 2 in three colours for a surface with the normal n.
+// Under this light, a white and rough surface shows k (n + 1) / 2, where k depends on the material and the view. Under
+// a light of 1 from all sides, the same surface shows k, so the quotient of the two pictures gives n.
 
-// Spherical harmonics of a light in RGB, in the order 1, y, z, x.
+// The light that shows normals as colours, as coefficients of spherical harmonics in RGB, in the order 1, y, z, x.
 const NORMALS = [0.5, 0.5, 0.5, 0, 0.5, 0, 0, 0, 0.5, 0.5, 0, 0];
 const WHITE_MATERIAL = { metallicFactor: 0, roughnessFactor: 1 };
 const WHITE = [1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0];

@@ -16,8 +16,8 @@ const BYTE = 5120;
 const SHORT = 5122;
 const FLOAT = 5126;
 
-// Returns encoded vectors for each number of bits from leastBits to mostBits: all (x, y) on a grid with at most
-// mostSteps steps along each side of the square. If there are few bits, these are all possible values.
+// Returns encoded vectors for each number of bits from leastBits to mostBits. The vectors have all (x, y) of a square
+// grid with at most mostSteps steps along each axis. If there are few bits, the grid has all possible values.
 // tests/io/gltf/gltf_octahedral_test.cpp has the same loop.
 function lattice(T, leastBits, mostBits, mostSteps) {
   const elements = [];
@@ -131,8 +131,8 @@ describe('the program decodes as browsers do', () => {
   });
   after(() => rmSync(folder, { recursive: true, force: true }));
 
-  // Returns the positions that the program reads from such a file. The program writes them as float32 after the header
-  // of a PLY file.
+  // Returns the positions that the program reads from a file of glbOf(). The program writes them as float32 after the
+  // header of a PLY file.
   function positionsOf(elements, count, componentType, filter) {
     const input = join(folder, `${filter}.glb`);
     writeFileSync(input, glbOf(elements, count, componentType, filter));

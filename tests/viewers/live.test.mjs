@@ -45,8 +45,8 @@ test('extra weights are the sums of their terms, and other versions are left alo
 });
 
 describe('three.js', () => {
-  // Makes a mesh as the loader of three.js does: the extras in the file become userData. If they have no data of a
-  // bake, the parent object may have them.
+  // Makes a mesh as the loader of three.js does: `userData` has the extras of the mesh in the file. If `userData` has
+  // no data of a bake, the parent object may have them.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;

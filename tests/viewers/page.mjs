@@ -78,8 +78,8 @@ window.sheetOfCloseUps = async (pictures, { width, height }) => {
   return urlOf(sheet, 'image/jpeg');
 };
 
-// Draws a file in a viewer as pictures of normals, at some times of its first animation. Returns the results of
-// made(picture).
+// Draws a file in a viewer as pictures of normals, at some times of its first animation. Calls made(picture) for each
+// picture, and returns the results.
 async function ofPictures(viewer, file, times, view, size, made) {
   const { play, drawNormals, dispose } = viewers[viewer];
   const model = await loaded(viewer, file);

@@ -78,7 +78,8 @@ function bakedByProgram(file) {
 async function bakeAndDownload(file) {
   const name = basename(file).replace(/\.glb$/, '.right.glb'), { bytes, words } = bakedByProgram(file);
   await press('button.bake');
-  // A bake may take longer than a single call to the browser is allowed to take, so the test asks repeatedly.
+  // A bake may take longer than a single call to the browser is allowed to take, so the test asks again and again
+  // whether the page is still busy.
   while (await page.$('.busy:not([hidden])')) await new Promise((resolve) => setTimeout(resolve, 200));
   if (words) {
     await page.waitForSelector('.busy[hidden]', WAIT);

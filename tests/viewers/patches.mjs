@@ -6,7 +6,7 @@ export const BOARD = 12;      // number of squares in a row, and of rows
 export const SIZE = { width: 192, height: 192 };
 const DISTANCE = 20;
 
-// Returns a camera in front of the origin. A square of this width around the origin fills the picture.
+// Returns a camera in front of the origin, which sees a square of this width around the origin as the whole picture.
 function viewOf(width) {
   const degrees = (2 * Math.atan(width / 2 / DISTANCE) * 180) / Math.PI;
   return { eye: [0, 0, DISTANCE], at: [0, 0, 0], degrees, near: DISTANCE / 2, far: 2 * DISTANCE };
@@ -40,11 +40,11 @@ const REACH = 4;  // distance by which the last target moves the square to the r
 
 export const MOVER_VIEW = viewOf(4 * REACH);
 
-// Returns the weight at which the middle of the square is at a pixel.
+// Returns the weight of the moving target at which the middle of the square is at a pixel.
 export const weightOfMiddle = ([x]) => 4 * (x / SIZE.width - 0.5) + 0.5;
 
-// Writes a file with a square that is half of REACH to the left of the middle. Target `moving`, by default the last
-// one, moves the square. `track` is a track for writeFile().
+// Writes a file with a square whose base position is REACH / 2 to the left of the middle of the picture. Target
+// `moving`, by default the last target, moves the square to the right by REACH. `track` is a track for writeFile().
 export function writeMover(path, { targets = 1, moving = targets - 1, names, ...track }) {
   const positions = Float32Array.from([-1, 0, 0, 0, -1, 0, 1, 0, 0, 0, 1, 0], (c, i) => (i % 3 === 0 ? c - REACH / 2 : c));
   const normals = Float32Array.from([0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1]);

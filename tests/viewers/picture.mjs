@@ -1,5 +1,4 @@
-// Draws pictures in the page that show the same moment with wrong and with true normals. The pictures are side by side,
-// lit by a viewer.
+// Runs in the test page. Draws the same moment with wrong and with true normals, side by side, as a viewer renders it.
 import * as THREE from 'three';
 import { RoomEnvironment } from 'three/addons/environments/RoomEnvironment.js';
 import * as filament from './filament_page.mjs';

@@ -82,8 +82,8 @@ async function measure(line, name, kind) {
 async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
-  // Tools limit components of deltas to 1, so a bake may not write a larger component. Only the author's own deltas may
-  // have one.
+  // Tools limit components of deltas to 1. A bake may therefore write a larger component only if the author's own
+  // deltas have one as large.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {

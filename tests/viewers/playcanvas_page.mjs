@@ -1,5 +1,5 @@
-// Makes PlayCanvas a viewer in the test page. Uses its loader, its animation component, and its glTF material, which
-// can show normals as colours.
+// Makes PlayCanvas a viewer of the test page. Uses the loader, the animation component and the glTF material of
+// PlayCanvas. The material can show normals as colours.
 import {
   ADDRESS_CLAMP_TO_EDGE, AnimClipHandler, AnimComponentSystem, AppBase, AppOptions, Asset, CameraComponentSystem, Color,
   ContainerHandler, Entity, FILTER_NEAREST, MaterialHandler, PIXELFORMAT_RGBA32F, RenderComponentSystem, RenderHandler,
@@ -51,7 +51,7 @@ export function play({ asset, entity }, animation, time) {
   entity.anim.playing = false;
 }
 
-// Sets the weights of the first targets of every mesh.
+// Sets the weights of the author's targets, which are the first targets of every mesh.
 export function setWeights({ entity }, weights) {
   for (const { meshInstances } of entity.findComponents('render'))
     for (const { morphInstance } of meshInstances)

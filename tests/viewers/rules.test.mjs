@@ -47,9 +47,9 @@ const anyWeights = (random) => [0, 1, 2].map(() => 3.5 * random() - 1.5);
 const targetsOfLength = (lengthOf) => (normal, random) =>
   [0, 1, 2].map(() => minus(scaled(randomDirection(random, 0.35), lengthOf(random)), normal));
 
-// The boards. For each board, `deltas` computes the deltas of a square from its normal, and `weights` gives the weights
-// at a key of the track. If `free` is given, N + D_k does not have length 1, so Filament treats a frame as orthonormal
-// although it is not. Its error is then at least `free` degrees.
+// The boards of squares. For each board, `deltas` computes the deltas of a square from its normal, and `weights` gives
+// the weights at a key of the track. If `free` is given, N + D_k does not have length 1. Filament then treats a frame
+// as orthonormal although it is not, and its error is at least `free` degrees.
 const boards = {
   'targets whose normals are unit': { deltas: targetsOfLength(() => 1), weights: anyWeights },
   'targets whose normals are a hundredth too long': {
@@ -80,8 +80,8 @@ const boards = {
 
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
-// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, and `weights` has those at TIMES.
-// `patches` has only squares whose normal is not short by any rule.
+// Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, and `weights` has the weights at
+// TIMES. `patches` leaves out squares whose computed normal is short by some rule at some time.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));

@@ -1,5 +1,5 @@
-// Makes three.js a viewer in the test page. Uses its loader, its animation mixer, and its material that shows normals
-// as colours.
+// Makes three.js a viewer of the test page. Uses the loader and the animation mixer of three.js, and its material that
+// shows normals as colours.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
 import { driveThree } from '../../examples/drive.mjs';
@@ -33,7 +33,8 @@ export function play(model, animation, time) {
   model.mixer.setTime(time);
 }
 
-// Sets the weights of the first targets of every mesh. drive() sets the weights of correction targets.
+// Sets the weights of the author's targets, which are the first targets of every mesh. drive() sets the weights of
+// correction targets.
 export function setWeights({ scene }, weights) {
   scene.traverse(({ morphTargetInfluences: w }) => w && weights.forEach((weight, i) => (w[i] = weight)));
 }

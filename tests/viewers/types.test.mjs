@@ -18,8 +18,8 @@ const { flagsOf } = await load('options.js');
 const COMMANDS = ['audit', 'bake', 'compare', 'inspect', 'sample'];
 const REPORTS = { audit: 'AuditReport', bake: 'BakeReport', compare: 'CompareReport', inspect: 'InspectReport' };
 
-// CALL has the options that only a call has. FOR_PEOPLE has the options of the program that make sense only for people
-// or with files.
+// CALL lists the options of a call of the npm package that the program does not have. FOR_PEOPLE lists the options of
+// the program that a call does not have, since they make sense only for people or with files.
 const CALL = ['name', 'resources', 'signal', 'onProgress', 'worker', 'memoryLimit'];
 const FOR_PEOPLE = ['help', 'help-all', 'json', 'csv', 'output', 'force', 'quiet', 'sample', 'each', 'errors', 'drivers', 'shard', 'resume', 'table', 'format'];
 

@@ -18,7 +18,8 @@ export async function complaints(path) {
     .map((issue) => `${issue.code} at ${issue.pointer ?? issue.offset}: ${issue.message}`);
 }
 
-// Returns the entries that the validator did not report about the source file, since a bake does not repair its input.
+// Returns what the validator reports about a file, but not about the source file from which the file was baked. A bake
+// does not repair its input.
 export async function newComplaints(path, sourcePath) {
   const before = new Set(await complaints(sourcePath));
   return (await complaints(path)).filter((complaint) => !before.has(complaint));

@@ -453,8 +453,8 @@ def draw_angle(page):
 # The next functions make section 6 of docs/paper.md.
 
 def quaternions_of(tangent, binormal, normal):
-    """Returns the quaternions of matrices, computed from the largest of the four squares. For a matrix that is not a
-    rotation, the result is the one that common implementations give."""
+    """Returns the quaternions of matrices. Computes the component with the largest square first, and the others from
+    it. For a matrix that is not a rotation, the result is the one that common implementations give."""
     a, b, c = tangent.T, binormal.T, normal.T
     squares = np.stack([1 + a[0] + b[1] + c[2], 1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2]])
     x, y, z, xy, xz, yz = b[2] - c[1], c[0] - a[2], a[1] - b[0], b[0] + a[1], c[0] + a[2], c[1] + b[2]
@@ -477,7 +477,8 @@ def frames_as_printed(part, tangent=1, turned=1, w=0):
 
 
 def played_as_printed(frames, times):
-    """Interpolates the two quaternions by slerp, and returns the last column of their matrix."""
+    """Interpolates the quaternions of two frames by slerp. Yields the last column of the matrix, the normal, at each
+    time."""
     q0, q1 = (quaternions_of(*frame) for frame in frames)
     q1 = np.where(dot(q0, q1)[:, None] < 0, -q1, q1)
     angle = np.arccos(np.minimum(dot(q0, q1), 1))[:, None]

@@ -151,7 +151,8 @@ def levels(normals, faces, pixels):
 
 
 def screens(page, data):
-    """Measures the differences at t = 1/4 of each segment, in degrees at vertices and in grey levels of pixels."""
+    """Measures how far the normals of some schemes are from the true normals at t = 1/4 of each segment: in degrees at
+    vertices, and in grey levels of pixels."""
     rows = []
     for title, path, moments in [("dance", data / "sequences/rumba_13", ["--times", "keys"]),
                                  ("face", data / "rigs/ict_capture.glb", ["--animation", "0", "--times", "0:0.5:4"])]:

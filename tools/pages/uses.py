@@ -26,8 +26,9 @@ def soup(motion, count):
 
 
 def flat(axis):
-    """Returns two functions of a flat map of the sphere around an axis. In this map, distances from the axis are angles
-    in degrees."""
+    """Returns two functions of a flat map of the sphere around an axis, in which distances from the axis are angles in
+    degrees. seen(directions) maps directions, and rim(half_angle) returns the directions on the rim of a cone around
+    the axis."""
     axis = unit(np.asarray(axis, float))
     right = unit(np.cross(np.eye(3)[np.abs(axis).argmin()], axis))
     up = np.cross(axis, right)

@@ -18,12 +18,13 @@ namespace chronormal::vtk {
 /// The four control positions of the cubic of every point: controls[k][point].
 using PointCurves = std::array<std::vector<Vec3d>, 4>;
 
-/// The steps that determine the curve between two neighbouring steps. They are these two and one more step on either
-/// side, or the nearest four steps at the ends of the sequence.
+/// The steps that determine the curve between two neighbouring steps: the two steps and one more on either side, or the
+/// nearest four steps at the ends of the sequence. `first` is the index of the first of these steps.
 struct NearSteps {
   std::size_t first = 0, count = 0;
 };
-/// Finds the steps for a segment. Precondition: segment + 1 < steps.
+/// Finds the steps that determine the curve of a segment in a sequence of `steps` steps. Precondition: segment + 1 <
+/// steps.
 [[nodiscard]] NearSteps steps_near(std::size_t segment, std::size_t steps);
 
 /// Returns the curves from steps[segment] to the next step, in double. The velocity of a point at an inner step is the

@@ -99,7 +99,7 @@ def named(values, name):
 
 
 def mesh(points, faces):
-    """Makes a vtkPolyData with stored normals of points, an amount, and ids."""
+    """Makes a vtkPolyData with stored normals of points, an array of amounts, which filters interpolate, and ids."""
     data = vtkPolyData()
     held = vtkPoints()
     held.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=1))
@@ -107,7 +107,7 @@ def mesh(points, faces):
     data.SetPolys(cells(faces))
     data.GetPointData().SetNormals(named(point_normals(points.astype(float), faces).astype(np.float32), "Normals"))
     data.GetPointData().AddArray(named(points[:, 0] * 2, "amount"))
-    # This array survives every filter of VTK, so it identifies points in the result.
+    # Every filter of VTK keeps the array "number", so the array identifies points in the result.
     data.GetPointData().AddArray(named(np.arange(len(points), dtype=float), "number"))
     for attributes, count in ((data.GetPointData(), len(points)), (data.GetCellData(), len(faces))):
         ids = vtkIdTypeArray()

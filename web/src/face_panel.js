@@ -172,8 +172,8 @@ export function makeFacePanel(report, player, view, compute) {
     draw();
   }
 
-  // Shows the matrix M and the frames at both ends. The columns of a frame are the tangent, the binormal and the
-  // normal.
+  // Shows the matrix M of the paper, by which quaternion:matrix chooses frames, and the frames at both ends. The
+  // columns of a frame are the tangent, the binormal and the normal.
   function fillFrames() {
     const built = figure.schemes.find(({ scheme, tangents }) => scheme === construction && tangents), isOpen = frames.open;
     frames.hidden = !built;

@@ -77,8 +77,9 @@ function arrow([x0, y0], [x1, y1], stroke, width, more = {}) {
     s('polygon', { points: place(tip), fill: stroke }));
 }
 
-/** Returns {centres, size}, by which the face is placed in the picture. The picture moves along between the centres of
- * the face at both ends, and `size` is the length in space that fills the picture in the first view. */
+/** Returns {centres, size}, by which the face is placed in the picture. During the segment, the picture follows the
+ * face from its centre at the start to its centre at the end. `size` is the length in space that fills the picture in
+ * the first view. */
 export function stageOf({ from, to }, view) {
   const centreOf = (corners) => corners.reduce((sum, p) => plus(sum, 1 / corners.length, p), [0, 0, 0]), centres = [centreOf(from), centreOf(to)];
   const { width, height, y, reach } = TRIANGLE, ways = [from, to].flatMap((corners, end) => corners.map((p) => plus(p, -1, centres[end])));
@@ -178,7 +179,7 @@ function levelsOf({ nodes, points }, sample) {
   return levels;
 }
 
-/** Returns the frame of a quaternion at a sample: tangent, binormal = normal x tangent, normal. */
+/** Returns the frame of a quaternion scheme at a sample: tangent, binormal = normal x tangent, normal. */
 export const frameOf = ({ tangents, normals }, sample) => {
   const t = vector(tangents, sample), n = vector(normals, sample);
   return { t, b: cross(n, t), n };
@@ -215,7 +216,7 @@ export function sphereFigure(figure, { view: whole, near, sample, shown, constru
     isZero(exact[sample]) ? null : mark(exact[sample], view, inks.ink, 5, { 'data-mark': 'exact', stroke: inks.sheet }));
 }
 
-/** Draws a graph over t. Lines are {name, values, colour, width, dashes}; null leaves a gap. */
+/** Draws a graph over t. Each line is {name, values, colour, width, dashes}. A null in `values` leaves a gap. */
 export function graphFigure(figure, title, unitName, lines, sample, inks) {
   const { left, right, top, bottom } = GRAPH, most = Math.max(0, ...lines.flatMap(({ values }) => values.filter((v) => v !== null)));
   const scale = most > 0 ? 1.06 * most : 1, x = (t) => left + t * (right - left), y = (v) => bottom - (v / scale) * (bottom - top);
@@ -237,8 +238,8 @@ export function graphFigure(figure, title, unitName, lines, sample, inks) {
 }
 
 /** Draws Figure 2: the lengths of interpolated normals before they are made unit vectors. The length of the exact
- * normal, which is twice the area, is drawn as a share of its maximum. The lengths of schemes that compute this normal
- * are drawn in the same way. */
+ * normal, which is twice the area, is drawn as a share of its maximum. For schemes that compute the exact normal, the
+ * length is drawn as a share of the same maximum. */
 export function lengthFigure(figure, { sample, shown, inks }) {
   const most = Math.max(...figure.lengths) || 1;
   const lines = figure.schemes.filter(({ scheme, lengths }) => shown.has(scheme) && lengths).map(({ scheme, lengths }) => {
@@ -249,7 +250,7 @@ export function lengthFigure(figure, { sample, shown, inks }) {
   return graphFigure(figure, 'length before normalisation (thick: exact, scaled)', '', lines, sample, inks);
 }
 
-/** Draws the angle between the normals of each scheme and the exact normals. */
+/** Draws the angle, in degrees, between the normals of each scheme and the exact normals. */
 export function errorFigure(figure, { sample, shown, inks }) {
   const lines = figure.schemes.filter(({ scheme }) => shown.has(scheme)).map(({ scheme, degrees }) => {
     const { colour, dashes } = lookOf(scheme, inks.isDark);

@@ -5,8 +5,8 @@
 /** The number in place of an element for a vertex that has none: a vertex of a flat primitive, or without a face. */
 export const NONE = 0xffffffff;
 
-// The share of its terms below which a sum is treated as zero. Terms that cancel leave only a rounding error, which has
-// no meaningful direction.
+// A sum is treated as zero if its length is below this share of the sum of the lengths of its terms. Terms that cancel
+// leave only a rounding error, which has no meaningful direction.
 const ROUNDING = 1e-13;
 
 // For each weighting, a function that returns the factor by which the vector area n of a face counts at one of its
@@ -162,8 +162,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
       const size = Math.sqrt(normals[at] ** 2 + normals[at + 1] ** 2 + normals[at + 2] ** 2), scale = sides[f] / size;
       if (size === 0) continue;
       const zx = scale * normals[at], zy = scale * normals[at + 1], zz = scale * normals[at + 2];
-      // The next lines compute the mean angle of the edges to z, and the direction in which the reference edge leaves
-      // the vertex.
+      // The next lines compute the mean angle between the edges and the normal z, and the direction in which the
+      // reference edge leaves the vertex.
       let angles = 0, count = 0, xx = 0, xy = 0, xz = 0;
       for (let i = first[f]; i < first[f + 1]; ++i) {
         const a = 3 * edges[2 * i], b = 3 * edges[2 * i + 1], ex = p[b] - p[a], ey = p[b + 1] - p[a + 1], ez = p[b + 2] - p[a + 2];
@@ -178,8 +178,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
         }
       }
       if (isTurned) {
-        // The smallest rotation from z of the base to z is applied. If the two directions are opposite, it turns by 180
-        // degrees about a perpendicular axis.
+        // Applies the smallest rotation from the normal z in the base to the current z. If the two directions are
+        // opposite, the rotation is by 180 degrees about a perpendicular axis.
         const bx = turned[t], by = turned[t + 1], bz = turned[t + 2], ux = turned[t + 3], uy = turned[t + 4], uz = turned[t + 5];
         const sx = by * zz - bz * zy, sy = bz * zx - bx * zz, sz = bx * zy - by * zx, cosine = bx * zx + by * zy + bz * zz;
         const along = cosine > -1 + 1e-12 ? (sx * ux + sy * uy + sz * uz) / (1 + cosine) : 0;

@@ -12,8 +12,8 @@ import { makeViewer } from './viewer.js';
 
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
-// Each input is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files, warnings,
-// within}}.
+// The open inputs. Each is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files,
+// warnings, within}}. `came` is the report of the input as it came, and `baked` is the result of a bake.
 const inputs = [];
 const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;

@@ -11,7 +11,8 @@ const each = (rule) => (units, t, result, exact) => {
   }
 };
 
-// Returns the scheme of section 4.3: Lagrange's polynomial through K + 1 unit normals. Its weights depend only on t.
+// Returns the scheme of section 4.3 of docs/theory.md: Lagrange's polynomial through intervals + 1 exact unit normals.
+// The weights of the polynomial depend only on t.
 function lagrange(intervals) {
   const rule = (t) => {
     const weights = Array.from({ length: intervals + 1 }, (_, i) => {
@@ -30,8 +31,8 @@ function lagrange(intervals) {
   return { intervals, evaluate: each(rule) };
 }
 
-// Interpolates along the great circle (section 4.4). If the ends are equal, the result is their vector. If they are
-// opposite, many great circles lead from one to the other, and the result has no meaning.
+// Interpolates along the great circle (section 4.4 of docs/theory.md). If the ends are equal, the result is their
+// vector. If the ends are opposite, many great circles lead from one to the other, and the result has no meaning.
 function alongArc(a, i, b, j, t, result, at) {
   const d = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2];
   const x = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1], y = a[i + 2] * b[j] - a[i] * b[j + 2], z = a[i] * b[j + 1] - a[i + 1] * b[j];
@@ -46,7 +47,8 @@ function alongArc(a, i, b, j, t, result, at) {
 
 const slerp = { intervals: 1, evaluate: each((t) => (units, at, result) => alongArc(units[0], at, units[1], at, t, result, at)) };
 
-// Returns the scheme of de Casteljau's algorithm over K exact normals, with arcs of great circles in place of lines.
+// Returns the scheme of de Casteljau's algorithm over `points` exact normals, with arcs of great circles in place of
+// lines.
 function deCasteljau(points) {
   const work = new Float64Array(3 * points);
   const rule = (t) => (units, at, result) => {
@@ -57,8 +59,8 @@ function deCasteljau(points) {
   return { intervals: points - 1, evaluate: each(rule) };
 }
 
-// Returns the scheme of section 4.7: the circle through the exact normals at t = 0, 1/2 and 1. If isTimed is true, the
-// result at t = 1/2 is the middle normal.
+// Returns the scheme of section 4.7 of docs/theory.md: the circle through the exact normals at t = 0, 1/2 and 1. If
+// isTimed is true, the result at t = 1/2 is the middle normal.
 function circle(isTimed) {
   const rule = (t) => (units, at, result) => {
     const [a, m, b] = units, ax = a[at], ay = a[at + 1], az = a[at + 2];
@@ -84,7 +86,7 @@ function circle(isTimed) {
   return { intervals: 2, evaluate: each(rule) };
 }
 
-// The scheme of section 4.2: the polynomial n(t), normalised.
+// The scheme of section 4.2 of docs/theory.md: the polynomial n(t), normalised.
 const polynomial = {
   intervals: 1,
   evaluate: each((t, exact) => (units, at, result) => {

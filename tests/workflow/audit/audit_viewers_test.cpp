@@ -66,8 +66,8 @@ void expect_same(const ViewerAudit& viewer, Expected expected, const std::string
   Real sum = 0;
   for (const Real e : expected.errors) sum += e;
   std::sort(expected.errors.begin(), expected.errors.end());
-  // Numbers that are halfway between two representable numbers may be rounded up or down, so small differences are
-  // permitted.
+  // Numbers that are halfway between two representable numbers may be rounded up or down. Small differences, in
+  // degrees, are therefore permitted.
   constexpr double kMean = 0.002, kWorst = 0.1;
   EXPECT_NEAR(viewer.error.mean(), static_cast<double>(sum) / static_cast<double>(expected.errors.size()), kMean);
   EXPECT_NEAR(viewer.error.worst, static_cast<double>(expected.errors.back()), kWorst);

@@ -230,7 +230,7 @@ std::array<Real, N> value_at(const std::string& interpolation, const std::vector
   return result;
 }
 
-// A channel of a node, which can be evaluated at any time.
+// An animation channel of a node, which can be evaluated at any time.
 struct Channel {
   std::string path, interpolation;
   std::vector<float> times, values;

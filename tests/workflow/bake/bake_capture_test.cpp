@@ -34,7 +34,8 @@ constexpr std::size_t kTargets = 57, kMostTargets = 112, kMostTargetsAlone = 80,
 constexpr unsigned kSeed = 20;
 constexpr Real kLeastLength = 1e-3L;
 
-// Returns the GLB file with only its first `keys` keys. In these, target i has the weights of target from[i].
+// Returns the GLB file with only its first `keys` keys. In the result, target i has the weights that target from[i]
+// had.
 std::string with_track(const GltfPlayer& player, const std::string& glb, const std::vector<std::size_t>& from,
                        std::size_t keys) {
   auto json = player.json;

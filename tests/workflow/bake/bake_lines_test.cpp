@@ -90,7 +90,7 @@ TEST(BakeLines, of_targets_active_together_are_better_than_the_best_of_each_alon
   RecordProperty("alone", std::to_string(alone_mean / static_cast<double>(seeds)));
   EXPECT_GE(seeds, 7U);
   EXPECT_LT(fitted_mean, 0.6 * alone_mean);
-  // docs/theory.md states these two averages.
+  // docs/theory.md states both averages, in degrees.
   EXPECT_NEAR(alone_mean / static_cast<double>(seeds), 4.42, 0.01);
   EXPECT_NEAR(fitted_mean / static_cast<double>(seeds), 1.14, 0.01);
 }

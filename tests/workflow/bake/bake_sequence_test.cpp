@@ -39,7 +39,7 @@ using reference::VectorD;
 using test::ShownGlb;
 
 constexpr double kDegree = std::numbers::pi / 180;
-// A viewer that adds up deltas. If no viewer is named, a bake warns about viewers that do not.
+// A viewer that adds up deltas. If no viewer is named, a bake warns about viewers that do not add up deltas.
 const std::vector<Viewer> kAddingUp = {kViewers[0]};
 
 // The vertices of each face of a file, and for each vertex the group of vertices that share its normal.

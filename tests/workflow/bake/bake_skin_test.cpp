@@ -267,7 +267,8 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // This joint flattens the normals of one kind of viewers, and stretches those of the other kind.
+  // The joint scales z by 4. In three.js, which applies the blended matrix, it stretches the z of normals. In Bevy,
+  // which applies the inverse transpose, it shrinks the z of normals.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);

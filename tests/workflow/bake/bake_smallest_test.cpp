@@ -29,7 +29,7 @@ BakeOptions smallest(double tolerance) {
   return options;
 }
 
-// Draws `numbers` random weights for the keys of a track. If the track is a cubic spline, they include tangents.
+// Draws `numbers` random numbers for the keys of a track: the weights and, for a cubic spline, also the tangents.
 std::vector<float> random_weights(std::size_t numbers, unsigned seed) {
   test::Hills random(seed);
   std::vector<float> weights;

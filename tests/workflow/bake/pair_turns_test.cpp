@@ -1,5 +1,5 @@
 // Tests the search for the largest angle by which a pair of targets turns a normal. The search evaluates only a few
-// elements and poses. The test compares its result with an evaluation of all of them.
+// elements and poses. The test compares the result with an evaluation of all elements in all poses.
 #include "workflow/bake/deltas/pair_turns.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ class Field {
   std::vector<PairMeter::Pair> pairs_;
 };
 
-// Returns the weight of the correction target of a pair. If both targets of the pair are the same, it is w (w - 1).
+// Returns the weight of the correction target of a pair of targets i and j: w_i w_j, or w_i (w_i - 1) if i equals j.
 double weight_of(const PairMeter::Pair& pair, const std::vector<double>& pose) {
   const auto [i, j] = pair;
   return i == j ? pose[i] * (pose[i] - 1) : pose[i] * pose[j];

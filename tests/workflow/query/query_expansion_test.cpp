@@ -55,8 +55,9 @@ Motion sweeping_tetrahedron() {
   return to_and_fro(fixtures::make_triangles(4, {0, 1, 2, 0, 3, 1, 1, 3, 2, 2, 3, 0}), from, to);
 }
 
-// Calls ask(span, progress) with the usual limit and without a limit. With the limit, the query must end with the error
-// of Expansion long before the last segment. Without a limit, it must find more rows than the limit permits.
+// Calls ask(span, progress) with the usual limit and without a limit. With the limit, the query must end long before
+// the last segment, with an error that names --max-expansion. Without a limit, the query must find more rows than the
+// limit permits.
 template <class Ask>
 void expect_bounded(const Ask& ask) {
   QuerySpan span;

@@ -151,7 +151,7 @@ struct Rig {
 Vector normal_of(const std::array<Vector, 3>& p) { return crossed(plus(p[1], p[0], -1), plus(p[2], p[0], -1)); }
 Real angle_between(const Vector& a, const Vector& b) { return std::atan2(length_of(crossed(a, b)), dotted(a, b)); }
 
-// Returns the angle by which rounding to float32 may turn the normal of a triangle.
+// Returns the angle, in radians, by which rounding to float32 may turn the normal of a triangle.
 Real rounding_of(const std::array<Vector, 3>& p) {
   Real size = 0, edges = 0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -208,8 +208,8 @@ void each_moment(const Rig& rig, const Motion& motion, const Body& body) {
   }
 }
 
-// Returns the largest angle between the normals of pieces and the true normals, minus the angle that rounding may
-// cause.
+// Returns the largest angle, in radians, between the normals of pieces and the true normals, minus the angle that
+// rounding may cause.
 Real worst_angle(const Rig& rig, const Motion& motion) {
   Real worst = 0;
   each_moment(rig, motion, [&](const Segment& segment, Real t, Real, const std::vector<Vector>& places) {
@@ -237,7 +237,8 @@ test::Skin skin_of(std::size_t vertices, std::vector<std::uint8_t> joints, std::
   return {{}, {std::move(joints)}, {std::move(weights)}};
 }
 
-// A triangle whose corners 0 and 1 follow the still joint 0, and corner 2 the last of the joints.
+// A triangle whose corners 0 and 1 follow joint 0, which rests. Corner 2 is at `tip` and follows joint `last`, the last
+// joint.
 Rig lever(std::uint8_t last, const std::array<float, 3>& tip) {
   Rig rig;
   rig.positions = {0, 0, 0, 1, 0, 0, tip[0], tip[1], tip[2]};

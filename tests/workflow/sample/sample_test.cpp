@@ -123,7 +123,7 @@ TEST(NormalSampler, faces_vertices_and_corners_are_exact_at_every_time) {
   }
 }
 
-// Compares the normals of moving meshes, and of the same meshes at rest, with integers.
+// Compares the normals of moving meshes, and of the same meshes at rest, with normals that are computed in integers.
 TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   constexpr double kTime = 0.375;
   fixtures::Random random(71);
@@ -168,8 +168,8 @@ TEST(NormalSampler, no_mesh_is_too_hard_for_a_millionth_of_a_radian) {
   }
 }
 
-// A request for one time, for two or for many, in any order, must give the same bytes at a time. Normals must be within
-// 1e-6 rad of those of integers.
+// A request for one time, for two or for many, in any order, must give the same bytes for the same time. Normals must
+// be within 1e-6 rad of normals that are computed in integers.
 TEST(NormalSampler, normals_at_a_time_have_the_same_bits_whatever_is_asked_beside_it) {
   fixtures::Random random(4949);
   for (const auto& family : test::hard_motions()) {

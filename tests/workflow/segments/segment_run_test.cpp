@@ -36,7 +36,7 @@ MotionStream stream_of(std::size_t keyframes, std::vector<std::size_t>& reads) {
   return MotionStream(std::move(outline), read, 0);
 }
 
-// Returns a number that depends on a segment. Fails unless its keyframes are in memory.
+// Returns a number that depends on a segment. Fails unless the keyframes of the segment are in memory.
 Numbered looked_at(const Motion& motion, std::size_t s) {
   const auto& [from, to] = motion.segments[s];
   if (motion.keyframes[from].positions.empty() || motion.keyframes[to].positions.empty()) {
@@ -115,7 +115,7 @@ TEST(SegmentRun, every_keyframe_of_a_share_is_read_once_and_no_other) {
   std::vector<double> sum;
   ASSERT_TRUE(run_over(stream, 2, run, sum));
   for (const std::size_t k : {3U, 4U, 5U, 6U}) EXPECT_EQ(reads[k], 1U) << k;
-  // The stream may read keyframe 7 in advance.
+  // The stream may read keyframe 7 in advance, so its reads are not counted here.
   for (const std::size_t k : {0U, 1U, 2U, 8U, 9U, 10U}) EXPECT_EQ(reads[k], 0U) << k;
 }
 

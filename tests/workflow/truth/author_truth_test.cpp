@@ -341,8 +341,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   RecordProperty("seed", static_cast<int>(kSeed + 8));
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
-    // In these five rows, both targets only scale the mesh, so they do not change the directions of the sums. It then
-    // makes no difference from which edge azimuths are measured.
+    // In the first five rows of the sheet, both targets only scale the mesh, so they do not change the directions of
+    // the sums. In this case, it makes no difference from which edge azimuths are measured.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -600,7 +600,7 @@ TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
   mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
   for (int v = 0; v < 8; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
-  // In the target, the right half folds down by 90 degrees, and its vertices have its own normal.
+  // In the target, the right half folds down by 90 degrees. Its vertices then have the normal of the folded half.
   mesh.targets.push_back({{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, -1, -1, 0, -1, 0, 0, 0},
                           {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1},
                           {}});
