@@ -165,8 +165,8 @@ dist_site() {
 # blender_system ARCHITECTURE: prints the name that the Blender add-on has for this kind of machine.
 blender_system() { case $1 in x86_64) echo linux-x64 ;; aarch64 | arm64) echo linux-arm64 ;; *) echo "linux-$1" ;; esac; }
 
-# dist_blender: packs the add-on for Blender. It contains the program for each kind of machine whose archive is in
-# dist/, including archives that were built on other machines.
+# dist_blender: packs the add-on for Blender. The add-on contains the program for each kind of machine whose archive is
+# in dist/, including archives that were built on other machines.
 dist_blender() {
   local archive machine folder unpacked=$root/build/dist/blender
   local programs=()

@@ -1,5 +1,5 @@
-# Defines the parts of ./test --full, the functions that build and test for them, and the table at the end. ./test and
-# .ci/run source this file.
+# Defines the parts of ./test --full, the functions that build and test for them, and the table that is printed at the
+# end. ./test and .ci/run source this file.
 
 # Each part has a line with four fields: its name; the minutes that it takes from scratch on two idle cores; the
 # sections of tools/packages.txt that it needs besides [run] and [test] ("-" for none); and a pattern of files ("-" for

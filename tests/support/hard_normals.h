@@ -170,8 +170,8 @@ struct HardFamily {
          const auto near = [&r, height](const Vec3d& v) { return v + 0.1 * height * random_vector(r); };
          return ControlNormals{near(c.n0), 0.5 * near(c.m), near(c.n1)};
        }},
-      // The components are M, -M, a half-integer times M / 1023 or M / 32767, or close to one of these. M is the
-      // largest component.
+      // The components are hard to round to multiples of M / 1023 or M / 32767: M, -M, a half-integer times M / 1023 or
+      // M / 32767, or close to one of these values. M is the largest component.
       {"where integers round",
        [](Random& r) {
          const double largest = r.below(3) == 0 ? r.uniform(0.5, 1) : 1;

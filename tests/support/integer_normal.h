@@ -1,9 +1,9 @@
 /// Computes normals of moving polygons at one t in integers of any size, fast enough for millions of normals.
 ///
 /// A float is an integer times 2^-149, and a double t is T 2^-e for an integer T. The corners at t are therefore (2^e -
-/// T) p + T q in units of 2^(-149 - e), and their cross products are integers as well. All of these are integers of
-/// GMP, and only the direction of the result is rounded to double. exact_normal.h computes the same normals in rational
-/// numbers, which takes a hundred times as long.
+/// T) p + T q in units of 2^(-149 - e), and their cross products are integers as well. GMP computes with these
+/// integers, and only the direction of the result is rounded to double. exact_normal.h computes the same normals in
+/// rational numbers, which takes a hundred times as long.
 ///
 /// If n(t) = 0, the result is the direction of n slightly earlier or, at t = 0, slightly later. The time differs by
 /// 2^-1500 of the segment, which is far less than any difference between two terms of n.

@@ -44,16 +44,17 @@ using VectorD = Vec<double>;  ///< in double, for the dense searches, which comp
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// If two ends are within this distance in radians of being antipodal, rounding decides the great circle between them.
+/// The distance in radians from antipodal ends below which rounding decides the great circle between the ends.
 inline constexpr Real kNearAntipodal = 1e-6L;
-/// Two points that are closer than this distance, in radians, count as one when a circle is put through them.
+/// The distance in radians below which two points count as one when a circle is put through them.
 inline constexpr Real kNearCoincident = 1e-6L;
-/// Below this angle in radians, slerp equals a normalised linear interpolation, far beyond the precision of float32.
+/// The angle in radians below which slerp equals a normalised linear interpolation, far beyond the precision of
+/// float32.
 inline constexpr Real kTinyAngle = 1e-9L;
-/// If |q0 . q1| is below this limit, rounding decides which arc between the quaternions is shorter.
+/// The limit of |q0 . q1| below which rounding decides which arc between the quaternions q0 and q1 is shorter.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// The indices of a face and of a segment, which determine the angle of `quaternion:random`.
+/// The indices of a face (`element`) and of a segment. They determine the angle by which `quaternion:random` rotates.
 struct Place {
   std::uint64_t element = 0;
   std::uint64_t segment = 0;
@@ -629,8 +630,8 @@ template <class Coarse, class Fine>
   return best;
 }
 
-/// Returns the average error, in radians, of one circle of eq. 6 through u0 and u1. The angle phi of its axis selects
-/// the circle.
+/// Returns the average error, in radians, of one circle of eq. 6 of the paper through u0 and u1. The angle phi, in
+/// radians, selects the axis of the circle.
 [[nodiscard]] inline double circle_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double phi, std::size_t stride = 1) {
   const VectorD axis =

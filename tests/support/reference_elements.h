@@ -1,9 +1,9 @@
 /// An independent oracle for the normals of vertices and corners, in long double.
 ///
 /// Like reference.h, this file includes no chronormal header and shares no line with src/. If there are several
-/// methods, it uses a slow one. Vector areas are computed from the vertices at t relative to their centre, not by a fan
-/// of triangles or by a polynomial. Groups of corners are found by a flood fill over all pairs of corners, not by
-/// sorting.
+/// methods, this file uses a slow one. Vector areas are computed from the vertices at t relative to their centre, not
+/// by a fan of triangles or by a polynomial. Groups of corners are found by a flood fill over all pairs of corners, not
+/// by sorting.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_ELEMENTS_H_
 

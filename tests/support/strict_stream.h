@@ -1,4 +1,5 @@
-/// A stream that keeps in memory only the keyframes in use. It measures how many keyframes its user needs at once.
+/// A stream that keeps in memory only the keyframes in use. The stream measures how many keyframes its user needs at
+/// once.
 #ifndef CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 #define CHRONORMAL_TESTS_SUPPORT_STRICT_STREAM_H_
 

@@ -76,8 +76,8 @@ async function checkRoundTrip(context, original) {
     const second = bake(again, anew);
     assert.deepEqual(await newComplaints(anew, again), []);
     assert.ok(kinds(anew).includes('baked') && !kinds(anew).includes('emptied'), `${encoding}: ${kinds(anew)}`);
-    // Blender has computed the normals of the second file anew. These normals are not a polynomial in the weights, so
-    // the bake can only approximate them.
+    // Blender has computed the normals of the file `again` anew. Such normals are not a polynomial in the weights, so
+    // the second bake can only approximate them.
     const text = ({ mean_degrees_before: before, mean_degrees_after: mean, worst_degrees_after: worst }) =>
       `${before.toFixed(3)} on average -> ${mean.toFixed(3)} / ${worst.toFixed(2)}`;
     const outcome = `${encoding}: first ${text(first)}, again ${text(second)}`;

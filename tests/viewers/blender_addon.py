@@ -102,8 +102,8 @@ def models(folder, program, seed):
 
 
 def jumps(o):
-    """Jumps to the worst pair of keys. Returns what the panel lists about this pair, and what it shows after the
-    jump."""
+    """Makes the panel jump to the first pair of keys in its list. Returns the error that the list states, the largest
+    error after the jump, both in degrees, and the number of keys at weight 1. Returns None if no pair is listed."""
     state = bpy.context.window_manager.chronormal
     if looked_at(o, "KEYS", "PLAIN")["findings"] == []:
         return None

@@ -2,7 +2,7 @@
 // viewer. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM  the program
-//   CHRONORMAL_DATA     the folder with a head by Blender and a test of morphs, if set
+//   CHRONORMAL_DATA     the folder of the real data, for a head by Blender and for MorphStressTest, if set
 //   CHRONORMAL_FULL=1   every file in every viewer; otherwise one file in the viewers that viewers.test.mjs leaves out
 //   CHRONORMAL_UPDATE_DOCS=1  with CHRONORMAL_DATA, writes docs/pictures/head.png
 import assert from 'node:assert/strict';

@@ -25,9 +25,10 @@ export function moves(mesh) {
 }
 
 // Returns an empty result: {mean, max, where, pairs, excluded, flat, drift}. A sample is a vertex in one state of a
-// mesh. `mean` and `max` are errors in degrees, and `pairs` is the number of samples. `excluded` counts samples without
-// a direction or a triangle. `flat` counts primitives without normals, which viewers shade by themselves. `drift` is
-// the largest distance between a vertex in `shown` and in `source`, as a share of the size of its mesh.
+// mesh. `mean` and `max` are errors in degrees, `where` names the sample with the largest error, and `pairs` is the
+// number of samples. `excluded` counts samples without a direction or a triangle. `flat` counts primitives without
+// normals, which viewers shade by themselves. `drift` is the largest distance between a vertex in `shown` and in
+// `source`, as a share of the size of its mesh.
 function nothing() {
   return { mean: 0, max: 0, where: '', pairs: 0, excluded: 0, flat: 0, drift: 0 };
 }
@@ -75,7 +76,7 @@ function averaged(result) {
   return { ...result, mean: result.mean / Math.max(result.pairs, 1) };
 }
 
-// Compares the rendered normals of all nodes with the exact ones, at some times of an animation. Skips meshes that
+// Compares the rendered normals of all nodes with the exact normals, at some times of an animation. Skips meshes that
 // never move.
 export function compareAnimation(source, shown, animation, times) {
   const result = nothing();

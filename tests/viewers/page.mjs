@@ -37,8 +37,8 @@ window.compareInViewer = async (viewer, files, animation, moments, size) => {
 };
 
 // Compares, in a viewer, the picture of each file at a time of an animation with the picture of the still file `truth`.
-// Returns {compared, picture}. `compared` has the results of compareNormals(). `picture` shows all drawings beside the
-// true one, lit in the same way, as a PNG in a data URL.
+// Returns {compared, picture}. `compared` has the results of compareNormals(). `picture` shows the pictures of all
+// files beside the picture of `truth`, lit in the same way, as a PNG in a data URL.
 window.closeUpInViewer = async (viewer, files, animation, { time, truth, view }, size) => {
   const { play, drawNormals, dispose, normalsAreOfView = false } = viewers[viewer];
   const draw = async (file, animated) => {

@@ -29,7 +29,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const rules = {
   // glTF specifies N + sum of w_k D_k.
   sum: ({ normal, deltas }, w) => deltas.reduce((n, delta, k) => plus(n, delta, w[k]), normal),
-  // Some viewers render N + sum of w_k (u_k - N). For each target, they store the direction u_k of N + D_k.
+  // Some viewers render N + sum of w_k (u_k - N). Such viewers store, for each target, the direction u_k of N + D_k.
   unit: ({ normal, deltas }, w) =>
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };

@@ -1,6 +1,6 @@
 // Tests the tangents that `chronormal bake` computes anew for a morph. Normal maps need tangents, and Babylon.js adds
-// up the tangents of targets. Its picture of the baked morph is compared with the picture of a still mesh, whose
-// tangents follow from the formula of its surface. ctest runs this file as `in_viewers`.
+// up the tangents of targets. The picture of the baked morph in Babylon.js is compared with the picture of a still
+// mesh, whose tangents follow from the formula of its surface. ctest runs this file as `in_viewers`.
 //
 //   CHRONORMAL_PROGRAM   the program
 //   CHRONORMAL_CHROMIUM  the browser, if it is not in its usual place

@@ -29,8 +29,8 @@ namespace {
 
 using test::TemporaryFolder;
 
-// A meeting at which threads exchange texts. Each thread calls it with a text. The calls return the list of all texts
-// when all threads have called.
+// A meeting at which threads exchange texts. Each thread calls the function of its peer with a text. The calls return
+// the list of all texts when all threads have called.
 class Meeting {
  public:
   explicit Meeting(std::size_t count) : count_(count), calls_(count) {}
@@ -273,8 +273,8 @@ TEST(AuditOfPeers, shards_of_their_own_segments_give_the_bytes_of_one_process) {
       }
       for (std::thread& thread : threads) thread.join();
       EXPECT_EQ(merge_parts(parts).value().json, whole) << count;
-      // The last shard reads the keyframes of its own segments, and the first keyframe. It therefore reads keyframe 2
-      // only if its own segments use it.
+      // The last shard reads the first keyframe and the keyframes of its own segments. Keyframe 2 is therefore read
+      // only if a segment of the last shard uses it, which is so for fewer than three peers.
       EXPECT_EQ(was_read.back()[2], count < 3) << count;
     }
   }

@@ -117,8 +117,8 @@ def open_export():
 
 
 def shown_heads(o):
-    """Returns three meshes at the current frame: one with the normals of the plain file, one with those of the
-    corrected file, and one with those of Blender."""
+    """Returns three meshes at the current frame: with the normals of the plain file, of the corrected file, and of
+    Blender."""
     look, truth = sys.modules[f"{ADDON}.look"], sys.modules[f"{ADDON}.truth"]
     scene = bpy.context.scene
     frames, now = look.frames_of(scene), truth.values_now(o)

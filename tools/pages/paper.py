@@ -463,9 +463,9 @@ def quaternions_of(tangent, binormal, normal):
 
 
 def frames_as_printed(part, tangent=1, turned=1, w=0):
-    """Computes the frames of section 2.5 of the paper by the 4 x 4 matrix of its Eq. 7. This is independent of the
-    library, whose quaternion:matrix uses neither matrices nor quaternions. If `tangent` is -1, t1 = n1 x b1, as the
-    paper prints it. If `turned` is -1, b1 is reversed. `w` is the fourth component of normals."""
+    """Computes the frames of section 2.5 of the paper by the 4 x 4 matrix of its Eq. 7. The computation is independent
+    of the library, whose quaternion:matrix uses neither matrices nor quaternions. If `tangent` is -1, t1 = n1 x b1, as
+    the paper prints it. If `turned` is -1, b1 is reversed. `w` is the fourth component of normals."""
     n0, n1 = part.exact(0), part.exact(1)
     column = lambda v, w: np.concatenate([v, np.full((len(v), 1), float(w))], axis=1)  # noqa: E731
     matrices = [np.stack([column(part.corners[k][:, i], 1) for i in range(3)] + [column(n, w)], axis=2) for k, n in ((0, n0), (1, n1))]

@@ -22,8 +22,9 @@ include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md
                     "docs/**.md"]
 myst_heading_anchors = 4
 highlight_language = "none"
-# The theme is furo, a package of Debian. It is dark or light, works on phones, and its search needs no server. In
-# Debian's style sheet, only the button makes it dark, because sassc dropped the rules for systems that are set to dark.
+# The theme is furo, a package of Debian. The theme is dark or light, works on phones, and its search needs no server.
+# In Debian's style sheet, only a button makes pages dark, because sassc dropped the rules for systems that are set to
+# dark. The lines below pass the dark colours to the theme once more.
 html_theme = "furo"
 STYLES = (Path(furo.__file__).parent / "theme/furo/static/styles/furo.css").read_text()
 DARK = STYLES[STYLES.index('body[data-theme="dark"] {'):STYLES.index(".only-light {\n      display")]

@@ -28,9 +28,9 @@ struct NearSteps {
 [[nodiscard]] NearSteps steps_near(std::size_t segment, std::size_t steps);
 
 /// Returns the curves from steps[segment] to the next step, in double. The velocity of a point at an inner step is the
-/// derivative of the parabola through the step and its two neighbours. At the first and the last step, it is the
-/// derivative of the cubic through the nearest four steps, or through as many as there are. `times` must ascend, and
-/// all steps must have equally many points.
+/// derivative of the parabola through the step and its two neighbours. At the first and the last step, the velocity is
+/// the derivative of the cubic through the nearest four steps, or through as many as there are. `times` must ascend,
+/// and all steps must have equally many points.
 [[nodiscard]] PointCurves curves_through(std::span<vtkPointSet* const> steps, std::span<const double> times,
                                          std::size_t segment);
 

@@ -230,7 +230,8 @@ bool is_in_double(vtkPolyData* mesh) {
   return mesh->GetPoints() != nullptr && mesh->GetPoints()->GetDataType() == VTK_DOUBLE;
 }
 
-// Returns the normals of points, of cells or of both. They are in double if in_double is true, otherwise in float.
+// Returns the normals of points, of cells or of both. The normals are in double if in_double is true, otherwise in
+// float.
 MeshNormals normals_of(vtkPolyData* from, vtkPolyData* to, double t, bool points, bool cells, bool in_double) {
   const Faces faces = find_faces(from);
   const Topology& topology = faces.topology;

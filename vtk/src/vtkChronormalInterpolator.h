@@ -37,12 +37,12 @@ class VTKCHRONORMAL_EXPORT vtkChronormalInterpolator : public vtkTemporalInterpo
   vtkChronormalInterpolator(const vtkChronormalInterpolator&) = delete;
   void operator=(const vtkChronormalInterpolator&) = delete;
 
-  /// Sets whether normals of points are also computed for data without stored ones. On by default.
+  /// Sets whether normals of points are also computed for data without stored normals of points. On by default.
   vtkSetMacro(ComputePointNormals, bool);
   vtkGetMacro(ComputePointNormals, bool);
   vtkBooleanMacro(ComputePointNormals, bool);
 
-  /// Sets whether normals of cells are also computed for data without stored ones. Off by default.
+  /// Sets whether normals of cells are also computed for data without stored normals of cells. Off by default.
   vtkSetMacro(ComputeCellNormals, bool);
   vtkGetMacro(ComputeCellNormals, bool);
   vtkBooleanMacro(ComputeCellNormals, bool);

@@ -33,7 +33,8 @@ std::vector<AuditSubject> subjects_of(const Audit& audit, Kind kind) {
   return result;
 }
 
-// Returns the hinge with a second target that is the same as the first, so both together fold it further.
+// Returns the hinge with a second target that is the same as the first, so that both targets together fold the hinge
+// further.
 ShadedMesh two_targets() {
   ShadedMesh mesh = hinge();
   mesh.targets.push_back(mesh.targets[0]);

@@ -50,8 +50,8 @@ ShadedMesh::Target target_of(const ShadedMesh& mesh, const std::function<Vector(
 // ---- errors that were computed by hand
 
 TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
-  // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. At vertices 1 and 2, an upward
-  // and a sideways normal are added.
+  // Vertex 0 belongs only to the face at rest, and vertex 3 only to the face that folds. At vertices 1 and 2, the
+  // normals of both faces are added: one points up, and the other sideways.
   const Audit result = audit_of(hinge().file(), {.samples = 2});
   ASSERT_EQ(result.subjects.size(), 1U);
   const AuditSubject& subject = result.subjects[0];
@@ -456,8 +456,8 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
-  // At vertices 1 and 2, the faces have an area although their normals add up to zero, and this counts as exceeding
-  // every tolerance. The only face of vertex 3 has no area at weight 1/2, so it is not drawn there.
+  // At vertices 1 and 2, the faces have an area although their normals add up to zero. Such a sample exceeds every
+  // tolerance. The only face of vertex 3 has no area at weight 1/2, so this face is not drawn there.
   EXPECT_EQ(result.error.cancelled, 2U);
   EXPECT_EQ(result.error.cancelled_at.vertex, 1U);
   EXPECT_EQ(result.error.cancelled_at.at, 1);
@@ -605,8 +605,8 @@ TEST(Audit, infinite_normals_and_those_that_are_no_number_cannot_be_lit) {
 }
 
 TEST(Audit, where_the_geometry_has_no_normal_any_finite_one_will_do_but_none_only_where_nothing_is_drawn) {
-  // The face of vertex 3 has no area at weight 1/2. At weight 1, it coincides with the other face. Their normals then
-  // cancel at vertices 1 and 2, but both faces are drawn.
+  // The face of vertex 3 has no area at weight 1/2. At weight 1, this face coincides with the other face. The normals
+  // of the two faces then cancel at vertices 1 and 2, but both faces are drawn.
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   mesh.targets[0].normals = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -2};  // vertex 3: zero at 1/2, downwards at 1
@@ -715,11 +715,11 @@ TEST(Audit, stale_tangents_are_those_that_lean_on_the_right_normal) {
   EXPECT_EQ(result.findings[1].count, 3U);
   EXPECT_NEAR(result.findings[1].degrees, 90, 1e-9);
   EXPECT_EQ(result.findings[1].worst_at->vertex, 3U);
-  // True tangents lie in the folded face. At the edge, they point up by 45 degrees, half of the angle between both
-  // faces.
+  // True tangents lie in the folded face. At the edge, true tangents point up by 45 degrees, half of the angle between
+  // both faces.
   mesh.targets[0].tangents = {0, 0, 0, 0, 0, 1, 0, 0, 1, -1, 0, 1};
   EXPECT_EQ(kinds_of(audit_of(mesh.file())), (std::vector<Kind>{Kind::kMissingNormals}));
-  // Tangents along the hinge do not change when it folds.
+  // Tangents along the hinge do not change when the hinge folds.
   mesh.targets[0].tangents.clear();
   mesh.tangents.clear();
   for (int v = 0; v < 4; ++v) mesh.tangents.insert(mesh.tangents.end(), {0, 1, 0, 1});

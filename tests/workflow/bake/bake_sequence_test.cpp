@@ -376,7 +376,7 @@ TEST(BakeSequence, hard_edges_double_vertices_but_no_more_than_needed) {
   // A cube with 4 x 4 quads per side has 6 x 25 vertices if the vertices of each side are separate.
   EXPECT_EQ(glb.vertices(), 150U);
   EXPECT_EQ(baked.vertices, 150U);
-  // In the file, the vertices of the motion precede the added ones.
+  // In the file, the vertices of the motion precede the added vertices.
   for (std::size_t i = 0; i < motion.keyframes[0].positions.size(); ++i)
     EXPECT_EQ(glb.positions[i], motion.keyframes[0].positions[i]);
   Surface surface = split_surface(glb);
@@ -697,8 +697,8 @@ TEST(BakeSequence, progress_ends_with_everything_done) {
   EXPECT_GT(whole, 0U);
 }
 
-// Formats a number with as many digits as the documents show. If it rounds to zero, the text is "below" and a one in
-// the last digit.
+// Formats a number with as many digits as the documents show. If the number rounds to zero, the text is "below" and the
+// smallest number with as many digits, such as "below 0.001".
 std::string at_least(double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

@@ -381,8 +381,8 @@ TEST(BakeSkin, targets_without_an_animation_are_seen_in_the_pose_of_the_file) {
 }
 
 TEST(BakeSkin, no_surface_gets_worse_behind_the_skin) {
-  // The deltas of the file are exact deltas plus noise. At some vertices, such deltas have smaller errors than others
-  // before skinning, but larger errors after skinning.
+  // The deltas of the file are exact deltas plus noise. At some vertices, the deltas of the file have smaller errors
+  // before skinning than the deltas of the bake, but larger errors after skinning.
   const Trs flat = scaled(1, 1, 0.1);
   for (const BakeEncoding encoding : {BakeEncoding::kEndpoint, BakeEncoding::kHarmless, BakeEncoding::kSmallest}) {
     for (unsigned seed = 1; seed <= 4; ++seed) {

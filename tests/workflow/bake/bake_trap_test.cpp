@@ -205,7 +205,7 @@ TEST(BakeTraps, steps_stay_steps_with_the_products_of_keys) {
   EXPECT_EQ(sampler_of(result)["interpolation"], "STEP");
   EXPECT_EQ(result.numbers(sampler_of(result)["output"]),
             (std::vector<float>{0, 0, 0, 0, 1, 0.25F, 0.25F, 0.1875F, 0, 1, 0, 0}));
-  // If a target has only the weights 0 and 1, it needs no correction target for its square.
+  // If a target has only the weights 0 and 1, the target needs no correction target for its square.
   test::expect_exact(test::track_error(result));
 }
 
@@ -317,7 +317,7 @@ TEST(BakeTraps, of_meshes_that_share_a_sampler_each_gets_its_own) {
   GltfBuilder builder = test::hills_document(1);
   builder.add_track(0, 0, kTimes, std::vector<float>{0, 1, 0});
   test::Hills other(9);
-  // The target of this mesh only scales it, so its normals keep their directions and need no correction target.
+  // The target only scales the mesh, so normals keep their directions and need no correction target.
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.positions})));
   builder.add_node(builder.add_mesh(other.primitive(builder, {other.deltas()})));
   for (const int node : {1, 2})
@@ -457,7 +457,7 @@ TEST(BakeTraps, nothing_but_the_listed_pointers_changes) {
     EXPECT_EQ(result.mesh()["primitives"][0]["attributes"][key], value);
   for (const Json& accessor : result.before->json["meshes"][0]["primitives"][0]["attributes"])
     EXPECT_EQ(result.numbers(accessor), result.before->accessor(accessor.get<std::size_t>()));
-  // New entries of these lists must come after the existing entries.
+  // New entries of the following lists must come after the existing entries.
   for (const Json::json_pointer& list : {Json::json_pointer("/accessors"), Json::json_pointer("/bufferViews"),
                                          Json::json_pointer("/meshes/0/primitives/0/targets")}) {
     Json& items = patched[list];

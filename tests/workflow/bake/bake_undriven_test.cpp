@@ -175,8 +175,8 @@ TEST(BakeUndriven, an_animation_that_moves_nothing_keeps_extra_targets_at_rest) 
   }
 }
 
-// A bake warns if nothing drives a mesh. The warning must be true: either the bake wrote correction targets, or they
-// would improve nothing.
+// A bake warns if nothing drives a mesh. The warning must be true: either the bake wrote correction targets, or
+// correction targets would improve nothing.
 TEST(BakeUndriven, says_that_nothing_drives_extra_targets_only_where_there_are_none) {
   const auto said = [](const Baked& baked) {
     const auto& warnings = baked.report.warnings;

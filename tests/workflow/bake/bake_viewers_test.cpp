@@ -99,7 +99,7 @@ class BakedQuad : public ::testing::Test {
   std::string path_;
 };
 
-// Returns the floats of an accessor. Fails if the file does not store them.
+// Returns the floats of an accessor. Fails if the file stores no data for the accessor, or data of another type.
 Numbers numbers_of(const tinygltf::Model& model, int index) {
   const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
   EXPECT_GE(accessor.bufferView, 0);

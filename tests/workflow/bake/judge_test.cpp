@@ -29,7 +29,7 @@ double degrees_between(const Vec3d& a, const Vec3d& b) {
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
 // Returns all edges of the triangles. Adds edges that link the vertices that share a normal, each vertex to the next
-// one.
+// vertex.
 std::set<Edge> edges_of(const GltfShading& shading) {
   std::set<Edge> edges;
   const Topology& topology = shading.set.topology;

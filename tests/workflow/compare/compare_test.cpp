@@ -355,7 +355,7 @@ TEST(Compare, max_at_names_a_vertex_of_the_mesh) {
   const std::size_t apart = compare(motion, options).value().schemes[0].quality.max_at.element;
   EXPECT_LT(welded, 240U);
   EXPECT_LT(apart, 240U);
-  // If vertices are welded, the reported vertex is the first one at its point.
+  // If vertices are welded, the reported vertex is the first vertex at its point.
   for (std::size_t v = 0; v < welded; ++v) {
     EXPECT_FALSE(std::equal(motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v),
                             motion.keyframes[0].positions.begin() + static_cast<std::ptrdiff_t>(3 * v + 3),

@@ -1,5 +1,5 @@
-// Compares normals between keyframes with those of keyframes that were left out, for motions whose true normals are
-// known. The test computes the expected figures from positions alone. Also tests requests that are refused.
+// Compares normals between keyframes with the normals of keyframes that were left out, for motions whose true normals
+// are known. The test computes the expected figures from positions alone. Also tests requests that are refused.
 #include "chronormal/workflow/compare.h"
 
 #include <gtest/gtest.h>

@@ -107,8 +107,8 @@ TEST(ErrorTables, of_a_comparison_add_up_to_its_sums_for_every_kind_of_element) 
       const Sums sums = sums_of(table.degrees);
       const Quality& quality = found.schemes[s].quality;
       EXPECT_FLOAT_EQ(static_cast<float>(sums.worst), static_cast<float>(quality.max * kDegreesPerRadian));
-      // Corners of a vertex can share an element. The table repeats its error for each of these corners, so the sums
-      // over the table differ from the totals.
+      // Corners of a vertex can share an element. The table repeats the error of the element for each of these corners,
+      // so the sums over the table differ from the totals.
       if (kind == ElementKind::kCorners) continue;
       EXPECT_EQ(sums.judged, quality.count);
       EXPECT_NEAR(sums.sum, quality.sum * kDegreesPerRadian, 1e-5 * sums.sum);

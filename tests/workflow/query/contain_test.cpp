@@ -46,7 +46,7 @@ PointPaths some_paths(const Motion& motion, std::size_t count) {
 }
 
 // Checks that the crossings lead from the points that are inside at the start to the points that are inside at the end.
-// A query about the last instants finds the latter.
+// A query about the last instants finds the points that are inside at the end.
 void expect_sums(const Motion& motion, const PointPaths& paths) {
   const QueryAnswer answer = query_contain(motion, paths).value();
   const auto& points = column<std::int64_t>(answer, "crossing", "point");

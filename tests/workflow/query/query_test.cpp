@@ -15,8 +15,8 @@
 namespace chronormal::query_test {
 namespace {
 
-// Checks in rational numbers that the parts include every instant of the interval, and that they exceed the interval by
-// at most one rounding of t.
+// Checks in rational numbers that the parts of segments include every instant of an interval of time, and that they
+// exceed the interval by at most one rounding of t.
 TEST(SegmentParts, hold_the_whole_span) {
   constexpr std::uint64_t kSeed = 20261128;
   std::cout << "  from seed " << kSeed << '\n';

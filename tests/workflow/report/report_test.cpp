@@ -1,5 +1,6 @@
-// Tests the content of a report as a page reads it. tests/support/report_file.h reads the container, which has all data
-// of a report, and computes the error at each of the worst places from it alone.
+// Tests the content of a report as a page reads it. All data of a report are in its container.
+// tests/support/report_file.h reads the container, and computes the error at each of the worst places from the
+// container alone.
 
 #include "workflow/report/report.h"
 

@@ -80,8 +80,8 @@ std::vector<std::vector<reference::Corner>> corners_of_outputs(const reference::
   return outputs;
 }
 
-// Returns the largest angle, in radians, between the normals and those of the oracle. If the oracle has no normal, the
-// normal must be zero.
+// Returns the largest angle, in radians, between `normals` and the normals of the oracle. If the oracle has no normal
+// for an output, the normal in `normals` must be zero.
 double largest_error(const reference::Mesh& mesh, const std::vector<std::vector<reference::Corner>>& outputs,
                      const std::vector<float>& normals, const std::string& weighting, Real t) {
   EXPECT_EQ(normals.size(), 3 * outputs.size());
@@ -298,7 +298,8 @@ std::vector<double> weights_of_three(test::Random& random) {
   }
 }
 
-// Compares the normals of poses with those of base + sum of w (target - base), in rational numbers.
+// Compares the normals of poses with exact normals of the positions base + sum of w (target - base), in rational
+// numbers.
 TEST(NormalSampler, poses_lose_nothing_of_a_base_that_is_far_from_its_targets) {
   constexpr std::uint64_t kSeed = 20261127;
   std::cout << "  from seed " << kSeed << '\n';
