@@ -30,7 +30,7 @@ dist() {
   (cd "$dist" && stat -c '%12s  %n' -- *) >&2
 }
 
-# dist_packages SECTION...: installs the packages of these sections.
+# dist_packages SECTION...: installs the packages of the named sections of tools/packages.txt.
 dist_packages() {
   local sections=("$@")
   has_node || sections+=(node)

@@ -3,7 +3,7 @@
 
 say() { printf 'chronormal: %s\n' "$*" >&2; }
 
-# listed_packages SECTION...: prints the packages of these sections.
+# listed_packages SECTION...: prints the packages of the named sections of tools/packages.txt.
 listed_packages() {
   local wanted=" $* "
   awk -v wanted="$wanted" '
@@ -24,7 +24,8 @@ update_lists() {
   done
 }
 
-# install_packages SECTION...: installs the packages of these sections. Prints nothing if all of them are installed.
+# install_packages SECTION...: installs the packages of the named sections of tools/packages.txt. Prints nothing if all
+# of them are installed.
 install_packages() {
   if ! command -v dpkg-query >/dev/null; then
     say "this is not Debian; install the packages of tools/packages.txt under the names that they have on your system"

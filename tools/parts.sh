@@ -35,7 +35,7 @@ part_field() { awk -v name="$1" -v field="$2" '$1 == name { print $field }' <<<"
 part_minutes() { part_field "$1" 2; }
 part_packages() { part_field "$1" 3 | tr ',' '\n' | grep -v '^-$' || true; }
 
-# parts_of_change FILE...: prints the parts whose pattern matches one of these files.
+# parts_of_change FILE...: prints the parts whose pattern matches one of the named files.
 parts_of_change() {
   local name pattern
   for name in $(part_names); do
@@ -82,7 +82,7 @@ configure() {
   cmake --preset "$preset" -DCHRONORMAL_ALL_TESTS=ON "$@" >/dev/null
 }
 
-# configure_and_build PRESET [TARGET...]: runs CMake, and builds these targets, or all.
+# configure_and_build PRESET [TARGET...]: runs CMake, and builds the named targets, or all targets.
 configure_and_build() {
   local preset=$1
   shift

@@ -68,8 +68,8 @@ def value_of(directive):
 
 def decided(lines):
     """Returns the lines of a file without the branches whose conditions are known to be false."""
-    # The stack has three values for each open condition: the condition is known, one of its branches was taken, and the
-    # current branch is taken.
+    # For each open condition, the stack has three values: whether the condition is known, whether one of its branches
+    # was taken, and whether the current branch is taken.
     result, stack = [], []
     for line in lines:
         directive = line.strip()

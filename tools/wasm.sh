@@ -26,7 +26,7 @@ LIST
   printf '%s\n' "$listed" >"$folder/.fetched"
 }
 
-# build_cross PRESET [TARGET...]: builds the program, the C library and these targets for another system
+# build_cross PRESET [TARGET...]: builds the program, the C library and the named targets for another system
 # (cmake/PRESET.cmake), in build/PRESET.
 build_cross() {
   local preset=$1
@@ -37,7 +37,7 @@ build_cross() {
   cmake --build "$root/build/$preset" --target chronormal_cli chronormal_c "$@" >&2
 }
 
-# build_wasm PRESET [TARGET...]: configures and builds these targets in build/PRESET.
+# build_wasm PRESET [TARGET...]: configures and builds the named targets in build/PRESET.
 build_wasm() {
   local preset=$1
   shift

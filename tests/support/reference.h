@@ -645,12 +645,12 @@ template <class Coarse, class Fine>
 }
 
 /// Returns the smallest average error over the samples, in radians, that a dense search over all pairs of frames finds.
-/// Each pair of frames gives a circle of eq. 6, which runs at constant speed on its shorter arc (|phi| <= pi/2).
-/// Returns nothing if the ends coincide or are antipodal.
+/// Each pair of frames gives a circle of eq. 6 of the paper, which runs at constant speed on its shorter arc (|phi| <=
+/// pi/2). Returns nothing if the ends coincide or are antipodal.
 ///
 /// The search tries `density` values that are equidistant in phi, and as many that are equidistant in the direction in
-/// which the circle leaves u0. The latter are needed if u0 and u1 are close, since circles then differ visibly only if
-/// phi is near +-pi/2.
+/// which the circle leaves u0. Equidistant directions are needed if u0 and u1 are close, since circles then differ
+/// visibly only if phi is near +-pi/2.
 [[nodiscard]] inline std::optional<double> optimal_circle_error(const Triangle& triangle, const ExactSamples& exact,
                                                                 std::size_t density = 100,
                                                                 std::size_t coarse_stride = 5) {

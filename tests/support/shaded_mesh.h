@@ -1,5 +1,5 @@
-/// A morphing mesh with normals. The mesh can be written as a glTF file, by gltf_builder.h. Its oracle computes the
-/// rendered and the true normals in long double, and shares no code with src/.
+/// A morphing mesh with normals, which gltf_builder.h can write as a glTF file. The mesh is also an oracle: it computes
+/// the rendered and the true normals in long double, and shares no code with src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SHADED_MESH_H_
 

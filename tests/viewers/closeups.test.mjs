@@ -24,7 +24,7 @@ const PICTURE = fileURLToPath(new URL('../../docs/pictures/closeups.jpg', import
 const SHOWN = 'mirrored';  // the model in the picture of the documents
 const TORN = 10;         // an edge counts as torn if the error jumps by this many degrees
 // The width of the part of a model that a close-up shows, as a share of the size of the model. Torn edges are counted
-// in a neighbourhood of a vertex of the same size.
+// around a vertex, in a neighbourhood of the same width.
 const NEAR = 0.35;
 
 // The share of the error that may remain after the bake, in the pixels of each viewer. The share is larger for

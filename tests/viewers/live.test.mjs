@@ -199,7 +199,8 @@ describe('Babylon.js', () => {
     new FreeCamera('camera', new Vector3(0, 0, -5), scene);
     return scene;
   }
-  // Makes a mesh as the loader of Babylon.js does: the extras are in a node above the mesh.
+  // Makes a mesh with five targets. Its metadata have the extras of a glTF file, in the form of the loader of
+  // Babylon.js.
   function meshOf(scene, extras = mark()) {
     const mesh = CreateBox('face', {}, scene), manager = new MorphTargetManager(scene);
     for (let k = 0; k < TARGETS; ++k) manager.addTarget(MorphTarget.FromMesh(mesh, `target ${k}`, 0));

@@ -1,11 +1,11 @@
-// Tests the page that has the program inside. For dropped files, the page must show the same numbers as the program.
-// Bakes must have the same bytes, unreadable files must get a helpful message, and the page must make no requests.
+// Tests the page that has the program inside. For dropped files, the page must show the same numbers as the program,
+// and bake the same bytes. Unreadable files must get a helpful message, and the page must make no requests.
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_PAGE           the page: build/web/chronormal.html, by ./run page or ./test --full npm
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
 //   CHRONORMAL_DATA           a folder of moving files from other projects, if set
-//   CHRONORMAL_FULL=1         tests all of these files
+//   CHRONORMAL_FULL=1         tests all files in the folder CHRONORMAL_DATA
 import assert from 'node:assert/strict';
 import { closeSync, existsSync, ftruncateSync, mkdtempSync, openSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

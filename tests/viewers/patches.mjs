@@ -1,5 +1,5 @@
 // Makes files whose pictures can be read as numbers. One file is a board of squares, each with its own normal and
-// deltas. The other is a single square that a target moves.
+// deltas. The other file is a single square that a target moves.
 import { linear, writeFile } from './fixtures.mjs';
 
 export const BOARD = 12;      // number of squares in a row, and of rows

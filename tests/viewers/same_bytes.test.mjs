@@ -49,7 +49,8 @@ function assertSame(args) {
 const found = DATA
   ? ['gltf', 'rigs', 'attack'].flatMap((part) => filesOf(join(DATA, part)).map((path) => join(DATA, part, path)))
   : [];
-// Skips the captured face, which takes minutes and which captured_face.test.mjs tests.
+// The glTF files of the real data, without the captured face, which takes minutes and which captured_face.test.mjs
+// tests.
 const models = found.filter((path) => /^\.(gltf|glb|vrm)$/.test(extname(path)) && basename(path) !== 'ict_capture.glb');
 const quick = ['AnimatedMorphCube.gltf', '01_cs_morph.gltf', 'wild_times.in.glb'];
 const dance = DATA ? join(DATA, 'sequences/rumba_13') : '';

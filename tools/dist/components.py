@@ -27,7 +27,8 @@ BUILD = ROOT / "build"
 SOURCES = BUILD / "wasm-sources"
 
 LIBRARIES = ["chronormal", "chronormal_io"]
-# For each artefact: the pattern of its file in dist/, its build, its targets, and its description.
+# The artefacts of a release by their kinds. Each has the pattern of its file in dist/, its build folder, its CMake
+# targets, and its purpose in terms of SPDX.
 ARTEFACTS = {
     "arm64": ("chronormal-*-linux-arm64.tar.gz", "arm64", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),
     "program": ("chronormal-*-linux-*.tar.gz", "dist", [*LIBRARIES, "chronormal_cli"], "APPLICATION"),

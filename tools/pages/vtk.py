@@ -1,5 +1,5 @@
-"""Draws the picture of docs/simulation.md, VTK's own filter beside ours half-way through a morph, and prints the table
-of that page: the errors of both filters on the built-in morphs.
+"""Draws the picture of docs/simulation.md, which shows VTK's filter beside vtkChronormalInterpolator half-way through a
+morph. Prints the table of that page: the errors of the two filters on the built-in morphs.
 
     vtk.py PROGRAM [--check]
 """
@@ -35,8 +35,8 @@ def read_morph(program, name):
 
 
 def half_way(keyframes, faces):
-    """Returns the results of both filters in the middle of the first segment. The stored normals at both ends of the
-    segment are true."""
+    """Returns the results of vtkTemporalInterpolator and vtkChronormalInterpolator in the middle of the first segment.
+    The stored normals at both ends of the segment are true."""
     steps = Steps(lambda time: mesh(keyframes[int(time)], faces), times=(0.0, 1.0))
     results = []
     for filter_class in FILTERS:
@@ -64,7 +64,8 @@ def table(program):
 
 
 def draw(program):
-    """Renders the results of both filters, and returns the picture as an array (height, width, 3)."""
+    """Renders the results of vtkTemporalInterpolator and vtkChronormalInterpolator side by side. Returns the picture as
+    an array (height, width, 3)."""
     window = vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)

@@ -7,10 +7,10 @@
 /// Normals    Point normals are sums over the faces around a point, weighted by area; cell normals are the normals of
 ///            the cells. Both are of length 1, or (0, 0, 0) where there is no face. Normals of the input are replaced;
 ///            ComputePointNormals and ComputeCellNormals say whether normals are also computed for an input
-///            without them. Normals are in double if the points are.
+///            without normals. Normals are in double if the points are.
 /// Path       Points move on straight lines between two steps, as in vtkTemporalInterpolator, or on curves through four
 ///            steps: SetPathToCatmullRom(). Then positions and normals are those of the curve; all other arrays are
-///            interpolated as before.
+///            still interpolated linearly.
 /// Time       Any time is valid: outside the range of the input, the nearer end is used.
 /// Arrays     Ids, ghost flags and texts come from the earlier step, since they are names and not amounts.
 /// Pieces     If a piece is requested, the filter asks its input for one more ghost level, so that the normals along

@@ -59,7 +59,7 @@ def on_curve(time, times, side=SIDE, shape=positions):
 
 
 def areas(points, faces):
-    """Returns the vector areas of polygons, by Newell's method."""
+    """Returns twice the vector areas of polygons, by Newell's method."""
     corners = points[faces] - points[faces[:, :1]]
     return np.cross(corners, np.roll(corners, -1, axis=1)).sum(axis=1)
 
@@ -119,7 +119,8 @@ def mesh(points, faces):
 
 class Steps(VTKPythonAlgorithmBase):
     """A source with time steps; `make(time)` returns the data of each step. The source records the times, pieces and
-    ghost levels that it was asked for. If it cannot cut pieces, VTK asks it only for the first piece."""
+    ghost levels that it was asked for. If `cuts` is false, the source cannot cut pieces, and VTK requests only the
+    first piece."""
 
     def __init__(self, make=lambda time: mesh(positions(time), triangles()), kind="vtkPolyData", cuts=False, times=TIMES):
         super().__init__(nInputPorts=0, nOutputPorts=1, outputType=kind)

@@ -3,7 +3,7 @@
 import { segmentAt } from './motions.js';
 
 /** Returns the face to which a triangle of a part belongs, as {number, triangle, corners}. The triangles of a face form
- * a fan, and `triangle` is the index of the first one. */
+ * a fan, and `triangle` is the index of the first triangle. */
 export function faceOf({ triangles, faces }, triangle) {
   let first = triangle, end = triangle + 1;
   const isSame = (t) => faces && faces[t] === faces[triangle];
@@ -23,7 +23,7 @@ export function faceOfNumber(part, number) {
 const vectorAt = (array, v) => [array[3 * v], array[3 * v + 1], array[3 * v + 2]];
 
 // Returns the position of vertex v at keyframe k. Later keyframes may store only the vertices that differ from the
-// first one.
+// first keyframe.
 function keyframeAt(keyframes, k, v) {
   const keyframe = keyframes.positions[k];
   if (ArrayBuffer.isView(keyframe)) return vectorAt(keyframe, v);

@@ -198,8 +198,8 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
 }
 
 /**
- * Returns a function that computes the true normals of a part that has `truth`. They are the normals that the author of
- * the file sees.
+ * Returns a function that computes the true normals of a part that has `truth`. True normals are the normals that the
+ * author of the file sees.
  * @param part a part of a report on a glTF file
  * @returns {(positions: Float64Array, weights: ArrayLike<number>, normals: Float64Array, right: Float64Array) => void}
  *   writes the true normal of each element into `right`. An element without a true normal gets its vector from

@@ -5,7 +5,8 @@ const MOST = 256 * 1024 * 1024;
 
 const OWN = /\.(glb|vrm|npz|md2)$/i, GLTF = /\.gltf$/i;
 
-/** Groups files into inputs: [{name, args, files}]. Does not read the files. */
+/** Groups files into inputs: [{name, args, files}]. `args` are the names that the command gets, and `files` also has
+ * the files that they refer to. Does not read the files. */
 export function inputsOf(list) {
   const files = [...list].sort((a, b) => a.name.localeCompare(b.name, 'en', { numeric: true }));
   const rest = files.filter(({ name }) => !OWN.test(name) && !GLTF.test(name));

@@ -72,8 +72,8 @@ export function makeSequence(part) {
     computeNormals(p, n, sizes);
   }
 
-  // The data of the current segment, and of the current scheme in this segment. They are computed again when another
-  // segment or scheme is shown.
+  // The data of the current segment, and of the current scheme in this segment. The data are computed again when
+  // another segment or scheme is shown.
   let segment = {}, fit = {};
   function enter(number) {
     if (segment.number === number) return;
@@ -102,7 +102,8 @@ export function makeSequence(part) {
   }
 
   // The largest angle, in radians, that is allowed at each vertex between the author's normal and the normal of the
-  // geometry. It is the angle in the first keyframe. The array is empty unless each keyframe has its own normals.
+  // geometry. The allowed angle is the angle in the first keyframe. The array is empty unless each keyframe has its own
+  // normals.
   const allowed = new Float64Array(keyframes.normals ? V : 0);
   if (keyframes.normals) {
     enter(0);
@@ -150,7 +151,7 @@ export function makeSequence(part) {
   }
 
   /** Fills all arrays for a moment. `scheme` is a name in schemes.js. If the keyframes store normals, the scheme linear
-   * interpolates these. */
+   * interpolates the stored normals. */
   surface.pose = (number, t, scheme, least) => {
     enter(number);
     const { intervals, evaluate } = schemeOf(scheme);

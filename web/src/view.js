@@ -233,8 +233,8 @@ export function makeView(stage, onPoint, onPick) {
   };
 
   // Returns the vector from a vertex to a camera that sees the vertex. Tries several directions around the normal, and
-  // takes the first one in which nothing is in the way for `distance`. If there is none, takes the direction with the
-  // longest free way, and shortens the vector to this way.
+  // takes the first direction in which nothing is in the way for `distance`. If there is no such direction, takes the
+  // direction with the longest free way, and shortens the vector to this way.
   function freeWay(target, normal, towards, distance) {
     const [side, up] = [new Vector3(normal.y, normal.z, normal.x).cross(normal), normal.clone()].map((v) => v.normalize());
     up.cross(side);

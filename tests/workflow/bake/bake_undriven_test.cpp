@@ -1,6 +1,6 @@
-// Tests bakes of rigs that nothing drives. The weights of their correction targets are quadratic formulas of the
-// weights of the other targets. The test evaluates the formulas in the file, and compares the result with cross
-// products in random poses.
+// Tests bakes of rigs that nothing drives. The weights of correction targets are quadratic formulas of the weights of
+// the author's targets. The test evaluates the formulas in the file, and compares the result with cross products in
+// random poses.
 
 #include <gtest/gtest.h>
 

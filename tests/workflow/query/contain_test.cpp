@@ -109,7 +109,7 @@ TEST(QueryContain, each_target_is_a_motion_of_its_own_by_weight) {
   EXPECT_EQ(column<std::int64_t>(both, "crossing", "point").size(), count);
 }
 
-// In the cache, the vertices are in another order than in its mesh.
+// In the PC2 cache, the vertices are in another order than in the OBJ file of the mesh.
 TEST(QueryContain, a_cache_by_other_people_keeps_the_sum_over_all_of_its_segments) {
   const char* const data = std::getenv("CHRONORMAL_DATA");
   if (data == nullptr) GTEST_SKIP() << "set CHRONORMAL_DATA to the folder of the real data to run this test";

@@ -81,8 +81,8 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
 }
 
 // A vertex, a corner or a face, together with the faces whose normals add up to its normal. The faces are found from
-// coordinates alone. For a vertex, they are all faces with a vertex at the same point in all keyframes. For a corner,
-// they are only faces at the same vertex, since fans of corners that touch in a point are separate.
+// coordinates alone. A vertex has all faces with a vertex at the same point in all keyframes. A corner has only faces at
+// the same vertex, since fans of corners that touch in a point are separate.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
@@ -255,8 +255,8 @@ TEST(QueryVertices, means_over_a_shutter_are_those_of_dense_sums) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       EXPECT_EQ(segments[r], 0);
       const Output& output = outputs[std::size_t(rows[r])];
-      // Simpson's rule is exact for the mean of n(t). For the mean of the unit normal, it is accurate only if n(t) does
-      // not come close to zero.
+      // Simpson's rule is exact for the mean of n(t). For the mean of the unit normal, the rule is accurate only if
+      // n(t) does not come close to zero.
       constexpr int kParts = 4000;
       std::array<long double, 3> sum{}, unit_sum{};
       long double shortest = 1e30L, longest = 0;
