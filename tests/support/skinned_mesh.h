@@ -1,5 +1,5 @@
-/// A skin for a morphing mesh. The skin can be written as JSON and bytes of a glTF file. Its oracle computes the effect
-/// of the skin in long double, by loops that share no code with src/.
+/// A skin for a morphing mesh, which can be written as JSON and bytes of a glTF file. The skin is also an oracle: it
+/// computes its effect in long double, by loops that share no code with src/.
 #ifndef CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 #define CHRONORMAL_TESTS_SUPPORT_SKINNED_MESH_H_
 

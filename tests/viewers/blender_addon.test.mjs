@@ -28,7 +28,8 @@ const WORST = 1;
 // match corners with vertices in different ways.
 const AGREE = 0.02;
 
-// Models in which edges become hard by their angle in deformed poses only. Morph targets cannot represent that.
+// Models with edges that become hard by their angle, but only in deformed poses. Morph targets cannot represent such
+// edges.
 const HARD_IN_POSES = ['facets'];
 
 const PLAIN = /your plain export was kept/;
@@ -110,8 +111,8 @@ describe('The add-on', () => {
         assert.ok(times.mean <= MEAN && times.worst <= WORST, `${form}: ${times.mean} / ${times.worst} degrees`);
       }
       own.diagnostic(said);
-      // The operator warns if the error halfway to a key exceeds the tolerance. No file can avoid this error unless a
-      // program sets the weights of the correction targets.
+      // The operator of the add-on warns if the error halfway to a key exceeds the tolerance. No file can avoid this
+      // error unless a program sets the weights of the correction targets.
       assert.equal(level, said.includes('could not bring') ? 'WARNING' : 'INFO', said);
       assert.match(said, HARD_IN_POSES.includes(model.name) ? /^Normals/ : /^Normals were corrected: error on average .* correction targets?\./);
       assert.ok(!said.includes('--'), 'an artist knows no option of a command');

@@ -39,8 +39,8 @@ export function assertSameFigure(found, expected) {
 }
 
 /**
- * Compares a panel with a figure: q in its table, the places of its marks, and the colours of the pixels there in the
- * saved file.
+ * Compares a panel with a figure: the sum of angles q of each scheme in its table, in degrees; the places of the marks
+ * of normals; and the colour of the pixel at the mark of the exact normal in the saved file.
  * @param page a page of puppeteer whose viewer has a figure
  */
 export async function assertShown(page, expected) {

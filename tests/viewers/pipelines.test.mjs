@@ -67,7 +67,7 @@ async function inputsOf(name) {
   return inputs.get(name);
 }
 
-// Returns the errors in degrees of a variant after a tool has processed it.
+// Returns the errors, in degrees, of one variant (`kind`) of a file after a tool has processed it.
 const measured = new Map();
 async function measure(line, name, kind) {
   const key = [line, name, kind].join('\n');

@@ -165,7 +165,7 @@ test('reports have the types of theirs, and every key that may be in one', () =>
   assert.deepEqual(faults.map(({ line, said }) => `${reports[line - 6]?.run}: ${said}`), []);
 
   const checker = program.getTypeChecker(), exported = checker.getExportsOfModule(checker.getSymbolAtLocation(source));
-  // Some keys occur only with several inputs, which a call cannot have.
+  // Some keys of the JSON occur only with several inputs, which a call cannot have.
   const elsewhere = (path) => /^(audit (error|files)|compare inputs)/.test(path);
   const parts = (type) => (type.isUnion() ? type.types.flatMap(parts) : [type]);
   for (const [command, path] of listed('stable_json.txt').filter(([command, path]) => command in REPORTS && !elsewhere(`${command} ${path}`))) {

@@ -197,7 +197,8 @@ async function assertDriven(page, viewer, parts) {
   await assertDrivenLike(page, viewer, still, moved, WEIGHTS);
 }
 
-// Makes the test of assertDriven() with a given file. `moved` is the same file with its mesh at rest at these weights.
+// Tests a given file like assertDriven(). A program sets `weights` of the targets of `still`, which no animation moves.
+// `moved` is the same file with its mesh at rest at these weights.
 async function assertDrivenLike(page, viewer, still, moved, weights) {
   const [moment] = await stillMoments(moved, 0, [0]);
   const base64 = readFileSync(bake(still, '--encode', 'exact')).toString('base64');
@@ -223,7 +224,8 @@ async function assertSuzanneDriven(page, viewer) {
   await assertDrivenLike(page, viewer, still, moved, weights);
 }
 
-// Makes the test of assertDriven() while several independent clips are blended.
+// Tests the drawn normals while several independent clips are blended, which together set the weights of the author's
+// targets. Until the package drives the correction targets, the normals must be wrong.
 async function assertBlended(page, viewer) {
   const [still, moved] = ['still', 'moved'].map((name) => join(folder, `${name}.blended.${viewer}.glb`));
   await writeStill(still, { parts: 2 });

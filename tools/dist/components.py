@@ -128,7 +128,7 @@ class Component:
 
 
 def headers_of(build, targets):
-    """Returns the headers outside of the project that the compiler read for these targets."""
+    """Returns the headers outside of the project that the compiler read for the given CMake targets of a build."""
     headers, wanted = set(), False
     for line in run("ninja", "-C", build, "-t", "deps").splitlines():
         if ": #deps" in line:

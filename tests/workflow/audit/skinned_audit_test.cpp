@@ -383,7 +383,8 @@ TEST(SkinnedAudit, what_a_joint_makes_vanish_is_not_judged) {
   const Audit flat = audit_of(with_one_joint(test::hinge(), {{"scale", {1, 1, 0}}}), {.samples = 2});
   EXPECT_EQ(flat.subjects[0].error.unlit, 3U);
   EXPECT_EQ(flat.subjects[0].error.no_normal, 3U);
-  // Vectors that overflow have no direction either.
+  // A scale of 1e308 makes vectors overflow. Such vectors have no direction, and the sum of the errors must stay
+  // finite.
   const Audit huge = audit_of(with_one_joint(test::hinge(), {{"scale", {1e308, 1e308, 1e308}}}));
   EXPECT_TRUE(std::isfinite(huge.error.sum));
 }

@@ -280,7 +280,7 @@ TEST(AuthorTruth, quads_that_every_key_keeps_flat_are_found_beside_large_caps) {
     const float* const p = mesh.file.positions.data() + 3 * v;
     const float wider = 0.2F * static_cast<float>(v / kPoints % 3);
     for (const float c : {wider * p[0], wider * p[1], 0.0F}) mesh.file.targets[0].positions.push_back(c);
-    // The second target turns everything by a right angle about the x axis.
+    // The second target turns all vertices by a right angle about the x axis.
     for (const float c : {0.0F, -p[2] - p[1], p[1] - p[2]}) mesh.file.targets[1].positions.push_back(c);
   }
   for (std::size_t ring = 0; ring + 1 < kRings; ++ring)
