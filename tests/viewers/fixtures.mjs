@@ -17,7 +17,8 @@ function tube(columns, rows) {
   return { columns, rows, indices: Uint16Array.from(indices) };
 }
 
-// Returns the positions of the vertices of a tube: place(angle, height), where the height is between -1 and 1.
+// Returns the positions of the vertices of a tube. place(angle, height) returns the position of a vertex, for a height
+// between -1 and 1.
 function placed({ columns, rows }, place) {
   const positions = [];
   for (let r = 0; r <= rows; ++r)
@@ -31,7 +32,7 @@ function twisted(turn) {
   return (a, y) => straight(a + turn * (y + 1) * 0.5, y);
 }
 
-// Returns a position on a tube with ripples around and along its axis.
+// Returns the position at the angle a and the height y on a tube with ripples around and along its axis.
 function waved(a, y) {
   const radius = 0.55 + 0.22 * Math.sin(9 * y + 2 * a);
   return [radius * Math.cos(a), y, radius * Math.sin(a)];
@@ -53,7 +54,8 @@ function unitNormals(positions, indices) {
   return result;
 }
 
-// Makes a primitive for writeFile() with a base and targets. Stores the true normals of each shape.
+// Makes a primitive for writeFile() with a base shape and targets. Stores the true normals of the base and, if
+// targetNormals is true, of each target.
 function primitiveOf(grid, base, targets, { targetNormals = true } = {}) {
   const positions = placed(grid, base);
   const normals = unitNormals(positions, grid.indices);
@@ -199,7 +201,7 @@ export const fixtures = {
     }),
 };
 
-// Writes a mesh of one or two primitives with two targets and no animation.
+// Writes a mesh with two targets and no animation. The mesh has `parts` primitives.
 export function writeStill(path, { parts, weights = null }) {
   const whole = primitiveOf(grid, straight, [twisted(1.2), waved]);
   const size = whole.indices.length / parts;

@@ -20,7 +20,8 @@ const filesOf = (root) =>
     .map((entry) => relative(root, join(entry.parentPath ?? entry.path, entry.name)))
     .sort();
 
-// Runs a command with both programs. Each runs in a separate folder, which has a folder `out`.
+// Runs a command with the native program and with the npm package. Each runs in a separate folder, which has a folder
+// `out`.
 function both(args) {
   const [expected, found] = [['native', native], ['wasm', wasm]].map(([name, run]) => {
     const cwd = join(folder, name);
@@ -32,7 +33,8 @@ function both(args) {
   return { expected, found };
 }
 
-// Checks that both programs give the same results. Returns the number of files that they wrote.
+// Checks that the native program and the npm package give the same results. Returns the number of files that they
+// wrote.
 function assertSame(args) {
   const { expected, found } = both(args), what = args.join(' ');
   assert.equal(found.status, expected.status, `${what}\n${found.stderr}`);

@@ -1,5 +1,5 @@
-// Holds the state of the picture: the part, the motion and the place in the motion, or weights that were set by hand,
-// the viewer, and the scheme.
+// Holds the state of the picture: the part, the motion, the place in the motion (or weights that were set by hand), the
+// viewer, and the scheme.
 import { drive, formulasOf } from '../../js/src/drive.js';
 import { makeSequence } from './sequence.js';
 import { SCHEMES } from './schemes.js';

@@ -267,8 +267,8 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // The joint scales z by 4. In three.js, which applies the blended matrix, it stretches the z of normals. In Bevy,
-  // which applies the inverse transpose, it shrinks the z of normals.
+  // The joint scales z by 4. It stretches the z of normals in three.js, which applies the blended matrix. It shrinks
+  // the z of normals in Bevy, which applies the inverse transpose.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);
@@ -327,7 +327,7 @@ TEST(BakeSkin, joints_that_turn_and_scale_evenly_change_nothing) {
   add_skin(builder, two, even);
   add_turns(builder, {0, 0.3F, 1}, {0, 0, 0, 1, 1, 0, 0, 0, 0.6F, 0, 0.8F, 0});
   EXPECT_EQ(choices_of(test::bake_document(builder, smallest())), choices_of(without));
-  // A skin that cannot be read must change nothing, too.
+  // A skin that cannot be read must change nothing: the bake must be the same as without a skin.
   builder.json["nodes"][1]["scale"] = {1, 1, 0.1};
   EXPECT_NE(choices_of(test::bake_document(builder, smallest())), choices_of(without));
   builder.json["skins"][0]["joints"] = {1, 17};

@@ -198,7 +198,7 @@ TEST(Bake, normals_of_extreme_length_are_brought_to_length_1_and_then_right) {
       if (encoding == BakeEncoding::kExact) test::expect_exact(test::track_error(baked));
     }
   }
-  // In another file, the same bake must rescale no normals and keep the base normals.
+  // If the normals of a file have usual lengths, a bake must rescale no normals and keep the base normals.
   const Baked usual = test::bake_document(test::still_hills_document(1));
   EXPECT_EQ(usual.report.meshes[0].rescaled, 0U);
   EXPECT_EQ(usual.mesh()["primitives"][0]["attributes"],
@@ -494,8 +494,8 @@ TEST(Bake, fitted_weightings_are_right_where_one_or_two_targets_have_weight_1) {
   for (const std::vector<double>& weights :
        {std::vector<double>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}})
     EXPECT_LT(error_at(uniform, weights), 0.01);
-  // At other weights, and if three targets are active, the deltas only approximate the requested weighting. Their
-  // errors must be smaller than those of area-weighted normals.
+  // At other weights, and if three targets are active, the deltas only approximate the requested weighting. The errors
+  // of these deltas must be smaller than the errors of area-weighted normals.
   double of_uniform = 0, of_area = 0;
   for (const double w : {0.1, 0.3, 0.5, 0.7, 0.9}) {
     for (const std::vector<double>& weights : {std::vector<double>{w, w, w}, {w, w, 0}, {w, 1 - w, 0}, {w, 0, 1 - w}}) {
