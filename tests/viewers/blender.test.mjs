@@ -32,8 +32,8 @@ function throughBlender(input, again) {
 const audited = (path) => JSON.parse(chronormal('audit', path, '--json', '--quiet'));
 const kinds = (path) => audited(path).findings.map(({ kind }) => kind);
 
-// Returns the largest distance between a vertex before and the same vertex after. Fails if the names of shape keys have
-// changed.
+// Returns the largest distance between the positions of a vertex in two reports of blender.py, `before` and `after`.
+// Fails if the names of shape keys have changed.
 function distance(before, after) {
   assert.equal(after.meshes.length, before.meshes.length);
   let worst = 0;

@@ -96,7 +96,7 @@ async function ofPictures(viewer, file, times, view, size, made) {
 window.normalsInViewer = (viewer, file, times, view, size, pixels) =>
   ofPictures(viewer, file, times, view, size, (picture) => pixels.map(([x, y]) => normalAt(picture, size, x, y)));
 
-// Returns the middle of the drawn pixels of each picture, or null if nothing is drawn.
+// Returns the middle [x, y] of the drawn pixels of each picture, or null if nothing is drawn.
 window.middlesInViewer = (viewer, file, times, view, size) =>
   ofPictures(viewer, file, times, view, size, (picture) => middleOf(picture, size));
 

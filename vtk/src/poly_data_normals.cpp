@@ -175,7 +175,7 @@ ControlNormals sum_of(std::vector<ControlNormals>& terms) {
   return sum.without_rounding();
 }
 
-// The vectors in an array of VTK, which are in float or in double.
+// Vectors in an array of VTK, whose numbers are double if in_double is true, otherwise float.
 struct Vectors {
   Vectors(std::size_t count, bool in_double)
       : array(vtkSmartPointer<vtkDataArray>::Take(vtkDataArray::CreateDataArray(in_double ? VTK_DOUBLE : VTK_FLOAT))) {

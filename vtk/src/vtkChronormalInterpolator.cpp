@@ -90,7 +90,7 @@ void set_normals(vtkDataSetAttributes* output, vtkDataSetAttributes* before, vtk
   output->SetNormals(normals);
 }
 
-// Returns all steps converted to one class of data, or nothing if a step is of another class.
+// Returns all steps as objects of the class Data, or nothing if a step is of another class.
 template <class Data>
 std::optional<std::vector<Data*>> all_as(const auto& steps) {
   std::vector<Data*> result;

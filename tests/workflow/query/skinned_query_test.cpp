@@ -248,7 +248,7 @@ Rig lever(std::uint8_t last, const std::array<float, 3>& tip) {
   return rig;
 }
 
-// Returns keys at 0 and 1 of a rotation about x from -angle / 2 to angle / 2.
+// Returns a channel with keys at 0 and 1 that rotates a node about x, from -angle / 2 to angle / 2 in radians.
 Channel turn(std::size_t node, double angle) {
   const auto s = static_cast<float>(std::sin(angle / 4)), c = static_cast<float>(std::cos(angle / 4));
   return {node, "rotation", "LINEAR", {0, 1}, {-s, 0, 0, c, s, 0, 0, c}};
