@@ -32,8 +32,9 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
         cut.skins ? ", in the scene's world" : ""));
   if (cut.beyond > 0)
     warn(
-        formatted("in {} of {} cases (a face in a segment), normals may be more than {} degrees from the curve, since "
-                  "the face almost vanishes between two keyframes, or needs more pieces than --max-expansion allows",
+        formatted("in {} of {} cases (one face in one segment), normals may differ by more than {} degrees from those "
+                  "of the curve: the face almost vanishes between two keyframes, or needs more pieces than "
+                  "--max-expansion allows",
                   grouped(cut.beyond), grouped(faces * cut.segments), cut.path.tolerance));
   if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
     warn("there are only two keyframes, so vertices move straight between them, as with --path linear");

@@ -457,7 +457,7 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
                       four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
     if (bake.cut)
-      text += formatted("and at most {} from the curves, except where faces almost vanish\n",
+      text += formatted("normals are at most {} degrees from those of the curves, except where faces almost vanish\n",
                         four_decimals(bake.largest_error + bake.cut->path.tolerance));
   } else if (encoding == BakeEncoding::kExact && bake.largest_error == 0) {
     bool are_all_known = bake.without_normals == 0;

@@ -3,7 +3,7 @@ export const require = undefined;
 
 export async function read(url) {
   const response = await fetch(url);
-  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}; copy this file from the package to the folder of your script (README)`);
+  if (!response.ok) throw new Error(`${url}: ${response.status} ${response.statusText}; copy this file from the package to the folder of your script, as the README of the package describes`);
   return new Uint8Array(await response.arrayBuffer());
 }
 
@@ -13,7 +13,7 @@ export async function read(url) {
 export function startWorker(onMessage, onError) {
   const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
   worker.onmessage = ({ data }) => onMessage(data);
-  worker.onerror = ({ message }) => onError(new Error(message ?? 'worker.js could not be started; copy this file from the package to the folder of your script (README)'));
+  worker.onerror = ({ message }) => onError(new Error(message ?? 'worker.js could not be started; copy this file from the package to the folder of your script, as the README of the package describes'));
   return worker;
 }
 

@@ -19,7 +19,7 @@ async function compileWith(platform) {
   if (!WebAssembly.validate(new Uint8Array(NEEDED))) throw new Error(TOO_OLD);
   const url = new URL('./program.wasm', import.meta.url), bytes = await platform.read(url);
   if (!WebAssembly.validate(bytes.subarray(0, 8))) {
-    throw new Error(`${url} is not a WebAssembly module; copy program.wasm from the package to the folder of your script (README)`);
+    throw new Error(`${url} is not a WebAssembly module; copy program.wasm from the package to the folder of your script, as the README of the package describes`);
   }
   return WebAssembly.compile(bytes);
 }
