@@ -130,8 +130,8 @@ export function command({ program, io, Session }) {
   const made = program
     .command('chronormal', 'Correct the normals of morph targets')
     .help('Corrects normals while morph targets move. `npx chronormal bake --help` explains the options.')
-    .argument('<input>', 'Path to read glTF 2.0 (.glb, .gltf) model')
-    .argument('<output>', 'Path to write output');
+    .argument('<input>', 'The glTF 2.0 model to read (.glb, .gltf)')
+    .argument('<output>', 'The file to write');
   for (const [, written, said] of OPTIONS) made.option(written, said);
   made.action(({ args, options, logger }) => {
     const valueOf = (text, read) => (text === undefined ? undefined : read ? read(text) : text);

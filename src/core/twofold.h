@@ -48,8 +48,8 @@ struct Twofold {
 /// Precondition: |a_low| and |b_low| are at most 2^-23 of |a| and |b|.
 [[nodiscard]] inline double difference(double a, double a_low, double b, double b_low) noexcept {
   const double of_high = a - b, of_low = a_low - b_low, sum = of_high + of_low;
-  // Most differences of floats are exact, and much larger than the difference of the low parts. A sum in double is then
-  // good enough.
+  // Usually a and b are float32 values. Their difference is then exact in double, and much larger than a_low - b_low.
+  // The sum of both differences in double is then accurate enough.
   if (a - of_high == b && b + of_high == a && std::fabs(of_low) <= 0x1p-10 * std::fabs(sum)) return sum;
   const Twofold high = Twofold::sum(a, -b), low = Twofold::sum(a_low, -b_low), both = Twofold::sum(high.high, low.high);
   return both.high + (both.low + (high.low + low.low));

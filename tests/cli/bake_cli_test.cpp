@@ -412,7 +412,7 @@ TEST_F(BakeCli, what_cannot_be_had_ends_in_exit_code_4_only_where_somebody_asked
   EXPECT_EQ(in_three.err.find("could not bring"), std::string::npos);
   const ProcessResult few = run("moving.glb -o few.glb --for three --max-bytes 100");
   EXPECT_EQ(few.exit_code, 4);
-  expect_words(few.err, {"allow more with --max-targets or --max-bytes"});
+  expect_words(few.err, {"allow more targets or bytes with --max-targets or --max-bytes"});
   EXPECT_EQ(bytes_of("few.glb"), bytes_of("moving.glb"));
 }
 

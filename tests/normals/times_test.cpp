@@ -218,7 +218,7 @@ void add_ways_of_outputs(const Motion& motion, const Elements& elements, double 
   if (!own.ways.empty()) all.push_back(std::move(own));
 }
 
-// Adds ways of the C interface that blend targets or read files.
+// Adds the ways to compute normals in C that blend targets or read files.
 void add_files_and_blends_of_c(const Motion& motion, const Elements& elements, std::vector<Kin>& all) {
   constexpr double kNotJudged = std::numeric_limits<double>::infinity();
   std::vector<float> deltas = motion.keyframes[1].positions;

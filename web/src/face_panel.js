@@ -38,7 +38,7 @@ export function makeFacePanel(report, player, view, compute) {
   const near = h('button', { type: 'button', className: 'plain', onclick: () => ((isNear = !isNear), draw()) });
   const layer = () => s('g'), [one, two, three, four] = [layer(), layer(), layer(), layer()];
   const sheet = (size, label, child, more = {}) => s('svg', { viewBox: `0 0 ${size.width} ${size.height}`, role: 'img', 'aria-label': label, ...more }, child);
-  const triangle = sheet(TRIANGLE, 'Figure 1: the face on its way, its exact normal and those of the schemes', one, { tabindex: 0, class: 'turns' });
+  const triangle = sheet(TRIANGLE, 'Figure 1: the moving face, its exact normal and the normals of the schemes', one, { tabindex: 0, class: 'turns' });
   const sphere = sheet(SPHERE, 'Figure 3: the unit sphere with the paths of the normals', two, { tabindex: 0, class: 'turns' });
   const lengths = sheet(GRAPH, 'Figure 2: lengths of the normals before they are made unit vectors', three, { class: 'goes' });
   const errors = sheet(GRAPH, 'the angle to the exact normal', four, { class: 'goes' });

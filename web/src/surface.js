@@ -117,8 +117,9 @@ export function weightsAt(motion, viewer, at, result) {
  * Makes the surface of a part.
  * @param part a part of a report, of kind "gltf"
  * @returns the arrays that are drawn, and the function pose(weights, viewer, least), which fills them. The arrays are
- *   positions, rendered normals (`shown`) and true normals (`right`), all (V x 3, float32), and degrees (V), which are
- *   -1 for vertices that are not judged. The weights are those that this viewer plays, and the true normals are computed
+ *   positions, rendered normals (`shown`) and true normals (`right`), all (V x 3, float32), and the errors in degrees
+ *   (V), which are -1 for vertices that are not judged. A vertex is not judged if its true normal is at most as long as
+ *   `least` says for its element. The weights are those that this viewer plays, and the true normals are computed
  *   from the same weights
  */
 export function makeSurface(part) {

@@ -237,7 +237,8 @@ class Passage {
     }
   }
 
-  // Returns the sign at t of the volume of a triangle, which changes at the root.
+  // Returns the sign at t of the volume between a triangle and the point (crossing_signs.h). The sign changes at the
+  // root.
   [[nodiscard]] static int sign_at(const Root& root, const CrossingSigns& signs, Tick t) {
     if (t <= root.cell.from) return -root.change;
     if (t >= root.cell.to) return root.change;

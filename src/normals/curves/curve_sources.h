@@ -1,12 +1,12 @@
 /// The sources from which curves get control normals. Each source writes tiles for the quick test of pack.h, and
 /// provides the values that a closer examination of some elements needs.
 ///
-///     write(elements, tiles)   sixteen by sixteen, in double, rounded to float32
+///     write(elements, tiles)   writes tiles of sixteen elements, computed in double and rounded to float32
 ///     write(elements, tiles, bounded)   also writes the values before rounding, and bounds of their errors
-///     write_in_float(elements, tiles)   entirely in float32, with bounds on the errors, if has_float() is true; not
-///                              every source has write_in_float() and has_float()
-///     in_double(i)             one element, and bounds of its errors
-///     exact(i)                 one element without any rounding, if there are positions to compute it from
+///     write_in_float(elements, tiles)   writes tiles computed entirely in float32, with bounds on the errors, if
+///                              has_float() is true; not every source has write_in_float() and has_float()
+///     in_double(i)             returns one element, and bounds of its errors
+///     exact(i)                 returns one element without any rounding, if there are positions to compute it from
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_SOURCES_H_
 

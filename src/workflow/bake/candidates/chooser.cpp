@@ -23,10 +23,10 @@ constexpr double kAlike = 1e-3;
 // errors so large that all candidates are beyond the tolerance.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// Factors for a glance, which measures a candidate in only a few of the poses. If a candidate has kHopeless times the
-// mean error of the best candidate in a glance, the candidate is not examined further. If the best candidate meets all
-// criteria except the tolerance, a candidate that is also beyond the tolerance is given up at kFarther times the mean
-// error.
+// Factors for a glance, which measures a candidate in only a few of the poses. A candidate is not examined further
+// if its mean error in the glance is kHopeless times that of the best candidate. If the best candidate meets all
+// criteria except the tolerance, a candidate that is also beyond the tolerance is given up already at kFarther times
+// the mean error of the best candidate.
 constexpr double kHopeless = 2, kFarther = 1.25;
 // The number of correction targets up to which a file may grow by more bytes, and the bytes that a correction target
 // takes for each vertex, roughly.

@@ -130,10 +130,10 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
-    remedies.emplace_back("allow more with --max-targets or --max-bytes");
+    remedies.emplace_back("allow more targets or bytes with --max-targets or --max-bytes");
   if (options.viewers.size() > 1 && std::any_of(options.viewers.begin(), options.viewers.end(),
                                                 [](const Viewer& h) { return h.normals != NormalRule::kSum; }))
-    remedies.emplace_back("if some viewers are enough, name them with --for");
+    remedies.emplace_back("name only the viewers that you need with --for");
   remedies.emplace_back("choose a larger --tolerance");
   std::string text = "bake could not bring all errors within " + within +
                      (chosen->skinned ? " with the skin applied" : "") + ", so the closest result was written; ";
@@ -179,11 +179,10 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
          " not driven by any animation, and only approximately right when set by hand");
   }
   if (!baked.unmarked_nodes.empty()) {
-    warn("extras of node " + std::to_string(baked.unmarked_nodes.front()) +
-         (baked.unmarked_nodes.size() == 1
-              ? " is"
-              : " and of " + std::to_string(baked.unmarked_nodes.size() - 1) + " more are") +
-         " not an object, so only the mesh says how to drive the correction targets");
+    const std::size_t more = baked.unmarked_nodes.size() - 1;
+    warn("the extras of node " + std::to_string(baked.unmarked_nodes.front()) +
+         (more == 0 ? "" : " and of " + counted(more, "more node", "more nodes")) +
+         " are no JSON object, so only the mesh says how to drive the correction targets");
   }
   if (baked.rescaled > 0) {
     warn(counted(baked.rescaled, "stored base normal is", "stored base normals are") +
