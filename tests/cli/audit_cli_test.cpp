@@ -336,7 +336,7 @@ TEST_F(AuditCli, gate_does_not_pass_normals_of_drawn_faces_that_cancel) {
   EXPECT_EQ(gate.exit_code, 4);
   expect_words(gate.err,
                {"2 samples have no true normal and cannot be judged, since the normals of the faces around cancel"});
-  expect_words(gate.out, {"2 of these cannot be judged because normals of faces cancel", "beyond 180"});
+  expect_words(gate.out, {"2 of the samples cannot be judged because normals of faces cancel", "beyond 180"});
   EXPECT_EQ(gate.out.find("nothing to do"), std::string::npos) << gate.out;
   EXPECT_EQ(run("open.obj half.obj --tolerance 180").exit_code, 0);
   ASSERT_EQ(run("open.obj folded.obj --samples 2 --tolerance 180 --shard 1/1 -o part.json").exit_code, 0);
