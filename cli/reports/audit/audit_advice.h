@@ -1,7 +1,7 @@
 /// Recommends a remedy for an audited file, as a command for this very file if possible. Never recommends a command
 /// that was already run or that cannot help.
-#ifndef CLI_REPORTS_AUDIT_ADVICE_H_
-#define CLI_REPORTS_AUDIT_ADVICE_H_
+#ifndef CLI_REPORTS_AUDIT_AUDIT_ADVICE_H_
+#define CLI_REPORTS_AUDIT_AUDIT_ADVICE_H_
 
 #include <string>
 
@@ -18,4 +18,4 @@ namespace chronormal::cli {
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_AUDIT_ADVICE_H_
+#endif  // CLI_REPORTS_AUDIT_AUDIT_ADVICE_H_

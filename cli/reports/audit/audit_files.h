@@ -1,6 +1,6 @@
 /// Formats the result of `audit` for several files, as a table with a row for each file.
-#ifndef CLI_REPORTS_AUDIT_FILES_H_
-#define CLI_REPORTS_AUDIT_FILES_H_
+#ifndef CLI_REPORTS_AUDIT_AUDIT_FILES_H_
+#define CLI_REPORTS_AUDIT_AUDIT_FILES_H_
 
 #include <cstddef>
 #include <optional>
@@ -33,4 +33,4 @@ struct AuditedFile {
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_AUDIT_FILES_H_
+#endif  // CLI_REPORTS_AUDIT_AUDIT_FILES_H_

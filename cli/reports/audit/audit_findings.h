@@ -1,6 +1,6 @@
 /// Describes the findings of `audit`: one line for each mesh and cause.
-#ifndef CLI_REPORTS_AUDIT_FINDINGS_H_
-#define CLI_REPORTS_AUDIT_FINDINGS_H_
+#ifndef CLI_REPORTS_AUDIT_AUDIT_FINDINGS_H_
+#define CLI_REPORTS_AUDIT_AUDIT_FINDINGS_H_
 
 #include <cstddef>
 #include <string>
@@ -19,4 +19,4 @@ namespace chronormal::cli {
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_AUDIT_FINDINGS_H_
+#endif  // CLI_REPORTS_AUDIT_AUDIT_FINDINGS_H_

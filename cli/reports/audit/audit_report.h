@@ -1,6 +1,6 @@
 /// Formats the result of `audit` of one input for people.
-#ifndef CLI_REPORTS_AUDIT_REPORT_H_
-#define CLI_REPORTS_AUDIT_REPORT_H_
+#ifndef CLI_REPORTS_AUDIT_AUDIT_REPORT_H_
+#define CLI_REPORTS_AUDIT_AUDIT_REPORT_H_
 
 #include <optional>
 #include <string>
@@ -47,4 +47,4 @@ struct Audited {
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_AUDIT_REPORT_H_
+#endif  // CLI_REPORTS_AUDIT_AUDIT_REPORT_H_

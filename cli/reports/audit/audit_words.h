@@ -1,6 +1,6 @@
 /// Names the objects that the reports of `audit` mention, and formats the figures in them.
-#ifndef CLI_REPORTS_AUDIT_WORDS_H_
-#define CLI_REPORTS_AUDIT_WORDS_H_
+#ifndef CLI_REPORTS_AUDIT_AUDIT_WORDS_H_
+#define CLI_REPORTS_AUDIT_AUDIT_WORDS_H_
 
 #include <cstddef>
 #include <optional>
@@ -42,4 +42,4 @@ inline constexpr std::size_t kMostAuditRows = 16;
 
 }  // namespace chronormal::cli
 
-#endif  // CLI_REPORTS_AUDIT_WORDS_H_
+#endif  // CLI_REPORTS_AUDIT_AUDIT_WORDS_H_

@@ -98,7 +98,7 @@ TEST_F(OpenInput, inputs_that_do_not_go_together_are_misuse) {
   expect_error({"body.obj", "walk.pc2", "body.obj"}, ErrorCode::kUsage, "give it together with one mesh");
   expect_error({"body.obj", "walk.npz"}, ErrorCode::kUsage, "give no other inputs");
   folder_.write("body2.obj", kObj);
-  expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "this names 2 files");
+  expect_error({"body*.obj", "walk.pc2"}, ErrorCode::kUsage, "this input names 2 files");
   EXPECT_EQ(read({"walk.npz"}, 0).error().code, ErrorCode::kUsage);
 }
 
