@@ -76,7 +76,7 @@ struct Fault {
 constexpr int kMostFaults = 2;
 Fault faults[kMostFaults];
 std::atomic<long> counts[kKinds];
-std::atomic<long> mallocs_at_start{-1};  // number of allocations before the first other call; -1 until that call
+std::atomic<long> mallocs_at_start{-1};  // number of malloc() calls before a call of another kind; -1 until then
 std::atomic<bool> is_armed{false};
 
 long number_at(const char*& text) {

@@ -126,7 +126,7 @@ struct StoredNormals {
   /// The normals of every keyframe, or of keyframe 0 only, or an empty list. Normals of keyframe 0 only are used to
   /// find the hard edges.
   std::vector<std::vector<float>> of_keyframes;
-  /// True with KeepShading::kRead if other keyframes, which were left in files, may store normals.
+  /// True if keyframes whose files were not read may also store normals. Always false without KeepShading::kRead.
   bool has_more = false;
 };
 

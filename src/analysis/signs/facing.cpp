@@ -258,7 +258,8 @@ Way<kPartDigits> part_of_way(const View& view, const Place& from, const Place& t
   return way;
 }
 
-// Returns f = n . w for a normal n and a vector w to the viewer, multiplied by a positive number.
+// Returns c n . w as a polynomial in t, for a normal n and a vector w to the viewer. The factor c > 0 makes the
+// coefficients whole numbers, so that the sign is exact.
 template <std::size_t kDegree, std::size_t kDigits>
 auto times_normal(const ExactCurve& normal, const Way<kDigits>& way) noexcept {
   IntegerPolynomial<kDegree, kNormalDigits + kDigits + 1> f;

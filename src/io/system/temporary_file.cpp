@@ -1,5 +1,6 @@
-// Keeps a list with a place for every temporary file that exists at the same time. Whoever takes a name out of the list
-// owns it: the object of the file when it is done, or remove_temporaries(), which never puts a name back.
+// Keeps a list with a place for every temporary file that exists at the same time. One of two takes a name out of the
+// list, and alone may use the name then: the TemporaryFile when it is done with its file, or remove_temporaries(),
+// which never puts a name back.
 #include "io/system/temporary_file.h"
 
 #include <array>

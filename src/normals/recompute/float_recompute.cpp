@@ -42,7 +42,7 @@ struct FloatRecompute::Parts {
 
   const Topology& topology;
   std::size_t size;
-  Rings rings;  // the paths; empty if the elements are faces and all are triangles
+  Rings rings;  // the paths around elements (groups/rings.h); empty for faces that are all triangles
   AlignedArray<float> points;
   bool fetch = false;
 };

@@ -29,9 +29,10 @@ namespace chronormal::inline internal {
 /// The vertices that a report has for a motion. If a vertex of the file shows several normals, the report has a vertex
 /// for each of these normals.
 struct MotionVertices {
-  std::vector<std::uint32_t> labels;             ///< the vertex of the file for each vertex, in ascending order
-  std::vector<std::uint32_t> elements, corners;  ///< the element of each vertex, and a corner that shows it
-  std::vector<std::uint32_t> of_corner;          ///< for each corner of the motion, its vertex in the report
+  std::vector<std::uint32_t> labels;     ///< the vertex of the file for each vertex, in ascending order
+  std::vector<std::uint32_t> elements;   ///< for each vertex, its element
+  std::vector<std::uint32_t> corners;    ///< for each vertex, one corner of the motion that uses it
+  std::vector<std::uint32_t> of_corner;  ///< for each corner of the motion, its vertex in the report
   std::size_t element_count = 0;
 };
 

@@ -1,4 +1,5 @@
-// Checks that bakes of a sequence with the fewest keys follow the motion in a viewer that interpolates linearly.
+// Checks the encoding `keys`: a sequence baked with as few keys as the tolerance allows follows the motion in a viewer
+// that interpolates linearly.
 
 #include <gtest/gtest.h>
 

@@ -381,8 +381,8 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows of the sheet are flat. Only one vertex of these rows moves: a neighbour of the edited vertex, which
-  // remains in the plane.
+  // Five rows of the sheet are flat. Only one vertex of these rows moves, and it stays in the plane: the vertex
+  // after kBent, whose normal is edited.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);

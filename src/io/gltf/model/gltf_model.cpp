@@ -115,8 +115,8 @@ void Parser::parse_asset(const JsonView& root) {
 void Parser::check_required(const JsonView& root) {
   const std::optional<JsonView> required = root.array("extensionsRequired");
   if (!required) return;
-  // An unknown extension is an error only where it may change the meaning of data that are read here: in a primitive,
-  // in its mesh, and in objects that have bytes.
+  // An unknown extension is an error only where it may change the meaning of data that are read here: in meshes and
+  // their primitives, in buffers, buffer views and accessors, and in the samplers of animations.
   const auto is_extended = [](const nlohmann::json& value, const std::string& extension) {
     if (!value.is_object()) return false;
     // Primitives of points and lines are not read, so their extensions do not matter.

@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
-// Limits for the number of poses in which pairs are measured. Small meshes are measured in all poses.
+// Limits for the number of poses in which pairs of targets are measured: so many poses that some kSampledCorners
+// corners are measured in all, but at least kLeastSamples and at most kMostSamples poses.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
 
 std::string place_of(const GltfDocument& document, std::size_t mesh) {
