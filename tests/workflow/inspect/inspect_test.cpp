@@ -103,7 +103,7 @@ TEST(Inspect, face_on_a_line_throughout_has_no_normal_and_one_between_two_lines_
 
 TEST(Inspect, sliver_may_be_as_long_as_the_mesh) {
   // A triangle of height h over a base of length 2 has |n| = 2 h, and the bound for slivers is 4 sqrt(3) 2^-24 times 2.
-  // With h = 2^-22, |n| is below the bound, and with h = 2^-21, above.
+  // The length |n| is below the bound for h = 2^-22, and above it for h = 2^-21.
   const Positions sliver = {-1, 0, 0, 1, 0, 0, 0, 0x1p-22F, 0}, narrow = {-1, 0, 0, 1, 0, 0, 0, 0x1p-21F, 0};
   EXPECT_EQ(inspect(triangle_motion({sliver, kTriangle})).slivers.pairs, 1U);
   EXPECT_EQ(inspect(triangle_motion({narrow, kTriangle})).slivers.pairs, 0U);
