@@ -240,8 +240,8 @@ Result<AuditOptions> understand(const AuditArguments& options, Progress& progres
 // Returns the sentence for an input that does not pass because of errors at samples whose faces almost vanish. `place`
 // names the worst of these samples, and ends the sentence.
 std::string why_faint(const Audited& audited, const MotionError& error, const std::string& place) {
-  return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}, where faces almost vanish{}",
-                   error.faint_worst, *audited.limits.degrees, place);
+  return formatted("the worst error is {}, beyond the tolerance of {:g}, where faces almost vanish{}",
+                   with_degrees(with_digits(error.faint_worst, 4)), *audited.limits.degrees, place);
 }
 
 // Returns the sentence for an input that does not pass because more edges are torn at one moment than the limit allows.
@@ -267,8 +267,8 @@ std::string why_beyond(const Audited& audited, const MotionError& error, const s
     return counted(error.unlit, "normal", "normals") +
            " of the file would be zero, infinite or NaN in a viewer, which no tolerance allows" + at(unlit_label);
   if (tolerance && error.worst > *tolerance)
-    return formatted("the worst error is {:.4g} degrees, beyond the tolerance of {:g}{}", error.worst, *tolerance,
-                     at(worst_label));
+    return formatted("the worst error is {}, beyond the tolerance of {:g}{}", with_degrees(with_digits(error.worst, 4)),
+                     *tolerance, at(worst_label));
   if (tolerance && error.faint_worst > *tolerance) return why_faint(audited, error, at(faint_label));
   if (tolerance && error.cancelled > 0)
     return why_cancelled(error) + at(cancelled_label) + "; give each side of a sheet its own vertices";

@@ -293,9 +293,9 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
                  pieces = make_path(options.input.path).value().tolerance;
     how.tolerance = asked - pieces;
     if (*how.tolerance < kLeastKeyTolerance)
-      return misuse("--path", formatted("the curves are cut with an error of {:g} degrees, which uses up the tolerance "
+      return misuse("--path", formatted("the curves are cut with an error of {}, which uses up the tolerance "
                                         "of {:g}; give a larger --tolerance, or a smaller angle with --path NAME:DEG",
-                                        pieces, asked));
+                                        with_degrees(with_digits(pieces, 6)), asked));
   }
   if (options.smooth)
     return misuse("--smooth", "--smooth is only for glTF files, and the input is a sequence; leave --smooth out");

@@ -458,8 +458,8 @@ Result<int> run(const CompareArguments& options) {
     const bool is_judged = std::any_of(schemes.begin(), schemes.end(),
                                        [](const SchemeComparison& scheme) { return scheme.quality.count > 0; });
     say("compare",
-        is_judged ? formatted("{}: no scheme is always within the tolerance of {:g} degrees", printable(input.name),
-                              *options.tolerance)
+        is_judged ? formatted("{}: no scheme is always within the tolerance of {}", printable(input.name),
+                              with_degrees(with_digits(*options.tolerance, 6)))
                   : formatted("{}: no scheme could be judged, since no face has an area at any sample",
                               printable(input.name)),
         Tone::kError);

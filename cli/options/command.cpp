@@ -26,16 +26,17 @@ void say_of_curves(const std::string& command, const CutPath& cut, std::size_t f
   const auto warn = [&](const std::string& message) { say(command, message, Tone::kWarning); };
   if (!is_quiet)
     say_text(formatted(
-        "{} paths: {} cut into {}, with normals within {} degrees of the curves; coordinates are rounded by {:.1g}{}\n",
+        "{} paths: {} cut into {}, with normals within {} of the curves; coordinates are rounded by {:.1g}{}\n",
         cut.skins ? "skinned" : path_name(cut.path.kind), counted(cut.segments, "segment", "segments"),
-        counted(cut.pieces, "straight piece", "straight pieces"), cut.path.tolerance, cut.rounding,
-        cut.skins ? ", in the scene's world" : ""));
+        counted(cut.pieces, "straight piece", "straight pieces"), with_degrees(formatted("{}", cut.path.tolerance)),
+        cut.rounding, cut.skins ? ", in the scene's world" : ""));
   if (cut.beyond > 0)
     warn(
-        formatted("in {} of {} cases (one face in one segment), normals may differ by more than {} degrees from those "
+        formatted("in {} of {} (one face in one segment), normals may differ by more than {} from those "
                   "of the curve: the face almost vanishes between two keyframes, or needs more pieces than "
                   "--max-expansion allows",
-                  grouped(cut.beyond), grouped(faces * cut.segments), cut.path.tolerance));
+                  grouped(cut.beyond), counted(faces * cut.segments, "case", "cases"),
+                  with_degrees(formatted("{}", cut.path.tolerance))));
   if (cut.path.kind == PathKind::kCatmullRom && cut.segments == 1)
     warn("there are only two keyframes, so vertices move straight between them, as with --path linear");
   if (is_too_sparse(cut.bend))

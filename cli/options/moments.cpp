@@ -11,6 +11,7 @@
 #include "chronormal/io/input.h"
 #include "cli/options/command.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/text.h"
 #include "core/charconv.h"
 
 namespace chronormal::cli {
@@ -198,8 +199,8 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
   }
   if (motion.kind == MotionKind::kTargets) {
     const std::size_t count = motion.segments.size();
-    const std::string how = formatted("give --weights, {} number{} for each pose, or NAME=WEIGHT for some targets",
-                                      count, count == 1 ? "" : "s");
+    const std::string how = formatted("give --weights, {} for each pose, or NAME=WEIGHT for some targets",
+                                      counted(count, "number", "numbers"));
     if (has_times) return misuse("--times", "blend shapes have no times; " + how);
     if (!has_weights) return misuse("--weights", "the input has blend shapes, which need weights; " + how);
     return Success{};

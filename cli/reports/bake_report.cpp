@@ -246,9 +246,8 @@ std::string left_over(const GltfBake& bake) {
         if (choice.chosen && !choice.within && change.is_named && change.is_better)
           worst = std::max(worst, change.poses[0].after.worst);
   if (worst <= kHarmlessTolerance) return "";
-  return formatted(
-      "errors of up to {:.3g} degrees remain in places; to correct them in a larger file, add --tolerance {}\n", worst,
-      kHarmlessTolerance);
+  return formatted("errors of up to {} remain in places; to correct them in a larger file, add --tolerance {}\n",
+                   with_degrees(with_digits(worst, 3)), kHarmlessTolerance);
 }
 
 // Returns a text about the number of correction targets that bake left out, and the reason.
@@ -344,7 +343,8 @@ std::string lines_after(const BakeReport& report) {
 // differ from those of the original curves by up to the tolerance of the cut.
 std::string beside_curves(const SequenceBake& bake) {
   if (!bake.cut) return "";
-  return formatted(" of the straight pieces, which are within {:g} degrees of the curves", bake.cut->path.tolerance);
+  return formatted(" of the straight pieces, which are within {} of the curves",
+                   with_degrees(with_digits(bake.cut->path.tolerance, 6)));
 }
 
 }  // namespace
@@ -395,8 +395,8 @@ std::string bake_text(const GltfBake& bake, const BakeReport& report) {
   text += formatted("{} and {} were added", counted(bake.added_targets, "target", "targets"),
                     counted(bake.added_bytes, "byte of data", "bytes of data"));
   if (bake.left_out_bytes > 0)
-    text += formatted("; {} that are no longer used were left out",
-                      counted(bake.left_out_bytes, "byte of data", "bytes of data"));
+    text += formatted("; {} left out", counted(bake.left_out_bytes, "byte of data that is no longer used was",
+                                               "bytes of data that are no longer used were"));
   if (bake.converted_tracks > 0)
     text += formatted("; {} now", counted(bake.converted_tracks, "animation of weights is a cubic spline",
                                           "animations of weights are cubic splines"));
@@ -451,9 +451,9 @@ std::string bake_text(const SequenceBake& bake, BakeEncoding encoding, const Bak
   if (bake.has_offsets)
     text += "where the stored normals of keyframe 0 differ from the surface, that difference is kept\n";
   if (bake.keys) {
-    text += formatted("{}, {} of them between keyframes; {} left out; equal steps would need {} keys\n",
+    text += formatted("{}, {} of them between keyframes; {} left out; equal steps would need {}\n",
                       counted(bake.keys->count, "key", "keys"), grouped(bake.keys->in_between),
-                      counted(bake.keys->left_out, "keyframe", "keyframes"), grouped(bake.keys->even));
+                      counted(bake.keys->left_out, "keyframe", "keyframes"), counted(bake.keys->even, "key", "keys"));
     text += formatted("the error is at most {} degrees{} at every instant (certified)\n",
                       four_decimals(bake.largest_error), bake.cut ? " from the straight pieces" : "");
     if (bake.cut)

@@ -24,10 +24,10 @@ bool is_of_targets(const Comparison& comparison) { return comparison.motion == M
 std::string headline(const NamedComparison& input) {
   const Comparison& c = input.comparison;
   return formatted(
-             "{}: {}, {}, {} x {} samples\n", heading(printable(input.name)), counted(c.vertices, "vertex", "vertices"),
+             "{}: {}, {}, {} x {}\n", heading(printable(input.name)), counted(c.vertices, "vertex", "vertices"),
              counted(c.faces, "face", "faces"),
              counted(c.segments, is_of_targets(c) ? "target" : "segment", is_of_targets(c) ? "targets" : "segments"),
-             c.samples) +
+             counted(c.samples, "sample", "samples")) +
          (c.kind == ElementKind::kFaces
               ? std::string()
               : formatted("{} of {}{}\n", counted(c.elements, "different normal", "different normals"),
@@ -62,11 +62,12 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
     const auto add = [&](std::size_t count, const std::string& what) {
       if (count > 0) text += formatted("{}{}: {}\n", prefix, row.scheme, what);
     };
-    add(row.flagged, share(row.flagged) + " were computed in double precision");
+    add(row.flagged, share(row.flagged) + (row.flagged == 1 ? " was" : " were") + " computed in double precision");
     add(row.fallbacks, share(row.fallbacks) + " used another scheme, since this one is undefined there");
     if (row.certified)
-      add(row.certified->unbounded,
-          share(row.certified->unbounded) + " have no bound, since a normal vanishes on the way");
+      add(row.certified->unbounded, share(row.certified->unbounded) +
+                                        (row.certified->unbounded == 1 ? " has" : " have") +
+                                        " no bound, since a normal vanishes on the way");
     add(row.quality.missing,
         counted(row.quality.missing, "sample was", "samples were") + " left out, since the scheme has no normal there");
   }
@@ -77,10 +78,11 @@ std::string notes(const Comparison& comparison, const std::string& prefix) {
                       counted(degenerate, "sample was", "samples were"));
   if (comparison.tolerance && comparison.cheapest) {
     const SchemeComparison& row = comparison.schemes[*comparison.cheapest];
-    text += formatted("{}the cheapest scheme that is always within {:g} degrees is {}, with an error of at most {}\n",
-                      prefix, *comparison.tolerance, row.scheme, rounded_up(in_degrees(row.certified->upper)));
+    text += formatted("{}the cheapest scheme that is always within {} is {}, with an error of at most {}\n", prefix,
+                      with_degrees(with_digits(*comparison.tolerance, 6)), row.scheme,
+                      rounded_up(in_degrees(row.certified->upper)));
   } else if (comparison.tolerance) {
-    text += formatted("{}no scheme is always within {:g} degrees\n", prefix, *comparison.tolerance);
+    text += formatted("{}no scheme is always within {}\n", prefix, with_degrees(with_digits(*comparison.tolerance, 6)));
   }
   return text;
 }
@@ -277,9 +279,9 @@ std::string compare_latex(const std::vector<NamedComparison>& inputs) {
                         grouped(input.comparison.elements), counted(input.comparison.segments, "segment", "segments"));
   std::string text = latex_table(
       columns, names + " \\\\\n" + titles + " \\\\\n\\hline\n" + rows,
-      formatted("Sums of the angles in degrees between interpolated and exact normals of {}, over {} samples of each "
+      formatted("Sums of the angles in degrees between interpolated and exact normals of {}, over {} of each "
                 "segment, and their ratios to linear ({}).",
-                elements, first.samples, counts),
+                elements, counted(first.samples, "sample", "samples"), counts),
       "tab:quality");
 
   columns = "l";

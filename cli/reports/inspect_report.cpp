@@ -43,8 +43,8 @@ std::string face_words(const Inspection& found) {
   return words;
 }
 
-std::string rows_left_out(std::size_t rows, const char* what) {
-  return rows > kMostRows ? formatted("... and {} more {} (--json has all)\n", grouped(rows - kMostRows), what) : "";
+std::string rows_left_out(std::size_t rows, const char* one, const char* many) {
+  return rows > kMostRows ? formatted("... and {} (--json has all)\n", counted(rows - kMostRows, one, many)) : "";
 }
 
 std::string headline(const Inspected& input) {
@@ -100,8 +100,8 @@ std::string facts_of(const Inspected& input) {
                             size_in_bytes(found.keyframe_bytes), size_in_bytes(found.normal_bytes),
                             static_cast<double>(found.normal_bytes) / static_cast<double>(pairs)));
     if (found.flagged > 0)
-      add("in double", formatted("{} of {} normals, for which float32 is not precise enough", grouped(found.flagged),
-                                 grouped(pairs)));
+      add("in double", formatted("{} of {}, for which float32 is not precise enough", grouped(found.flagged),
+                                 counted(pairs, "normal", "normals")));
   } else {
     add("memory", size_in_bytes(found.keyframe_bytes) + " for positions");
   }
@@ -127,10 +127,7 @@ std::string target_table(const Inspected& input) {
                    formatted("{:.1f}", segment.turn.value * kDegreesPerRadian), grouped(segment.turned_far),
                    grouped(segment.collapses)});
   }
-  std::string text = '\n' + table.text();
-  if (found.segments.size() > kMostRows)
-    text += formatted("... and {} more that turn less (--json has all)\n", grouped(found.segments.size() - kMostRows));
-  return text;
+  return '\n' + table.text() + rows_left_out(found.segments.size(), "more that turns less", "more that turn less");
 }
 
 const char* mode_name(int mode) {
@@ -170,7 +167,7 @@ std::string primitive_table(const InspectedGltf& gltf) {
                    primitive.has_normals ? grouped(found.split) : "-", std::move(has), grouped(mesh.target_count),
                    share_of(found.moving_normals, found.moving), share_of(found.moving_tangents, found.moving)});
   }
-  return '\n' + table.text() + rows_left_out(primitives.size(), "primitives");
+  return '\n' + table.text() + rows_left_out(primitives.size(), "more primitive", "more primitives");
 }
 
 std::string named_or_numbered(const std::string& name, const char* kind, std::size_t number) {
@@ -230,7 +227,7 @@ std::string track_table(const InspectedGltf& gltf) {
                    formatted("{:.4g}", all.first_time), formatted("{:.4g}", all.last_time), weight_cell(all.lowest),
                    weight_cell(all.highest)});
   }
-  return '\n' + table.text() + rows_left_out(rows, "rows of tracks") + rest;
+  return '\n' + table.text() + rows_left_out(rows, "more row of tracks", "more rows of tracks") + rest;
 }
 
 std::string gltf_contents(const InspectedGltf& gltf) {

@@ -57,9 +57,9 @@ std::string remarks(const TruthComparison& c) {
 std::string truth_table(const NamedTruthComparison& input) {
   const TruthComparison& c = input.comparison;
   std::string text =
-      formatted("{}: {}, {}; {} kept and compared with the {} that were left out\n", heading(printable(input.name)),
+      formatted("{}: {}, {}; {} kept and compared with the {} left out\n", heading(printable(input.name)),
                 counted(c.vertices, "vertex", "vertices"), counted(c.faces, "face", "faces"),
-                counted(c.kept, "keyframe", "keyframes"), grouped(c.left_out));
+                counted(c.kept, "keyframe", "keyframes"), counted(c.left_out, "that was", "that were"));
   if (c.kind != ElementKind::kFaces)
     text += formatted("{} of {}\n", counted(c.elements, "different normal", "different normals"),
                       element_kind_name(c.kind));

@@ -408,7 +408,7 @@ class ErrorTable:
         rows, columns = self.errors.shape
         judged = self.errors[~_np.isnan(self.errors)]
         worst = f"{judged.max():.4g} degrees at worst" if judged.size > 0 else "nothing judged"
-        return f"<chronormal.ErrorTable {self.name}: {rows} samples of {columns}, {worst}>".replace(" :", ":")
+        return f"<chronormal.ErrorTable {self.name}: {rows} sample{'s' if rows != 1 else ''} of {columns}, {worst}>".replace(" :", ":")
 
 
 def errors(source: _Source = None, *, scheme: str | None = None, samples: int | None = None,

@@ -4,6 +4,7 @@
 #include <map>
 #include <string_view>
 
+#include "arguments.h"
 #include "computation.h"
 #include "io/bytes/expansion.h"
 #include "workflow/json/json.h"
@@ -196,8 +197,9 @@ class ReadMotion : public ZeroedObject {
   [[nodiscard]] py::str text() const {
     require_made(motion_ != nullptr);
     return string_of("<chronormal.Motion " + name_ + ": " + kind() + ", " + std::to_string(motion().keyframes.size()) +
-                     " keyframes of " + std::to_string(motion().topology.vertex_count()) + " vertices, " +
-                     std::to_string(motion().topology.face_count()) + " faces>");
+                     (motion().keyframes.size() == 1 ? " keyframe of " : " keyframes of ") +
+                     counted(motion().topology.vertex_count(), ElementKind::kVertices) + ", " +
+                     counted(motion().topology.face_count(), ElementKind::kFaces) + ">");
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/charconv.h"
@@ -112,7 +113,7 @@ std::string escaped_for_json(std::string_view document) {
   return result;
 }
 
-std::string grouped(std::size_t value) {
+std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (std::size_t i = digits.size(); i > 3;) {
     i -= 3;
@@ -121,13 +122,18 @@ std::string grouped(std::size_t value) {
   return digits;
 }
 
-std::string counted(std::size_t count, const char* singular, const char* plural) {
-  return grouped(count) + ' ' + (count == 1 ? singular : plural);
+std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural) {
+  return grouped(count).append(1, ' ').append(count == 1 ? singular : plural);
 }
 
 std::string with_decimals(double value, int decimals) { return digits_of(value, std::chars_format::fixed, decimals); }
 
 std::string with_digits(double value, int digits) { return digits_of(value, std::chars_format::general, digits); }
+
+std::string with_degrees(std::string angle) {
+  const bool is_one = angle == "1";
+  return std::move(angle) + (is_one ? " degree" : " degrees");
+}
 
 std::string rounded_text(double value, std::initializer_list<double> others) {
   constexpr int kFewest = 6, kAll = 17;  // kAll digits tell any two doubles apart

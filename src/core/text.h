@@ -3,6 +3,7 @@
 #define CHRONORMAL_CORE_TEXT_H_
 
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -19,10 +20,10 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::string escaped_for_json(std::string_view document);
 
 /// Returns a number with commas between groups of three digits: 1234567 becomes "1,234,567".
-[[nodiscard]] std::string grouped(std::size_t value);
+[[nodiscard]] std::string grouped(std::uint64_t value);
 
 /// Returns a count with its noun in the right number: "1 face", "1,234 faces".
-[[nodiscard]] std::string counted(std::size_t count, const char* singular, const char* plural);
+[[nodiscard]] std::string counted(std::uint64_t count, std::string_view singular, std::string_view plural);
 
 /// Returns a number for messages in the way that people write it: 0.3 for 0.30000000000000004. The text has six
 /// significant digits, or as many as are needed to tell the number from the numbers `others` in the same message. A
@@ -33,6 +34,9 @@ namespace chronormal::inline internal {
 /// digits, without trailing zeros. Both return "-" for infinity and NaN.
 [[nodiscard]] std::string with_decimals(double value, int decimals);
 [[nodiscard]] std::string with_digits(double value, int digits);
+
+/// Returns the text of an angle with its unit in the right number: "1 degree", "0.5 degrees", "1.00 degrees".
+[[nodiscard]] std::string with_degrees(std::string angle);
 
 }  // namespace chronormal::inline internal
 

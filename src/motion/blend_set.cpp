@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/text.h"
 #include "core/twofold.h"
 
 namespace chronormal {
@@ -55,14 +56,14 @@ Result<BlendSet> blend_set_of(const Motion& star) {
 Status validate(const BlendTarget& target, const Topology& topology, std::size_t k) {
   const auto place = [k](std::size_t n) { return "target " + std::to_string(k) + ", entry " + std::to_string(n); };
   if (target.deltas.size() != 3 * target.vertices.size())
-    return invalid_input("target " + std::to_string(k), "the target has " + std::to_string(target.deltas.size()) +
-                                                            " numbers of deltas, but must have 3 for each of its " +
-                                                            std::to_string(target.vertices.size()) + " vertices");
+    return invalid_input("target " + std::to_string(k),
+                         "the target has " + counted(target.deltas.size(), "coordinate", "coordinates") + " for " +
+                             counted(target.vertices.size(), "vertex", "vertices") + ", but must have 3 for each");
   for (std::size_t n = 0; n < target.vertices.size(); ++n) {
     if (target.vertices[n] >= topology.vertex_count())
       return invalid_input(place(n), "the target moves vertex " + std::to_string(target.vertices[n]) +
-                                         ", but the mesh has only " + std::to_string(topology.vertex_count()) +
-                                         " vertices");
+                                         ", but the mesh has only " +
+                                         counted(topology.vertex_count(), "vertex", "vertices"));
     if (n > 0 && target.vertices[n] <= target.vertices[n - 1])
       return invalid_input(place(n), "the vertices of a target must be in ascending order, each once");
     if (!all_finite(std::span(target.deltas).subspan(3 * n, 3)))
@@ -73,9 +74,9 @@ Status validate(const BlendTarget& target, const Topology& topology, std::size_t
 
 Status validate(const BlendSet& set) {
   if (set.base.size() != 3 * set.topology.vertex_count())
-    return invalid_input("base", "the base has " + std::to_string(set.base.size()) +
-                                     " coordinates, but must have 3 for each of the " +
-                                     std::to_string(set.topology.vertex_count()) + " vertices");
+    return invalid_input("base", "the base has " + counted(set.base.size(), "coordinate", "coordinates") + " for " +
+                                     counted(set.topology.vertex_count(), "vertex", "vertices") +
+                                     ", but must have 3 for each");
   for (std::size_t v = 0; v < set.topology.vertex_count(); ++v) {
     if (!all_finite(std::span(set.base).subspan(3 * v, 3)))
       return invalid_input("base, vertex " + std::to_string(v), "the position is NaN or infinite");

@@ -3,6 +3,8 @@
 #include <limits>
 #include <string>
 
+#include "core/text.h"
+
 namespace chronormal {
 namespace {
 
@@ -22,7 +24,7 @@ Status check_corners(std::size_t vertex_count, std::span<const std::uint32_t> of
       if (corners[c] >= vertex_count)
         return invalid_input("face " + std::to_string(f) + ", corner " + std::to_string(c - first),
                              "the corner refers to vertex " + std::to_string(corners[c]) + ", but the mesh has only " +
-                                 std::to_string(vertex_count) + " vertices");
+                                 counted(vertex_count, "vertex", "vertices"));
     }
   }
   return Success{};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/text.h"
 #include "motion/outline.h"
 
 namespace chronormal {
@@ -34,9 +35,8 @@ const char* fault_of_kind(MotionKind kind, std::size_t segment, const Motion::Se
 Status check_mesh(const Motion& motion) {
   if (motion.topology.face_count() == 0) return invalid_input("", "the mesh has no faces");
   if (!motion.body_of_vertex.empty() && motion.body_of_vertex.size() != motion.topology.vertex_count())
-    return invalid_input("", "the list of bodies has " + std::to_string(motion.body_of_vertex.size()) +
-                                 " entries, but the mesh has " + std::to_string(motion.topology.vertex_count()) +
-                                 " vertices");
+    return invalid_input("", "the list of bodies has " + counted(motion.body_of_vertex.size(), "entry", "entries") +
+                                 ", but the mesh has " + counted(motion.topology.vertex_count(), "vertex", "vertices"));
   return Success{};
 }
 
@@ -85,9 +85,9 @@ Status check_segments(const Motion& motion) {
     if (const char* const fault = fault_of_kind(motion.kind, s, motion.segments[s])) return invalid_input(place, fault);
   }
   if (motion.kind != MotionKind::kAnimation && motion.segments.size() + 1 != motion.keyframes.size())
-    return invalid_input("", "the motion has " + std::to_string(motion.segments.size()) +
-                                 " segments, which does not fit its " + std::to_string(motion.keyframes.size()) +
-                                 " keyframes");
+    return invalid_input("", "the motion has " + counted(motion.segments.size(), "segment", "segments") +
+                                 ", which does not fit its " +
+                                 counted(motion.keyframes.size(), "keyframe", "keyframes"));
   return Success{};
 }
 
@@ -96,9 +96,9 @@ Status check_segments(const Motion& motion) {
 Status internal::validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions) {
   const std::size_t vertex_count = motion.topology.vertex_count();
   if (positions.size() % 3 != 0 || positions.size() / 3 != vertex_count)
-    return invalid_input(keyframe_place(motion, k), "the frame has " + std::to_string(positions.size()) +
-                                                        " coordinates, but " + std::to_string(vertex_count) +
-                                                        " vertices need three each");
+    return invalid_input(keyframe_place(motion, k),
+                         "the frame has " + counted(positions.size(), "coordinate", "coordinates") + " for " +
+                             counted(vertex_count, "vertex", "vertices") + ", but must have 3 for each");
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (!std::isfinite(positions[i]))
       return invalid_input(keyframe_place(motion, k) + ", vertex " + std::to_string(i / 3),

@@ -706,7 +706,7 @@ TEST_F(Cli, caches_and_arrays_are_motions_too) {
   EXPECT_EQ(direct["schemes"], Json::parse(run("compare cloth.npz --samples 5 --json --no-times").out)["schemes"]);
   expect_error(run("compare cloth.pc2"), 2, {"cloth.pc2", "mesh"});
   write_two_frames();
-  expect_error(run("compare a.obj cloth.pc2"), 3, {"17822", "3"});
+  expect_error(run("compare a.obj cloth.pc2"), 3, {"17,822", "3"});
 }
 
 TEST_F(Cli, convert_takes_a_single_mesh) {

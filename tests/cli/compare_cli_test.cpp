@@ -263,9 +263,9 @@ TEST_F(CompareFigures, certificates_stand_beside_what_was_sampled) {
   EXPECT_NE(csv.find(",trigonometric,certified_lower_degrees,certified_upper_degrees,"), std::string::npos) << csv;
   const std::string table = output("--certify");
   EXPECT_NE(table.find("at most"), std::string::npos) << table;
-  EXPECT_NE(table.find(
-                "\nlinear: 1 of 6 faces in all segments (16.67 %) have no bound, since a normal vanishes on the way\n"),
-            std::string::npos)
+  EXPECT_NE(
+      table.find("\nlinear: 1 of 6 faces in all segments (16.67 %) has no bound, since a normal vanishes on the way\n"),
+      std::string::npos)
       << table;
 }
 
@@ -294,7 +294,7 @@ TEST_F(CompareTolerance, the_cheapest_scheme_within_it_is_named) {
 TEST_F(CompareTolerance, where_none_is_within_it_the_exit_code_is_4) {
   const ProcessResult result = run("--schemes linear,slerp --json --tolerance 1");
   EXPECT_EQ(result.exit_code, 4);
-  EXPECT_EQ(result.err, "chronormal compare: bend: no scheme is always within the tolerance of 1 degrees\n");
+  EXPECT_EQ(result.err, "chronormal compare: bend: no scheme is always within the tolerance of 1 degree\n");
   EXPECT_TRUE(Json::parse(result.out)["cheapest"].is_null());
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
 #include <string>
@@ -20,6 +21,10 @@ TEST(Text, counts_have_groups_of_three_and_the_right_word) {
   EXPECT_EQ(counted(1, "face", "faces"), "1 face");
   EXPECT_EQ(counted(0, "face", "faces"), "0 faces");
   EXPECT_EQ(counted(2000, "vertex", "vertices"), "2,000 vertices");
+  EXPECT_EQ(counted(std::uint64_t{1} << 40, "byte", "bytes"), "1,099,511,627,776 bytes");
+  EXPECT_EQ(with_degrees("1"), "1 degree");
+  EXPECT_EQ(with_degrees("0.1"), "0.1 degrees");
+  EXPECT_EQ(with_degrees("1.00"), "1.00 degrees");
 }
 
 TEST(Text, numbers_have_the_digits_that_are_asked_for) {

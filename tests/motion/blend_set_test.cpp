@@ -86,7 +86,7 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   const float nan = std::nanf(""), infinity = std::numeric_limits<float>::infinity();
   BlendSet set = small_set();
   set.base.pop_back();
-  EXPECT_EQ(error_of(validate(set)), "base: the base has 11 coordinates, but must have 3 for each of the 4 vertices");
+  EXPECT_EQ(error_of(validate(set)), "base: the base has 11 coordinates for 4 vertices, but must have 3 for each");
   for (const float bad : {nan, infinity, -infinity}) {
     set = small_set();
     set.base[7] = bad;
@@ -97,8 +97,7 @@ TEST(BlendSet, everything_that_is_relied_on_is_checked_and_named) {
   }
   set = small_set();
   set.targets[1].deltas.pop_back();
-  EXPECT_EQ(error_of(validate(set)),
-            "target 1: the target has 5 numbers of deltas, but must have 3 for each of its 2 vertices");
+  EXPECT_EQ(error_of(validate(set)), "target 1: the target has 5 coordinates for 2 vertices, but must have 3 for each");
   set = small_set();
   set.targets[0].vertices = {4};
   EXPECT_EQ(error_of(validate(set)), "target 0, entry 0: the target moves vertex 4, but the mesh has only 4 vertices");

@@ -196,7 +196,7 @@ TEST(Validate, refuses_segments_that_the_kind_does_not_have) {
   motion.kind = MotionKind::kTargets;
   expect_invalid(motion, "segment 1", "from keyframe 0 to a keyframe of its own");
   motion.segments = {{0, 1}};
-  expect_invalid(motion, "", "1 segments, which does not fit its 3 keyframes");
+  expect_invalid(motion, "", "1 segment, which does not fit its 3 keyframes");
   motion.kind = MotionKind::kAnimation;
   motion.segments = {{0, 2}};
   expect_invalid(motion, "segment 0", "from a keyframe to the next one");

@@ -5,7 +5,7 @@ import { momentOf, nameOf, worstSample } from './motions.js';
 import { SCHEMES } from './schemes.js';
 
 const count = (n) => n.toLocaleString('en');
-const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
+export const plural = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
 const select = (label, options, value, onChoose) => {
   const box = h('select', { 'aria-label': label, onchange: () => onChoose(box.value) },
     options.map(([key, text]) => h('option', { value: key, selected: String(key) === String(value) }, text)));
@@ -84,7 +84,8 @@ export function weightSliders(player) {
       list.replaceChildren(...rows.map(({ row }) => row));
       note.textContent = extras === 0 ? '' : player.formulas.length === extras
         ? `${plural(extras, 'correction target follows', 'correction targets follow')} these weights, as the file says.`
-        : `${count(extras - player.formulas.length)} of ${plural(extras, 'correction target')} only follow the animations of the file, and stay at 0 here.`;
+        : `${plural(extras - player.formulas.length, 'correction target only follows the animations of the file, and stays',
+          'correction targets only follow the animations of the file, and stay')} at 0 here.`;
       box.hidden = own.length === 0;
     },
     follow() {

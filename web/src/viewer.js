@@ -2,7 +2,7 @@
 import { h, panel, segmented } from './dom.js';
 import { degreesText, gradient, scaleEnd } from './colors.js';
 import { makeFacePanel } from './face_panel.js';
-import { choiceTable, choosers, viewerTable, notes, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
+import { choiceTable, choosers, viewerTable, notes, plural, schemeTable, shownBy, shownPlaces, verdict, weightSliders, worstPlaces } from './panels.js';
 import { worstSample } from './motions.js';
 import { makePlayer } from './player.js';
 import { makePlot } from './plot.js';
@@ -197,7 +197,7 @@ export function makeViewer(root, report, compute) {
 function aboutOf(report) {
   const lines = [];
   const vertices = report.parts.reduce((sum, part) => sum + part.vertices, 0), triangles = report.parts.reduce((sum, part) => sum + part.triangles.length / 3, 0);
-  lines.push(`${vertices.toLocaleString('en')} vertices and ${triangles.toLocaleString('en')} triangles are drawn here.`);
+  lines.push(`This page draws ${plural(vertices, 'vertex', 'vertices')} and ${plural(triangles, 'triangle')}.`);
   const names = { area: 'the area of faces', angle: 'the angle of corners', 'area-angle': 'area times angle' };
   const weightings = [...new Set(report.parts.map(({ weighting }) => names[weighting] ?? weighting))].join(', or ');
   const kept = report.parts.some(({ truth }) => truth) ? 'Polygons and edited normals of the author are kept' : 'Normals that the author edited at rest are kept';

@@ -8,6 +8,7 @@
 #include "chronormal/workflow/bake.h"
 #include "cli/reports/audit/audit_words.h"
 #include "cli/terminal/format.h"
+#include "cli/terminal/text.h"
 
 namespace chronormal::cli {
 namespace {
@@ -137,8 +138,8 @@ std::string advice(const Audited& input) {
   if (input.audit.subjects.empty()) return "";
   switch (remedy_of(input)) {
     case Remedy::kNone:
-      return formatted("\nnothing to do, since no error is larger than {:g} {}\n", limit_of(input),
-                       limit_of(input) == 1 ? "degree" : "degrees");
+      return formatted("\nnothing to do, since no error is larger than {}\n",
+                       with_degrees(with_digits(limit_of(input), 6)));
     case Remedy::kUnknown:
       return input.audit.error.cancelled > 0 ? "\nat some vertices the normals of faces cancel, so no vertex normal is "
                                                "right; give each side of a sheet its own vertices\n"

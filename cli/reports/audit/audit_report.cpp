@@ -32,8 +32,7 @@ constexpr double kDisplaced = 1e-5;
 // in 2 of 3 viewers".
 std::string limits_words(const Audited& input) {
   std::string limits;
-  if (input.limits.degrees)
-    limits = formatted("{:g} {}", *input.limits.degrees, *input.limits.degrees == 1 ? "degree" : "degrees");
+  if (input.limits.degrees) limits = with_degrees(with_digits(*input.limits.degrees, 6));
   if (input.limits.torn_edges)
     limits += (limits.empty() ? "" : " and ") + counted(*input.limits.torn_edges, "torn edge", "torn edges");
   const std::vector<ViewerAudit>& viewers = input.audit.viewers;
@@ -90,7 +89,7 @@ std::string headline(const Audited& input) {
   if (audit.error.cancelled > 0)
     text += formatted(
         "  {} of the samples cannot be judged because normals of faces cancel, as on a sheet whose sides share "
-        "vertices.\n  They count as errors whatever --tolerance is. The first is at {}\n",
+        "vertices.\n  Such samples count as errors whatever --tolerance is. The first is at {}\n",
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text += formatted(

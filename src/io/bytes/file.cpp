@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 
 namespace chronormal {
@@ -35,8 +36,9 @@ Status check_holes(int descriptor, std::uint64_t size, const std::string& place)
   if (size <= kLarge) return Success{};
   const std::uint64_t enough = size / Expansion::kUsual, written = written_bytes(descriptor, size, enough);
   if (written >= enough) return Success{};
-  return invalid_input(place, "the file is almost empty, since only " + std::to_string(written) + " of its " +
-                                  std::to_string(size) + " bytes were ever written; copy or download the file again");
+  return invalid_input(place, "the file is almost empty, since only " + grouped(written) + " of its " +
+                                  counted(size, "byte was", "bytes were") +
+                                  " ever written; copy or download the file again");
 }
 
 }  // namespace
@@ -78,8 +80,8 @@ Result<FileBytes> FileBytes::open(const std::string& path, std::size_t most_of_s
   }
   if (file.owned_.size() > most_of_stream)
     return Error{ErrorCode::kFailed, place,
-                 "the stream is longer than " + std::to_string(most_of_stream) +
-                     " bytes; save its data to a file, and name that file"};
+                 "the stream is longer than " + counted(most_of_stream, "byte", "bytes") +
+                     "; save its data to a file, and name that file"};
   return file;
 }
 
@@ -132,8 +134,8 @@ Status PositionedFile::read(std::uint64_t at, std::span<char> bytes) const {
   const auto status = status_of(descriptor_.number());
   const std::uint64_t end = status ? status->size : at + (bytes.size() - missing->size());
   return Error{ErrorCode::kFailed, path_,
-               "another program has shortened the file from " + std::to_string(size_) + " to " + std::to_string(end) +
-                   " bytes while it was read; run the command again"};
+               "another program has shortened the file from " + grouped(size_) + " to " +
+                   counted(end, "byte", "bytes") + " while it was read; run the command again"};
 }
 
 }  // namespace chronormal

@@ -12,6 +12,7 @@
 #include <set>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/checksum.h"
 #include "io/bytes/scan.h"
@@ -198,8 +199,8 @@ Result<std::string_view> read_member(std::string_view file, const Member& member
     result = packed.substr(0, static_cast<std::size_t>(std::min(most, member.size)));
   } else {
     if (member.size / kMostPerByte > packed.size() + kSlack)
-      return damaged("the array is damaged, since its " + std::to_string(packed.size()) + " bytes cannot unpack to " +
-                     std::to_string(member.size));
+      return damaged("the array is damaged, since its " + counted(packed.size(), "byte", "bytes") +
+                     " cannot unpack to " + grouped(member.size));
     const auto wanted = static_cast<std::size_t>(std::min(most, member.size));
     bool at_end = false;
     storage = inflate_some(packed, wanted, at_end);

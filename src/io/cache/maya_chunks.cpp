@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
@@ -59,9 +60,9 @@ class ChunkReader {
     const std::uint64_t size = is_wide_ ? binary::load<std::uint64_t>(bytes_.data() + at + 8, kMayaOrder)
                                         : binary::load<std::uint32_t>(bytes_.data() + at + 4, kMayaOrder);
     if (size > end - chunk.begin)
-      return error(at, "the chunk " + scan::quoted(chunk.tag) + " should have " + std::to_string(size) +
-                           " bytes, but only " + std::to_string(end - chunk.begin) +
-                           " are left; copy or export the cache again");
+      return error(at, "the chunk " + scan::quoted(chunk.tag) + " should have " + counted(size, "byte", "bytes") +
+                           ", but only " + counted(end - chunk.begin, "is left", "are left") +
+                           "; copy or export the cache again");
     chunk.end = chunk.begin + static_cast<std::size_t>(size);
     const auto filled = static_cast<std::size_t>((alignment - size % alignment) % alignment);
     chunk.next = chunk.end + std::min(filled, end - chunk.end);
@@ -112,9 +113,9 @@ class ChunkReader {
         const std::uint64_t point_size = is_double ? 24 : 12;
         if (count < 0 || content.size() % point_size != 0 ||
             content.size() / point_size != static_cast<std::uint32_t>(count))
-          return error(at, "the channel " + scan::quoted(*channel) + " should have " + std::to_string(count) +
-                               " points, which do not fit its " + std::to_string(content.size()) +
-                               " bytes; export the cache again");
+          return error(at, "the number of points of the channel " + scan::quoted(*channel) + " is " +
+                               std::to_string(count) + ", which does not fit its " +
+                               counted(content.size(), "byte", "bytes") + "; export the cache again");
         list_.push_back({*channel, *time, static_cast<std::uint32_t>(count), is_double, chunk.begin});
         channel.reset();
         has_count = false;
@@ -167,8 +168,8 @@ Result<std::string> choose_channel(const std::vector<Points>& list, const CacheO
     if (options.vertex_count == 0 || channel.second == options.vertex_count) left.insert(channel);
   }
   if (left.empty())
-    return invalid_input(place, "no channel has the " + std::to_string(options.vertex_count) +
-                                    " points of the mesh, only " + names_of(all) +
+    return invalid_input(place, "no channel has the " + counted(options.vertex_count, "point", "points") +
+                                    " of the mesh, only " + names_of(all) +
                                     "; give the mesh that the cache was made for");
   if (left.size() > 1) {
     std::map<std::string_view, std::uint32_t> positions;
@@ -214,9 +215,9 @@ Status append_samples(std::string_view bytes, const std::vector<Points>& list, s
                            "the channel " + scan::quoted(channel) + " has no points; export the cache again");
     if (cache.samples.empty()) cache.vertex_count = count;
     if (count != cache.vertex_count)
-      return invalid_input(binary::place(name, points.begin),
-                           "the channel " + scan::quoted(channel) + " has " + std::to_string(count) +
-                               " points here, but " + std::to_string(cache.vertex_count) + " in earlier samples");
+      return invalid_input(binary::place(name, points.begin), "the channel " + scan::quoted(channel) + " has " +
+                                                                  counted(count, "point", "points") + " here, but " +
+                                                                  grouped(cache.vertex_count) + " in earlier samples");
     PositionCache::Sample sample;
     sample.time = static_cast<double>(points.ticks) / kMayaTicksPerSecond;
     sample.positions.resize(3 * count);

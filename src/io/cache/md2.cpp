@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
@@ -65,23 +66,26 @@ class Md2Reader {
     vertex_count_ = static_cast<std::size_t>(field(24));
     const std::uint64_t frame_size = kFrameHeaderSize + std::uint64_t{4} * vertex_count_;
     if (field(16) <= 0 || static_cast<std::uint64_t>(field(16)) != frame_size)
-      return error(16, "the size of a frame is " + std::to_string(field(16)) + " bytes in the header, but " +
-                           std::to_string(vertex_count_) + " vertices take " + std::to_string(frame_size) + " bytes");
-    if (Status status = read_table(32, 52, kTriangleSize, 1, "triangles", triangles_); !status) return status;
-    return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frames", frames_);
+      return error(16, "the size of a frame in the header is " + std::to_string(field(16)) + ", but " +
+                           counted(vertex_count_, "vertex takes", "vertices take") + " " +
+                           counted(frame_size, "byte", "bytes"));
+    if (Status status = read_table(32, 52, kTriangleSize, 1, "triangle", "triangles", triangles_); !status)
+      return status;
+    return read_table(40, 56, static_cast<std::size_t>(frame_size), 2, "frame", "frames", frames_);
   }
 
   [[nodiscard]] Status read_table(std::size_t count_at, std::size_t begin_at, std::size_t record_size,
-                                  std::int32_t fewest, const std::string& what, Table& table) const {
+                                  std::int32_t fewest, const char* one, const std::string& many, Table& table) const {
     const std::int32_t count = field(count_at), begin = field(begin_at);
     if (count < fewest)
-      return error(count_at, "the number of " + what + " is " + std::to_string(count) +
+      return error(count_at, "the number of " + many + " is " + std::to_string(count) +
                                  ", but a motion needs at least " + std::to_string(fewest));
     if (begin < 0 || static_cast<std::size_t>(begin) > bytes_.size() ||
         !binary::fits(static_cast<std::uint64_t>(count), record_size, bytes_.size() - static_cast<std::size_t>(begin)))
-      return error(begin_at, "the file is cut off, since it should have " + std::to_string(count) + " " + what +
-                                 " from byte " + std::to_string(begin) + " on, but has only " +
-                                 std::to_string(bytes_.size()) + " bytes");
+      return error(begin_at, "the file is cut off, since it should have " +
+                                 counted(static_cast<std::uint32_t>(count), one, many) + " from byte " +
+                                 std::to_string(begin) + " on, but has only " +
+                                 counted(bytes_.size(), "byte", "bytes"));
     table = {static_cast<std::size_t>(count), static_cast<std::size_t>(begin), record_size};
     return Success{};
   }
@@ -95,7 +99,7 @@ class Md2Reader {
         if (vertex >= vertex_count_)
           return invalid_input(binary::place(name_, at) + ", triangle " + std::to_string(f),
                                "corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
-                                   ", but the file has only " + std::to_string(vertex_count_) + " vertices");
+                                   ", but the file has only " + counted(vertex_count_, "vertex", "vertices"));
         corners.push_back(vertex);
       }
     }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/charconv.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/scan.h"
 
@@ -160,8 +161,8 @@ Result<Array> read_any_header(std::string_view start, std::uint64_t total_size, 
     if (fits) size *= length;
   }
   if (!fits || (size != left && !more_may_follow))
-    return error("the array should be " + array.text() + ", but has " + std::to_string(left) +
-                 " bytes; copy or save the file again");
+    return error("the array should be " + array.text() + ", but has " + counted(left, "byte", "bytes") +
+                 "; copy or save the file again");
   return array;
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/checksum.h"
 #include "io/bytes/expansion.h"
@@ -185,8 +186,8 @@ Result<Topology> read_faces(const Array& array, std::size_t vertex_count, const 
 
 Status read_times(const Array& array, PositionCache& cache, const std::string& place) {
   if (array.shape.size() != 1 || array.shape[0] != cache.samples.size())
-    return invalid_input(place, "times must be an array of " + std::to_string(cache.samples.size()) +
-                                    " numbers, one for each keyframe, but are " + array.text());
+    return invalid_input(place, "times must be an array of " + counted(cache.samples.size(), "number", "numbers") +
+                                    ", one for each keyframe, but are " + array.text());
   for (std::size_t k = 0; k < cache.samples.size(); ++k) {
     double& time = cache.samples[k].time;
     if (array.kind == Kind::kFloat) time = array.real(k);
@@ -442,9 +443,9 @@ Result<std::string> write_npy_faces(const Topology& topology) {
   for (std::size_t f = 0; f < faces; ++f) {
     if (topology.face(f).size() != corners)
       return Error{ErrorCode::kUsage, "",
-                   "an array of faces needs faces of the same size, but face 0 has " + std::to_string(corners) +
-                       " corners and face " + std::to_string(f) + " has " + std::to_string(topology.face(f).size()) +
-                       "; triangulate the mesh"};
+                   "an array of faces needs faces of the same size, but face 0 has " +
+                       counted(corners, "corner", "corners") + " and face " + std::to_string(f) + " has " +
+                       std::to_string(topology.face(f).size()) + "; triangulate the mesh"};
   }
   std::string bytes = npy::write_header(topology.vertex_count() <= 0x80000000U ? "<i4" : "<u4", {faces, corners});
   bytes.reserve(bytes.size() + 4 * topology.corner_count());

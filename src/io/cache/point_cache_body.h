@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "chronormal/core/result.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/cache/cache_layout.h"
 #include "io/cache/position_cache.h"
@@ -29,16 +30,19 @@ struct Counts {
                                          std::size_t begin, std::size_t times_size) {
   const std::string place = binary::place(name, begin);
   if (counts.vertices <= 0 || counts.samples <= 0)
-    return invalid_input(place, "the header has " + std::to_string(counts.vertices) + " vertices and " +
-                                    std::to_string(counts.samples) + " samples, but both must be at least 1");
+    return invalid_input(place, "the number of vertices is " + std::to_string(counts.vertices) +
+                                    " and the number of samples is " + std::to_string(counts.samples) +
+                                    ", but both must be at least 1");
   const std::uint64_t left = file_size - begin;
-  const std::uint64_t sample_size = times_size + std::uint64_t{12} * static_cast<std::uint32_t>(counts.vertices);
+  const auto vertices = static_cast<std::uint64_t>(counts.vertices);
   const auto samples = static_cast<std::uint64_t>(counts.samples);
+  const std::uint64_t sample_size = times_size + 12 * vertices;
   const bool fits = binary::fits(samples, sample_size, left);
   if (!fits || samples * sample_size != left)
     return invalid_input(place, "the file is too " + std::string(fits ? "long" : "short") + " for the " +
-                                    std::to_string(counts.samples) + " samples of " + std::to_string(counts.vertices) +
-                                    " vertices in its header; copy or export it again");
+                                    counted(samples, "sample", "samples") + " of " +
+                                    counted(vertices, "vertex", "vertices") +
+                                    " in its header; copy or export it again");
   return Success{};
 }
 

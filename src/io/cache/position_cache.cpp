@@ -13,9 +13,8 @@ namespace chronormal::inline internal {
 Result<Motion> motion_from_cache(Topology faces, PositionCache cache, const std::string& mesh_name,
                                  const std::string& cache_name, MotionKind kind) {
   if (cache.vertex_count != faces.vertex_count())
-    return invalid_input(cache_name, "the cache has " + std::to_string(cache.vertex_count) +
-                                         (cache.vertex_count == 1 ? " vertex" : " vertices") + ", but the mesh " +
-                                         mesh_name + " has " + std::to_string(faces.vertex_count()) +
+    return invalid_input(cache_name, "the cache has " + counted(cache.vertex_count, "vertex", "vertices") +
+                                         ", but the mesh " + mesh_name + " has " + grouped(faces.vertex_count()) +
                                          "; give the mesh that the cache was made for");
   if (cache.samples.size() < 2)
     return invalid_input(

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/charconv.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/expansion.h"
 #include "io/bytes/extension.h"
@@ -245,8 +246,8 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     geometry = std::move(decoded).value();
     if (source.indices && geometry.corners.size() != declared.element_count)
       return invalid_input(bytes.place(pointer + "/indices"),
-                           "the accessor declares " + std::to_string(declared.element_count) +
-                               " indices, but the Draco data have " + std::to_string(geometry.corners.size()));
+                           "the accessor declares " + counted(declared.element_count, "index", "indices") +
+                               ", but the Draco data have " + grouped(geometry.corners.size()));
   } else {
     if (source.indices) {
       Result<std::vector<std::uint32_t>> indices = bytes.indices(*source.indices, vertex_count);
@@ -295,9 +296,9 @@ Status GltfDocument::State::check_size(std::size_t mesh, std::size_t primitive, 
     const std::uint64_t corners = std::uint64_t{declared.element_count} * (declared.mode == 4 ? 1 : 3);
     return bytes.expansion().check(vertices * per_vertex * (targets + 1) + sizeof(std::uint32_t) * corners, place);
   }
-  return invalid_input(place, "the " + std::to_string(vertices) + " vertices and " + std::to_string(targets) +
-                                  " targets of this primitive would need more than " + std::to_string(most_bytes) +
-                                  " bytes of memory");
+  return invalid_input(place, "the " + counted(vertices, "vertex", "vertices") + " and " +
+                                  counted(targets, "target", "targets") + " of this primitive would need more than " +
+                                  counted(most_bytes, "byte", "bytes") + " of memory");
 }
 
 Status GltfDocument::State::read(const gltf::Attributes& attributes, bool shading, std::vector<float>& positions,

@@ -12,6 +12,7 @@
 #include "core/blocks.h"
 #include "core/portable_math.h"
 #include "core/rounding.h"
+#include "core/text.h"
 #include "core/twofold.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/expansion.h"
@@ -157,9 +158,10 @@ class Assembly {
       take(primitive.element_count, kBytesPerCorner * (primitive.mode == 4 ? 1 : 3));
     }
     if (!enough)
-      return invalid_input(document_.name(), std::to_string(keyframes) + " keyframes of " +
-                                                 std::to_string(vertex_count_) + " vertices would need more than " +
-                                                 std::to_string(most_bytes) + " bytes of memory");
+      return invalid_input(document_.name(), counted(keyframes, "keyframe", "keyframes") + " of " +
+                                                 counted(vertex_count_, "vertex", "vertices") +
+                                                 " would need more than " + counted(most_bytes, "byte", "bytes") +
+                                                 " of memory");
     if (Status status = document_.expansion().check(most_bytes - left, document_.name()); !status) return status;
     if (vertex_count_ >= std::numeric_limits<std::uint32_t>::max() / 3)
       return invalid_input(document_.name(), "the mesh has too many vertices; the most that can be read is " +

@@ -11,6 +11,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 #include "io/gltf/decode/gltf_draco.h"
 #include "io/gltf/gltf_document_state.h"
@@ -43,9 +44,9 @@ Result<GltfSkin> GltfSkin::read(const GltfDocument& document, std::size_t node, 
   const gltf::Model& model = state.model;
   const std::optional<std::uint32_t> index = model.nodes[node].skin;
   if (!index || *index >= model.skins.size())
-    return invalid_input(state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
-                         "there is no skin with this index; the file has " + std::to_string(model.skins.size()) +
-                             (model.skins.size() == 1 ? " skin" : " skins"));
+    return invalid_input(
+        state.bytes.place("/nodes/" + std::to_string(node) + "/skin"),
+        "there is no skin with this index; the file has " + counted(model.skins.size(), "skin", "skins"));
   const gltf::SkinSource& source = model.skins[*index];
   if (source.fault) return *source.fault;
   GltfSkin skin;
@@ -168,7 +169,7 @@ Status GltfSkin::read_shares(const GltfDocument& document, std::size_t mesh, std
         if (joint >= joints_.size())
           return invalid_input(state.bytes.place(pointer + "/JOINTS_" + std::to_string(n)),
                                "vertex " + std::to_string(v) + " follows joint " + std::to_string(joint) +
-                                   ", but the skin has only " + std::to_string(joints_.size()) + " joints");
+                                   ", but the skin has only " + counted(joints_.size(), "joint", "joints"));
         shares.push_back({joint, share});
       }
     }

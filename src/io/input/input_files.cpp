@@ -10,6 +10,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/text.h"
 #include "core/twofold.h"
 #include "io/bytes/file.h"
 #include "io/bytes/scan.h"
@@ -334,13 +335,14 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
 
 Status check_same_topology(const Topology& first, const std::string& first_name, const Topology& other,
                            const std::string& place) {
-  const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* what) {
-    return invalid_input(place, "it has " + std::to_string(count) + " " + what + ", but " + first_name + " has " +
-                                    std::to_string(first_count) + std::string(kTopologyMustNotChange));
+  const auto counts_differ = [&](std::size_t count, std::size_t first_count, const char* one, const char* many) {
+    return invalid_input(place, "it has " + counted(count, one, many) + ", but " + first_name + " has " +
+                                    grouped(first_count) + std::string(kTopologyMustNotChange));
   };
   if (other.vertex_count() != first.vertex_count())
-    return counts_differ(other.vertex_count(), first.vertex_count(), "vertices");
-  if (other.face_count() != first.face_count()) return counts_differ(other.face_count(), first.face_count(), "faces");
+    return counts_differ(other.vertex_count(), first.vertex_count(), "vertex", "vertices");
+  if (other.face_count() != first.face_count())
+    return counts_differ(other.face_count(), first.face_count(), "face", "faces");
   if (other == first) return Success{};
   for (std::size_t f = 0; f < first.face_count(); ++f) {
     const auto a = first.face(f), b = other.face(f);

@@ -25,7 +25,8 @@ std::string without_channel(const std::string& input) {
 std::string FileIdentity::text() const {
   constexpr std::int64_t kBillion = 1000000000;
   const std::string part = std::to_string(kBillion + changed % kBillion).substr(1);
-  return std::to_string(size) + " bytes, changed at " + std::to_string(changed / kBillion) + "." + part + " s";
+  return std::to_string(size) + (size == 1 ? " byte" : " bytes") + ", changed at " +
+         std::to_string(changed / kBillion) + "." + part + " s";
 }
 
 Result<std::vector<FileIdentity>> identify_files(const InputOptions& options) {

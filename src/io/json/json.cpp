@@ -327,7 +327,8 @@ std::optional<std::size_t> JsonView::as_index(std::size_t count, const char* wha
   const std::optional<std::size_t> index = as_count(~std::size_t{0});
   if (!index) return std::nullopt;
   if (*index < count) return index;
-  complain("the index is " + std::to_string(*index) + ", but the file has only " + std::to_string(count) + " " + what);
+  complain("the index is " + std::to_string(*index) + ", but the number of " + what + " is only " +
+           std::to_string(count));
   return std::nullopt;
 }
 

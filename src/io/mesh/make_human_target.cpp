@@ -9,6 +9,7 @@
 #include <new>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/extension.h"
 #include "io/bytes/scan.h"
@@ -59,8 +60,8 @@ Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const
     done += room - stream.avail_out;
 
     if (done > most)
-      return error("the file unpacks to more than " + std::to_string(most) +
-                   " bytes, which is more than a target of this base can need");
+      return error("the file unpacks to more than " + counted(most, "byte", "bytes") +
+                   ", which is more than a target of this base can need");
     if (code == Z_OK) continue;
     if (code == Z_MEM_ERROR) throw std::bad_alloc();
     if (code == Z_BUF_ERROR)
@@ -144,8 +145,8 @@ Result<std::uint32_t> TargetReader::read_vertex(std::string_view word) {
   const bool is_vertex =
       fault == NumberFault::kNone && index >= 0 && static_cast<std::uint64_t>(index) < std::uint64_t{base_.count};
   if (!is_vertex)
-    return error(scan::quoted(word) + " is not a vertex of the base, whose " + std::to_string(base_.count) +
-                 " vertices are counted from 0");
+    return error(scan::quoted(word) + " is not a vertex of the base, whose " +
+                 counted(base_.count, "vertex is", "vertices are") + " counted from 0");
   const auto vertex = static_cast<std::uint32_t>(index);
   if (has_delta_[vertex]) return error("vertex " + std::to_string(vertex) + " has two deltas in this file");
   return vertex;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "io/bytes/scan.h"
 #include "io/mesh/polygon_builder.h"
 
@@ -90,8 +91,8 @@ class ObjReader {
   [[nodiscard]] std::string open_corner() const { return corner_name(faces_.face_count(), faces_.open_corners()); }
   [[nodiscard]] std::size_t vertex_count() const { return positions_.size() / 3; }
   [[nodiscard]] std::string unknown_vertex(std::int64_t index) const {
-    return " refers to vertex " + std::to_string(index) + ", but the file has " + std::to_string(vertex_count()) +
-           (vertex_count() == 1 ? " vertex" : " vertices");
+    return " refers to vertex " + std::to_string(index) + ", but the file has " +
+           counted(vertex_count(), "vertex", "vertices");
   }
 
   const std::string& name_;

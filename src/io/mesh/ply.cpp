@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/bits.h"
+#include "core/text.h"
 #include "io/bytes/scan.h"
 #include "io/mesh/ply_header.h"
 #include "io/mesh/polygon_builder.h"
@@ -203,8 +204,8 @@ class BinarySource {
     return true;
   }
   bool fail_at_end() {
-    message_ = "the file is cut off, since only " + std::to_string(bytes_left()) +
-               " bytes are left for this row; copy or export it again";
+    message_ = "the file is cut off, since only " + counted(bytes_left(), "byte is", "bytes are") +
+               " left for this row; copy or export it again";
     return false;
   }
   // Reports an error at the value that was read last. Returns false.
@@ -281,7 +282,7 @@ class BodyReader {
       for (const Property& property : element.properties) row_bytes += Source::fewest_bytes(property);
       if (element.count > left / row_bytes)
         return invalid_input(name_ + ", " + source_.place(),
-                             "the file is too short for the " + std::to_string(element.count) + " elements " +
+                             "the file is too short for the " + counted(element.count, "element", "elements") + " " +
                                  scan::quoted(element.name) + " in its header; copy or export it again");
       left -= element.count * row_bytes;
     }
@@ -347,8 +348,7 @@ class BodyReader {
       if (!source_.integer(property.type, vertex)) return false;
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count())
         return fail("corner " + std::to_string(c) + " refers to vertex " + std::to_string(vertex) +
-                    ", but the file has " + std::to_string(vertex_count()) +
-                    (vertex_count() == 1 ? " vertex" : " vertices"));
+                    ", but the file has " + counted(vertex_count(), "vertex", "vertices"));
       if (!faces_.add_corner(static_cast<std::uint32_t>(vertex)))
         return fail("the mesh has more than 4,294,967,295 corners");
     }

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "core/blocks.h"
+#include "core/text.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/curve_builder.h"
 #include "normals/curves/curve_count.h"
@@ -38,9 +39,8 @@ constexpr std::size_t kElementsOfManyTimes = 8192;
 Status check_positions(const Topology& topology, VectorView<const float> positions, std::size_t keyframe) {
   const std::string place = "keyframe " + std::to_string(keyframe);
   if (positions.count != topology.vertex_count()) {
-    return invalid_input(place, "the keyframe has " + std::to_string(positions.count) +
-                                    " positions, but the mesh has " + std::to_string(topology.vertex_count()) +
-                                    " vertices");
+    return invalid_input(place, "the keyframe has " + counted(positions.count, "position", "positions") +
+                                    ", but the mesh has " + counted(topology.vertex_count(), "vertex", "vertices"));
   }
   for (std::size_t i = 0; i < positions.count; ++i) {
     if (!is_finite(to_double(positions[i])))
@@ -569,8 +569,8 @@ Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte
   const std::size_t each = bytes_of(format);
   if (bytes.size() != size() * each)
     return Error{ErrorCode::kUsage, "bytes",
-                 "the buffer has " + std::to_string(bytes.size()) + " bytes, but must have " + std::to_string(each) +
-                     " for each of the " + std::to_string(size()) + " normals"};
+                 "the buffer has " + counted(bytes.size(), "byte", "bytes") + " for " +
+                     counted(size(), "normal", "normals") + ", but must have " + std::to_string(each) + " for each"};
   for (std::size_t i = 0; i < size(); ++i) {
     const std::size_t element = parts.shares ? parts.groups->element_of_output()[i] : i;
     write_control_normals(control_normals_of(parts.curves, element), format, bytes.data() + each * i);

@@ -10,6 +10,7 @@
 
 #include "chronormal/normals/control_normals.h"
 #include "core/portable_math.h"
+#include "core/text.h"
 #include "normals/groups/corner_sets.h"
 #include "normals/groups/rings.h"
 #include "normals/groups/sides.h"
@@ -203,8 +204,8 @@ Result<NormalGroups> NormalGroups::by_smoothing_group(const Topology& topology, 
                                                       std::span<const std::uint32_t> group_of_face) {
   assert(points.point_of_vertex.size() == topology.vertex_count());
   if (group_of_face.size() != topology.face_count())
-    return invalid_input("", "the list of smoothing groups has " + std::to_string(group_of_face.size()) +
-                                 " entries for " + std::to_string(topology.face_count()) + " faces");
+    return invalid_input("", "the list of smoothing groups has " + counted(group_of_face.size(), "entry", "entries") +
+                                 " for " + counted(topology.face_count(), "face", "faces"));
   CornerSets sets(topology.corner_count());
   const Listing around = corners_of_points(topology, points);
   const std::vector<std::uint32_t> face_of_corner = face_of_each_corner(topology);
@@ -228,8 +229,8 @@ Result<NormalGroups> NormalGroups::by_split_normals(const Topology& topology, co
   if (!(0 <= degrees && degrees <= 45))
     return Error{ErrorCode::kUsage, "", "the tolerance of stored normals must be from 0 to 45 degrees"};
   if (normal_of_corner.count != topology.corner_count())
-    return invalid_input("", "the list of normals has " + std::to_string(normal_of_corner.count) + " entries for " +
-                                 std::to_string(topology.corner_count()) + " corners");
+    return invalid_input("", "the list of normals has " + counted(normal_of_corner.count, "entry", "entries") +
+                                 " for " + counted(topology.corner_count(), "corner", "corners"));
   for (std::size_t c = 0; c < normal_of_corner.count; ++c) {
     const Vec3f n = normal_of_corner[c];
     if (!std::isfinite(n.x) || !std::isfinite(n.y) || !std::isfinite(n.z))

@@ -11,6 +11,7 @@
 #include "core/blocks.h"
 #include "core/float32.h"
 #include "core/portable_math.h"
+#include "core/text.h"
 #include "io/bytes/checksum.h"
 #include "motion/segment_end.h"
 #include "workflow/audit/measure.h"
@@ -153,14 +154,14 @@ std::uint32_t checksum_of_flags(const std::vector<bool>& flags) {
 Status check_normals(const Motion& motion, const StoredNormals& normals) {
   const std::size_t count = normals.of_keyframes.size(), corners = motion.topology.corner_count();
   if (count > 1 && count != motion.keyframes.size())
-    return invalid_input("", "the normals belong to " + std::to_string(count) + " keyframes, but the motion has " +
-                                 std::to_string(motion.keyframes.size()));
+    return invalid_input("", "the normals belong to " + counted(count, "keyframe", "keyframes") +
+                                 ", but the motion has " + grouped(motion.keyframes.size()));
   for (std::size_t k = 0; k < count; ++k) {
     const std::vector<float>& values = normals.of_keyframes[k];
     const std::string place = "keyframe " + std::to_string(k);
     if (values.size() != 3 * corners)
-      return invalid_input(place,
-                           "the keyframe must have one normal for each of its " + std::to_string(corners) + " corners");
+      return invalid_input(
+          place, "the keyframe must have one normal for each of its " + counted(corners, "corner", "corners"));
     if (!std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
       return invalid_input(place, "a normal is NaN or infinite");
   }

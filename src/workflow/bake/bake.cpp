@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "chronormal/analysis/quality.h"
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 #include "workflow/bake/candidates/chooser.h"
 #include "workflow/bake/deltas/candidate.h"
@@ -415,9 +416,9 @@ Result<GltfBake> bake(const GltfDocument& document, const BakeOptions& asked, Gl
   result.changed = !result.pointers.empty();
   result.added_bytes = edit.added_bytes();
   if (options.most_bytes && result.added_bytes > *options.most_bytes) {
-    return invalid_input(document.name(), "the new normals need " + std::to_string(result.added_bytes) +
-                                              " bytes, but --max-bytes allows only " +
-                                              std::to_string(*options.most_bytes) + "; allow more");
+    return invalid_input(document.name(), "the new normals need " + counted(result.added_bytes, "byte", "bytes") +
+                                              ", but --max-bytes allows only " + grouped(*options.most_bytes) +
+                                              "; allow more");
   }
   result.warnings = said_once(warnings);
   result.drivers = drivers_file(document, result.meshes);

@@ -15,6 +15,7 @@
 #include "chronormal/normals/blend_normals.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
+#include "core/text.h"
 #include "core/vector_area.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
@@ -306,8 +307,9 @@ std::size_t fitted_rows(std::size_t rows, std::size_t targets) { return std::max
 Status check_memory(const std::string& place, std::size_t rows, std::size_t targets) {
   // fitted_rows() cannot overflow, because a list of so many targets would not fit into memory.
   if (targets == 0 || fitted_rows(rows, targets) <= kMostWeights / targets) return Success{};
-  return invalid_input(place, std::to_string(targets).append(" targets are too many for ") + std::to_string(rows) +
-                                  " poses; compare fewer poses");
+  return invalid_input(place, "the weights of " + counted(rows, "pose", "poses") + " of " +
+                                  counted(targets, "target", "targets") +
+                                  " would need too much memory; compare fewer poses");
 }
 
 // Draws random weights for `own`, the mesh's own targets. Returns rows with the weights of all targets, in which the
@@ -403,10 +405,7 @@ Result<BlendComparison> compare_blends(const Motion& star, const BlendCompareOpt
   Result<BlendSet> set = blend_set_of(star);
   if (!set) return set.error();
   const std::size_t targets = set.value().targets.size();
-  if (options.active > targets)
-    return misuse("", std::string("the input has only ")
-                          .append(std::to_string(targets))
-                          .append(targets == 1 ? " target" : " targets"));
+  if (options.active > targets) return misuse("", "the input has only " + counted(targets, "target", "targets"));
   if (const Status status = check_memory("", options.rows, targets); !status) return status.error();
 
   Subject subject;
@@ -483,8 +482,7 @@ Result<BlendComparison> compare_blends(const GltfDocument& document, const Blend
       return misuse("", "the animation drives no mesh with morph targets and normals; choose another animation");
     return invalid_input(document.name(), "the file has no mesh with both morph targets and normals");
   }
-  if (options.active > most)
-    return misuse("", std::string("no mesh has more than ").append(std::to_string(most)).append(" targets"));
+  if (options.active > most) return misuse("", "no mesh has more than " + counted(most, "target", "targets"));
   const auto progress = [&] {
     if (options.progress) options.progress(std::min(++done, total), total);
   };

@@ -16,6 +16,7 @@
 #include "chronormal/motion/paths.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/schemes/scheme.h"
+#include "core/text.h"
 #include "normals/control/shared_faces.h"
 #include "workflow/sample/scheme_normals.h"
 
@@ -175,8 +176,8 @@ Status check(const Motion& motion, const TruthOptions& options) {
   if (count < 3)
     return refuse("the motion has only two keyframes, so none can be left out to compare with; leave --truth out");
   if (count <= options.every)
-    return refuse("only the first of " + std::to_string(count) +
-                  " keyframes would be kept, but at least two are needed; give --truth " + std::to_string(count - 1) +
+    return refuse("only the first of " + counted(count, "keyframe", "keyframes") +
+                  " would be kept, but at least two are needed; give --truth " + std::to_string(count - 1) +
                   " or less");
   return Success{};
 }

@@ -101,8 +101,8 @@ Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansi
   const std::size_t columns = table.columns();
   if (columns > 0 && rows > kMostErrorBytes / sizeof(float) / columns)
     return Error{ErrorCode::kUsage, table.name,
-                 "the errors of " + grouped(rows) + " samples of " + grouped(columns) + ' ' +
-                     std::string(element_kind_name(table.kind)) +
+                 "the errors of " + counted(rows, "sample", "samples") + " of " +
+                     counted(columns, one_element(table.kind), element_kind_name(table.kind)) +
                      " take more than 1 GiB; ask for fewer samples, or for a part of the input"};
   // Cannot overflow, since the table of each mesh has at most 1 GiB.
   earlier += std::uint64_t{sizeof(float)} * rows * columns;

@@ -124,7 +124,8 @@ void add_surface_trouble(const Inspected& input, Troubles& troubles) {
                       "commands that need triangles cut such a face into triangles that do not overlap");
   std::string meaning = "shading has a seam there, unless such vertices are taken as one point";
   if (const std::size_t split = input.gltf ? input.gltf->split : 0; split > 0)
-    meaning = "shading has a seam there; " + grouped(split) + " of them are hard edges in the stored normals too";
+    meaning = "shading has a seam there; " + counted(split, "of them is a hard edge", "of them are hard edges") +
+              " in the stored normals too";
   troubles.add("doubled_vertex", found.doubled.count,
                have(vertices(found.doubled.count), found.doubled.count) +
                    " the same place as another vertex at all times, along " + edges(surface.seam_edges.count),

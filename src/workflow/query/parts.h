@@ -14,6 +14,7 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/query.h"
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 #include "workflow/segments/segment_run.h"
 
@@ -73,8 +74,8 @@ class RowsInBounds {
   /// Errors: those of Expansion::check(), as soon as the sum is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
-    return expansion_.check(bytes_,
-                            "the answer, after " + std::to_string(done) + " of " + std::to_string(total) + " segments");
+    return expansion_.check(
+        bytes_, "the answer, after " + std::to_string(done) + " of " + counted(total, "segment", "segments"));
   }
 
  private:

@@ -170,7 +170,8 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
     const std::size_t step = (of_samples + most - 1) / most;
     if (step > 1) {
       thin_samples(model, step);
-      note("Only one of " + grouped(step) + " samples of a motion can be shown here, and those of the worst places.");
+      note("Only one of " + counted(step, "sample", "samples") +
+           " of a motion can be shown here, and those of the worst places.");
     }
   }
   if (const std::size_t all = bytes_of(model); all > most_bytes) {
@@ -182,8 +183,9 @@ void thin_out(ReportModel& model, std::size_t most_bytes) {
       make_coarse(model, p, static_cast<std::size_t>(share * static_cast<double>(vertices)));
       note((part.name.empty() ? std::string("The mesh") : printable(part.name)) + " is shown with " +
            grouped((part.triangles.size() + part.coarse.size()) / 3) + " of " +
-           counted(before, "triangle", "triangles") + "; " + grouped(part.triangles.size() / 3) +
-           " of them, around the worst places, are as in the file and have errors.");
+           counted(before, "triangle", "triangles") + "; " +
+           counted(part.triangles.size() / 3, "of them, around the worst places, is as in the file and has errors.",
+                   "of them, around the worst places, are as in the file and have errors."));
     }
   }
 }

@@ -33,10 +33,6 @@ constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 Error misuse(std::string message) { return Error{ErrorCode::kUsage, "", std::move(message)}; }
 
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
 float clamped_to_float(double value) { return static_cast<float>(std::clamp(value, -kLargestFloat, kLargestFloat)); }
 
 std::vector<float> positions_at(const Segment& segment, double t) {
@@ -107,8 +103,8 @@ Status check_weights(const Motion& motion, std::span<const double> weights) {
     return misuse("weights are only for blend shapes; give times for this motion");
   const std::size_t targets = motion.segments.size();
   if (weights.size() != targets)
-    return misuse("the input has " + counted(targets, "target") + ", but the pose has " +
-                  counted(weights.size(), "weight") + "; give one weight for each target");
+    return misuse("the input has " + counted(targets, "target", "targets") + ", but the pose has " +
+                  counted(weights.size(), "weight", "weights") + "; give one weight for each target");
   for (std::size_t i = 0; i < targets; ++i) {
     if (!std::isfinite(weights[i])) return misuse("the weight of target " + std::to_string(i) + " is NaN or infinite");
   }

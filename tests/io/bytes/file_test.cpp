@@ -152,7 +152,7 @@ TEST(FileBytes, streams_are_read_up_to_a_limit) {
     EXPECT_EQ(file.ok(), most == 100000);
     if (!file) {
       EXPECT_EQ(file.error().text(),
-                pipe + ": the stream is longer than 99999 bytes; save its data to a file, and name that file");
+                pipe + ": the stream is longer than 99,999 bytes; save its data to a file, and name that file");
     }
   }
   const std::string mapped = folder.write("file", std::string(100000, 'x'));

@@ -72,11 +72,13 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
       "a.mc, byte 36: the points have no time, since neither TIME nor STIM comes before them; export the cache again");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", -1) + writer.chunk("FVCA", ""), writer.header(0)),
-      "a.mc, byte 84: the channel 'a' should have -1 points, which do not fit its 0 bytes; export the cache again");
+      "a.mc, byte 84: the number of points of the channel 'a' is -1, which does not fit its 0 bytes; export the cache "
+      "again");
   EXPECT_EQ(
       error_with(writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) + writer.chunk("DVCA", std::string(12, 'x')),
                  writer.header(0)),
-      "a.mc, byte 84: the channel 'a' should have 1 points, which do not fit its 12 bytes; export the cache again");
+      "a.mc, byte 84: the number of points of the channel 'a' is 1, which does not fit its 12 bytes; export the cache "
+      "again");
   EXPECT_EQ(error_with(writer.chunk("TIME", "12345"), ""), "a.mc, byte 20: the chunk 'TIME' must have 4 bytes");
   EXPECT_EQ(error_with(writer.points<double>("a", {1, 2, 3}) + writer.chunk("CHNM", "a") + writer.integer("SIZE", 1) +
                            writer.chunk("DVCA", test::raw<double>({1, 1e39, 1}, true)),
@@ -89,8 +91,9 @@ TEST(ReadMayaPoints, errors_say_where_and_what) {
             "a.mc, byte 92: the channel 'a' has no points; export the cache again");
   std::string bytes = test::small_maya<float>(true);
   bytes.replace(8, 8, "\x7F\xFF\xFF\xFF\xFF\xFF\xFF\xFF");
-  EXPECT_NE(error_text(read_maya_points(bytes, "a.mc")).find("the chunk 'FOR8' should have 9223372036854775807 bytes"),
-            std::string::npos);
+  EXPECT_NE(
+      error_text(read_maya_points(bytes, "a.mc")).find("the chunk 'FOR8' should have 9,223,372,036,854,775,807 bytes"),
+      std::string::npos);
 }
 
 TEST(ReadMayaDescription, reads_what_matters_and_passes_over_the_rest) {

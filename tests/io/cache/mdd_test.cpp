@@ -40,10 +40,12 @@ TEST(ReadMdd, errors_say_where_and_what) {
   EXPECT_EQ(error_of("abc"),
             "walk.mdd, byte 3: the file is cut off inside its header of 8 bytes; copy or export it again");
   EXPECT_EQ(error_of(patched(4, "\x80\0\0\0"s)),
-            "walk.mdd, byte 8: the header has -2147483648 vertices and 2 samples, but both must be at least 1");
-  EXPECT_EQ(error_of(patched(4, "\x7F\xFF\xFF\xFF")),
-            "walk.mdd, byte 8: the file is too short for the 2 samples of 2147483647 vertices in its header; copy or "
-            "export it again");
+            "walk.mdd, byte 8: the number of vertices is -2147483648 and the number of samples is 2, but both must be "
+            "at least 1");
+  EXPECT_EQ(
+      error_of(patched(4, "\x7F\xFF\xFF\xFF")),
+      "walk.mdd, byte 8: the file is too short for the 2 samples of 2,147,483,647 vertices in its header; copy or "
+      "export it again");
   EXPECT_EQ(
       error_of(test::small_mdd(0, 1) + "xxxx"),
       "walk.mdd, byte 8: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");

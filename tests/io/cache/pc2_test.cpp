@@ -45,13 +45,16 @@ TEST(ReadPc2, errors_say_where_and_what) {
   for (const std::string& step : {"\0\0\0\0"s, "\0\0\x80\xBF"s, "\0\0\x80\x7F"s})
     EXPECT_EQ(error_of(patched(24, step)),
               "walk.pc2, byte 24: the sample rate, in frames, must be a number greater than 0");
-  EXPECT_EQ(error_of(patched(16, "\0"s)),
-            "walk.pc2, byte 32: the header has 0 vertices and 2 samples, but both must be at least 1");
-  EXPECT_EQ(error_of(patched(28, "\xFF\xFF\xFF\xFF")),
-            "walk.pc2, byte 32: the header has 3 vertices and -1 samples, but both must be at least 1");
-  EXPECT_EQ(error_of(patched(28, "\xFF\xFF\xFF\x7F")),
-            "walk.pc2, byte 32: the file is too short for the 2147483647 samples of 3 vertices in its header; copy or "
-            "export it again");
+  EXPECT_EQ(
+      error_of(patched(16, "\0"s)),
+      "walk.pc2, byte 32: the number of vertices is 0 and the number of samples is 2, but both must be at least 1");
+  EXPECT_EQ(
+      error_of(patched(28, "\xFF\xFF\xFF\xFF")),
+      "walk.pc2, byte 32: the number of vertices is 3 and the number of samples is -1, but both must be at least 1");
+  EXPECT_EQ(
+      error_of(patched(28, "\xFF\xFF\xFF\x7F")),
+      "walk.pc2, byte 32: the file is too short for the 2,147,483,647 samples of 3 vertices in its header; copy or "
+      "export it again");
   EXPECT_EQ(
       error_of(test::small_pc2(0, 1) + "x"),
       "walk.pc2, byte 32: the file is too long for the 2 samples of 3 vertices in its header; copy or export it again");

@@ -108,7 +108,7 @@ TEST(GlbBuilder, a_file_that_may_not_have_so_many_bytes_gives_none) {
     return Success{};
   });
   ASSERT_FALSE(size.ok());
-  EXPECT_NE(size.error().message.find("but may have at most 1000"), std::string::npos) << size.error().message;
+  EXPECT_NE(size.error().message.find("but may have at most 1,000"), std::string::npos) << size.error().message;
 }
 
 }  // namespace

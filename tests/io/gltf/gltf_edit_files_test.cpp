@@ -275,7 +275,7 @@ TEST(GltfEditFiles, more_than_a_glb_can_hold_is_refused) {
   const Status status = GltfEdit(document.value()).write(folder / "a.glb", false);
   ASSERT_FALSE(status.ok());
   EXPECT_EQ(status.error().code, ErrorCode::kInvalidInput);
-  EXPECT_TRUE(status.error().text().starts_with(folder / "a.glb: the result would have 4294967"))
+  EXPECT_TRUE(status.error().text().starts_with(folder / "a.glb: the result would have 4,294,967"))
       << status.error().text();
   EXPECT_EQ(folder.entry_count(), 2U);
 }

@@ -178,11 +178,11 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
        [](Skinned& s) { s.builder.json["skins"] = {5}; }},
       {"a.gltf, /skins/0/joints: the skin has no joints",
        [](Skinned& s) { s.builder.json["skins"][0].erase("joints"); }},
-      {"a.gltf, /skins/0/joints/1: the index is 3, but the file has only 3 nodes",
+      {"a.gltf, /skins/0/joints/1: the index is 3, but the number of nodes is only 3",
        [](Skinned& s) {
          s.builder.json["skins"][0]["joints"] = {1, 3};
        }},
-      {"a.gltf, /skins/0/inverseBindMatrices: the accessor has 1 matrices, but the skin has 2 joints",
+      {"a.gltf, /skins/0/inverseBindMatrices: the accessor has 1 matrix, but the skin has 2 joints",
        [](Skinned& s) {
          s.binds({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}, 1);
        }},
@@ -217,7 +217,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
       {attributes + "/JOINTS_0: accessor 0 must be of type VEC4", [](Skinned& s) { s.joints(0); }},
       {attributes + "/WEIGHTS_0: accessor 4 has a componentType that is not allowed for this use",
        [](Skinned& s) { s.weights(4); }},
-      {attributes + "/WEIGHTS_0: the accessor has 1 elements, but the primitive has 4 positions",
+      {attributes + "/WEIGHTS_0: the accessor has 1 element, but the primitive has 4 positions",
        [](Skinned& s) {
          s.weights(s.builder.add_accessor("VEC4", std::vector<float>{1, 0, 0, 0}));
        }},
@@ -240,7 +240,7 @@ TEST(GltfSkin, every_fault_is_told_with_its_place) {
 TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
   const std::string sampler = "a.gltf, /animations/0/samplers/0";
   const std::vector<Case> cases = {
-      {sampler + "/output: the output has 3 values, but 2 keys need 1 each",
+      {sampler + "/output: the output has 3 values for 2 keys, but must have 1 for each key",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3");
        }},
@@ -265,7 +265,7 @@ TEST(GltfSkin, every_fault_of_an_animation_of_joints_is_told_with_its_place) {
          s.builder.json["nodes"][1].erase("translation");
          s.builder.json["nodes"][1]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
        }},
-      {"a.gltf, /animations/0/channels/0/target/node: the index is 9, but the file has only 3 nodes",
+      {"a.gltf, /animations/0/channels/0/target/node: the index is 9, but the number of nodes is only 3",
        [](Skinned& s) {
          s.animate("scale", {1, 1, 1, 1, 1, 1}, "VEC3");
          s.builder.json["animations"][0]["channels"][0]["target"]["node"] = 9;

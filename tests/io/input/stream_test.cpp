@@ -16,6 +16,7 @@
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
 #include "chronormal/workflow/sample.h"
+#include "core/text.h"
 #include "io/input/input_identity.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/gltf_documents.h"
@@ -249,8 +250,7 @@ TEST(InputStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_not
   EXPECT_EQ(written.error().place, folder / "walk.pc2");
   EXPECT_EQ(written.error().message.find("another program has shortened the file from "), 0U)
       << written.error().message;
-  EXPECT_NE(written.error().message.find(" to " + std::to_string(kEnd) + " bytes while it was read"),
-            std::string::npos);
+  EXPECT_NE(written.error().message.find(" to " + grouped(kEnd) + " bytes while it was read"), std::string::npos);
   EXPECT_EQ(folder.entry_count(), before);
 }
 

@@ -199,7 +199,7 @@ TEST(MakeHumanTarget, gzip_may_unpack_to_a_stated_size_and_not_a_byte_more) {
   };
   EXPECT_EQ(std::string("3 0 0 .5\n1 -.25 .125 .1\n#").size(), 25U);
   expect_lift(padded(most_target_bytes(4) + 1));
-  EXPECT_TRUE(error_text(padded(most_target_bytes(4) + 2)).find("unpacks to more than 66560 bytes") !=
+  EXPECT_TRUE(error_text(padded(most_target_bytes(4) + 2)).find("unpacks to more than 66,560 bytes") !=
               std::string::npos);
   // Tests a file with many empty gzip members, and then a file whose members are large only together.
   std::string members;

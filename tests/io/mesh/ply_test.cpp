@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "tests/support/ply_bytes.h"
 #include "tests/support/random_mesh.h"
 
@@ -221,12 +222,12 @@ TEST(ReadPly, absurd_counts_are_refused_before_memory_is_taken) {
                                   "4611686018427387904", "9223372036854775808", "18446744073709551615"}) {
     for (const char* const encoding : {"ascii", "binary_little_endian", "binary_big_endian"}) {
       const std::string vertices = error_of(test::ply_header(encoding, count, "1") + kRows);
-      EXPECT_NE(vertices.find(std::string("the file is too short for the ") + count +
+      EXPECT_NE(vertices.find("the file is too short for the " + grouped(std::stoull(count)) +
                               " elements 'vertex' in its header; copy or export it again"),
                 std::string::npos)
           << vertices;
       const std::string faces = error_of(test::ply_header(encoding, "1", count) + kRows);
-      EXPECT_NE(faces.find(std::string("the file is too short for the ") + count +
+      EXPECT_NE(faces.find("the file is too short for the " + grouped(std::stoull(count)) +
                            " elements 'face' in its header; copy or export it again"),
                 std::string::npos)
           << faces;

@@ -662,7 +662,7 @@ TEST(BakeSequence, what_cannot_be_written_is_refused) {
   for (const std::size_t most : {std::size_t{0}, std::size_t{2000}, bake(motion, {}).size() - 1}) {
     const Error error = refusal({.most_bytes = most});
     EXPECT_EQ(error.code, ErrorCode::kInvalidInput);
-    EXPECT_NE(error.message.find(std::to_string(most)), std::string::npos) << error.message;
+    EXPECT_NE(error.message.find(grouped(most)), std::string::npos) << error.message;
   }
   EXPECT_TRUE(bake_sequence(motion, {.most_bytes = bake(motion, {}).size()}, glb).ok());
   glb = "untouched";

@@ -14,6 +14,7 @@
 #include "chronormal/io/input.h"
 #include "chronormal/io/output.h"
 #include "chronormal/workflow/bake.h"
+#include "core/text.h"
 #include "tests/support/cache_bytes.h"
 #include "tests/support/child_process.h"
 #include "tests/support/read_input.h"
@@ -223,8 +224,7 @@ TEST(BakeStream, a_file_that_is_cut_while_it_is_read_is_an_error_and_leaves_noth
       ASSERT_FALSE(baked.ok()) << name_of(encoding) << step;
       EXPECT_EQ(baked.error().code, ErrorCode::kFailed);
       EXPECT_EQ(baked.error().place, folder / "walk.pc2");
-      EXPECT_NE(baked.error().message.find(" to " + std::to_string(kEnd) + " bytes while it was read"),
-                std::string::npos)
+      EXPECT_NE(baked.error().message.find(" to " + grouped(kEnd) + " bytes while it was read"), std::string::npos)
           << baked.error().message;
       EXPECT_EQ(folder.entry_count(), before) << name_of(encoding) << step;
     }

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/bytes/expansion.h"
 #include "io/gltf/decode/gltf_octahedral.h"
@@ -96,13 +97,13 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
                      : "the data of this buffer are missing, since the buffer has no uri and only buffer 0 may use the "
                        "BIN chunk");
     if (origin_.bin->size() < declared.byte_length)
-      return invalid_input(place(pointer + "/byteLength"),
-                           "the BIN chunk has only " + std::to_string(origin_.bin->size()) +
-                               " bytes, but byteLength is " + std::to_string(declared.byte_length));
+      return invalid_input(place(pointer + "/byteLength"), "the BIN chunk has only " +
+                                                               counted(origin_.bin->size(), "byte", "bytes") +
+                                                               ", but byteLength is " + grouped(declared.byte_length));
     if (origin_.bin->size() - declared.byte_length > 3)
       return invalid_input(place(pointer + "/byteLength"),
-                           "the BIN chunk has " + std::to_string(origin_.bin->size()) +
-                               " bytes, but may have at most 3 bytes more than byteLength says");
+                           "the BIN chunk has " + counted(origin_.bin->size(), "byte", "bytes") +
+                               ", but may have at most 3 bytes more than byteLength says");
     return origin_.bin->substr(0, declared.byte_length);
   }
   if (is_data_uri(*declared.uri)) {
@@ -115,8 +116,8 @@ Result<std::string_view> Bytes::buffer(std::size_t index) {
   Result<FileBytes> file = origin_.open(path.value(), uri_place);
   if (!file) return file.error();
   if (file.value().bytes().size() < declared.byte_length)
-    return invalid_input(uri_place, "the file has " + std::to_string(file.value().bytes().size()) +
-                                        " bytes, but byteLength is " + std::to_string(declared.byte_length));
+    return invalid_input(uri_place, "the file has " + counted(file.value().bytes().size(), "byte", "bytes") +
+                                        ", but byteLength is " + grouped(declared.byte_length));
   return files_.emplace(index, std::move(file).value()).first->second.bytes();
 }
 
@@ -296,7 +297,7 @@ Result<std::vector<std::uint32_t>> Bytes::indices(std::size_t index, std::size_t
     if (result[i] >= vertex_count)
       return invalid_input(accessor_place(index), "index " + std::to_string(i) + " refers to vertex " +
                                                       std::to_string(result[i]) + ", but the primitive has only " +
-                                                      std::to_string(vertex_count) + " vertices");
+                                                      counted(vertex_count, "vertex", "vertices"));
   }
   return result;
 }

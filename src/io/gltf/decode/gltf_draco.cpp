@@ -19,6 +19,7 @@
 #include <draco/metadata/metadata_decoder.h>
 #pragma GCC diagnostic pop
 
+#include "core/text.h"
 #include "io/gltf/decode/gltf_bytes.h"
 
 namespace chronormal::inline internal::gltf {
@@ -127,8 +128,8 @@ Result<std::unique_ptr<draco::Mesh>> decode_mesh(std::string_view bytes, std::si
   if (!mesh)
     return invalid_input(place, std::string("the Draco data cannot be decoded; the decoder says: ").append(reason));
   if (mesh->num_points() != vertex_count)
-    return invalid_input(place, "the Draco data have " + std::to_string(mesh->num_points()) +
-                                    " vertices, but the accessors declare " + std::to_string(vertex_count));
+    return invalid_input(place, "the Draco data have " + counted(mesh->num_points(), "vertex", "vertices") +
+                                    ", but the accessors declare " + grouped(vertex_count));
   return mesh;
 }
 

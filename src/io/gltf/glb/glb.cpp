@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 
 namespace chronormal::inline internal {
@@ -25,8 +26,8 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
   if (word(4) != 2)
     return error(4, "version " + std::to_string(word(4)) + " of GLB cannot be read; export the file as glTF 2.0");
   if (word(8) != bytes.size())
-    return error(8, "the header says that the file has " + std::to_string(word(8)) + " bytes, but it has " +
-                        std::to_string(bytes.size()) + "; copy or export it again");
+    return error(8, "the header says that the file has " + counted(word(8), "byte", "bytes") + ", but it has " +
+                        grouped(bytes.size()) + "; copy or export it again");
 
   GlbChunks chunks;
   for (std::size_t at = kHeaderSize, chunk = 0; at < bytes.size(); ++chunk) {
@@ -35,8 +36,9 @@ Result<GlbChunks> read_glb(std::string_view bytes, const std::string& name) {
     const std::size_t size = word(at), begin = at + kChunkHeaderSize;
     const std::uint32_t type = word(at + 4);
     if (size > bytes.size() - begin)
-      return error(at, "chunk " + std::to_string(chunk) + " should have " + std::to_string(size) + " bytes, but only " +
-                           std::to_string(bytes.size() - begin) + " are left in the file; copy or export it again");
+      return error(at, "chunk " + std::to_string(chunk) + " should have " + counted(size, "byte", "bytes") +
+                           ", but only " + counted(bytes.size() - begin, "is left", "are left") +
+                           " in the file; copy or export it again");
     if (size % 4 != 0) return error(at, "the length of chunk " + std::to_string(chunk) + " must be a multiple of 4");
     if ((chunk == 0) != (type == kJson))
       return error(at + 4, chunk == 0 ? "the first chunk must be JSON, but it is not"
@@ -63,8 +65,8 @@ Result<GlbFrame> frame_glb(std::uint64_t json_size, std::optional<std::uint64_t>
   frame.size = kHeaderSize + kChunkHeaderSize + json_size + json_padding +
                (bin_size ? kChunkHeaderSize + *bin_size + bin_padding : 0) + rest_size;
   if (frame.size > ~std::uint32_t{0})
-    return invalid_input(name, "the result would have " + std::to_string(frame.size) +
-                                   " bytes, but a GLB file can have at most 4294967295; write a .gltf file instead");
+    return invalid_input(name, "the result would have " + counted(frame.size, "byte", "bytes") +
+                                   ", but a GLB file can have at most 4,294,967,295; write a .gltf file instead");
   const auto add_word = [](std::string& bytes, std::uint64_t word) {
     binary::append(bytes, static_cast<std::uint32_t>(word), std::endian::little);
   };

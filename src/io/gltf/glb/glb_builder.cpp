@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/glb/glb.h"
 
@@ -97,8 +98,8 @@ Result<std::size_t> GlbBuilder::finish(const Take& take) {
   if (!framed) return framed.error();
   const GlbFrame& frame = framed.value();
   if (frame.size > most_bytes_)
-    return invalid_input("", "the result would have " + std::to_string(frame.size) + " bytes, but may have at most " +
-                                 std::to_string(most_bytes_));
+    return invalid_input("", "the result would have " + counted(frame.size, "byte", "bytes") +
+                                 ", but may have at most " + grouped(most_bytes_));
   const auto size = static_cast<std::size_t>(frame.size);
   for (const std::string_view piece : {std::string_view(frame.before_json), std::string_view(text),
                                        std::string_view(frame.behind_json), std::string_view(indices_)}) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "io/gltf/model/gltf_model_parser.h"
@@ -179,7 +180,7 @@ void Parser::parse_view(const JsonView& item, BufferView& view) {
   const std::size_t available = model_.buffers[view.buffer].byte_length;
   if (view.offset > available || view.length > available - view.offset)
     return item.complain("the buffer view ends at byte " + std::to_string(view.offset + view.length) + ", but buffer " +
-                         std::to_string(view.buffer) + " has only " + std::to_string(available) + " bytes");
+                         std::to_string(view.buffer) + " has only " + counted(available, "byte", "bytes"));
   if (const std::optional<JsonView> extensions = item.object("extensions")) {
     for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
       const std::optional<JsonView> meshopt = extensions->object(name);
@@ -220,7 +221,7 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
   const std::size_t available = model_.buffers[result.buffer].byte_length;
   if (result.offset > available || result.length > available - result.offset)
     item.complain("the compressed data end at byte " + std::to_string(result.offset + result.length) + ", but buffer " +
-                  std::to_string(result.buffer) + " has only " + std::to_string(available) + " bytes");
+                  std::to_string(result.buffer) + " has only " + counted(available, "byte", "bytes"));
   const bool of_attributes = result.mode == Mode::kAttributes;
   const bool stride_ok =
       of_attributes ? result.stride % 4 == 0 && result.stride > 0 : result.stride == 2 || result.stride == 4;
@@ -237,14 +238,14 @@ std::optional<Compression> Parser::parse_compression(const JsonView& item, const
     item.complain("count", "count must be a multiple of 3 for triangles");
   if (complaint_.first()) return std::nullopt;
   if (result.count > view.length / result.stride || result.count * result.stride != view.length)
-    item.complain("count", std::to_string(result.count) + " elements of " + std::to_string(result.stride) +
-                               " bytes do not fill the buffer view, which has " + std::to_string(view.length) +
-                               " bytes");
+    item.complain("count", counted(result.count, "element", "elements") + " of " +
+                               counted(result.stride, "byte", "bytes") + (result.count == 1 ? " does" : " do") +
+                               " not fill the buffer view, which has " + counted(view.length, "byte", "bytes"));
   // A bit of the compressed data stands for at most 8 bytes of the result, and a byte for at most 64. This check
   // refuses results that are longer than four times as much, because a small file must not ask for much memory.
   if (view.length / 256 > result.length)
-    item.complain("byteLength", "the compressed data are too short for the " + std::to_string(view.length) +
-                                    " bytes that they should hold");
+    item.complain("byteLength", "the compressed data are too short for the " + counted(view.length, "byte", "bytes") +
+                                    " that they should hold");
   return result;
 }
 
@@ -325,7 +326,7 @@ void Parser::parse_transform(const JsonView& item, std::size_t index) {
     const std::optional<JsonView> array = item.array(key);
     if (!array) return false;
     if (array->size() != count) {
-      array->complain("the array must have " + std::to_string(count) + " numbers, but has " +
+      array->complain("the array must have " + counted(count, "number", "numbers") + ", but has " +
                       std::to_string(array->size()));
       return false;
     }
@@ -368,8 +369,8 @@ void Parser::check_nodes(const JsonView& root) {
     const std::size_t mesh = node.mesh.value_or(0);
     if (node.mesh && mesh >= model_.meshes.size())
       complaint_.add(node_pointer(i) + "/mesh", "the node refers to mesh " + std::to_string(mesh) +
-                                                    ", but the file has " + std::to_string(model_.meshes.size()) +
-                                                    (model_.meshes.size() == 1 ? " mesh" : " meshes"));
+                                                    ", but the file has " +
+                                                    counted(model_.meshes.size(), "mesh", "meshes"));
     else if (!node.weights.empty())
       check_weights(node_pointer(i), node.weights, node.mesh ? model_.meshes[mesh].target_count : 0);
   }
@@ -412,7 +413,7 @@ void Parser::connect_nodes() {
     const std::string pointer = node_pointer(parent) + "/children";
     if (child >= count)
       return complaint_.add(pointer, "the node refers to node " + std::to_string(child) + ", but the file has " +
-                                         std::to_string(count) + (count == 1 ? " node" : " nodes"));
+                                         counted(count, "node", "nodes"));
     if (model_.nodes[child].parent)
       return complaint_.add(pointer, "node " + std::to_string(child) +
                                          " is listed as a child more than once, but a node has at most one parent");
@@ -458,9 +459,9 @@ std::vector<double> Parser::parse_weights(const JsonView& item) {
 
 void Parser::check_weights(const std::string& pointer, const std::vector<double>& weights, std::size_t target_count) {
   if (weights.size() != target_count)
-    complaint_.add(pointer + "/weights", "the list has " + std::to_string(weights.size()) +
-                                             " weights, but the mesh has " + std::to_string(target_count) +
-                                             " morph targets");
+    complaint_.add(pointer + "/weights", "the list has " + counted(weights.size(), "weight", "weights") +
+                                             ", but the mesh has " +
+                                             counted(target_count, "morph target", "morph targets"));
 }
 
 Placement placement_of(const Model& model, std::size_t node) noexcept {

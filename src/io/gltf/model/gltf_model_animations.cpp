@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/charconv.h"
+#include "core/text.h"
 #include "io/gltf/model/gltf_model_parser.h"
 
 namespace chronormal::inline internal::gltf {
@@ -267,9 +268,11 @@ bool Parser::parse_sampler(const JsonView& animation, std::size_t channel_index,
   if (track.interpolation == GltfInterpolation::kCubicSpline) per_key *= 3;
   const std::size_t given = model_.accessors[*output].count;
   if (given % per_key != 0 || given / per_key != track.key_count) {
-    sampler.complain("output", "the output has " + std::to_string(given) +
-                                   (use == Use::kWeights ? " weights" : " values") + ", but " +
-                                   std::to_string(track.key_count) + " keys need " + std::to_string(per_key) + " each");
+    sampler.complain(
+        "output", "the output has " +
+                      (use == Use::kWeights ? counted(given, "weight", "weights") : counted(given, "value", "values")) +
+                      " for " + counted(track.key_count, "key", "keys") + ", but must have " + grouped(per_key) +
+                      " for each key");
     return false;
   }
   if (track.interpolation == GltfInterpolation::kCubicSpline && track.key_count < 2) {

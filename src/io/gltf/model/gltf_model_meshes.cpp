@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/charconv.h"
+#include "core/text.h"
 #include "io/bytes/binary.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "io/gltf/model/gltf_model_parser.h"
@@ -86,9 +87,9 @@ void Parser::parse_primitive(const JsonView& item, GltfMesh& mesh, std::vector<P
     if (complaint_.first()) return;
     for (const auto& [key, index] : {std::pair("NORMAL", source.base.normal), {"TANGENT", source.base.tangent}}) {
       if (index && model_.accessors[*index].count != primitive.vertex_count)
-        attributes->complain(key, "the accessor has " + number(model_.accessors[*index].count) +
-                                      " elements, but the primitive has " + number(primitive.vertex_count) +
-                                      " positions");
+        attributes->complain(key, "the accessor has " + counted(model_.accessors[*index].count, "element", "elements") +
+                                      ", but the primitive has " +
+                                      counted(primitive.vertex_count, "position", "positions"));
     }
   }
   source.indices = parse_use(item, "indices", Use::kIndices, primitive.has_draco);
@@ -112,8 +113,8 @@ void Parser::fill_targets(const JsonView& primitives, GltfMesh& mesh, std::vecto
     const std::size_t own = sources[p].targets.size();
     if (own < mesh.target_count) {  // own + 1 <= target_count, so target_count is not 0
       (void)understands([&] {
-        item.complain("targets", "the primitive has " + number(own) + " targets, but another one of its mesh has " +
-                                     number(mesh.target_count) +
+        item.complain("targets", "the primitive has " + counted(own, "target", "targets") +
+                                     ", but another one of its mesh has " + grouped(mesh.target_count) +
                                      "; the missing targets are read as if they moved nothing here");
       });
       sources[p].targets.resize(mesh.target_count);
@@ -166,8 +167,8 @@ void Parser::parse_targets(const JsonView& item, GltfPrimitive& primitive, Primi
       if (!base) return target.complain(key, "the target has this attribute, but the primitive does not");
       result = parse_use(target, key, use);
       if (result && model_.accessors[*result].count != primitive.vertex_count)
-        target.complain(key, "the target has " + number(model_.accessors[*result].count) +
-                                 " elements, but the primitive has " + number(primitive.vertex_count) + " vertices");
+        target.complain(key, "the target has " + counted(model_.accessors[*result].count, "element", "elements") +
+                                 ", but the primitive has " + counted(primitive.vertex_count, "vertex", "vertices"));
     };
     read("POSITION", Use::kMovedPosition, source.base.position, moved.position);
     read("NORMAL", Use::kMovedNormal, source.base.normal, moved.normal);
@@ -196,9 +197,10 @@ void Parser::parse_influences(const JsonView& item, PrimitiveSource& source) {
       const std::optional<std::size_t> index = parse_use(attributes, key.c_str(), use, id.has_value());
       if (index && source.base.position &&
           model_.accessors[*index].count != model_.accessors[*source.base.position].count)
-        attributes.complain(key.c_str(), "the accessor has " + number(model_.accessors[*index].count) +
-                                             " elements, but the primitive has " +
-                                             number(model_.accessors[*source.base.position].count) + " positions");
+        attributes.complain(key.c_str(),
+                            "the accessor has " + counted(model_.accessors[*index].count, "element", "elements") +
+                                ", but the primitive has " +
+                                counted(model_.accessors[*source.base.position].count, "position", "positions"));
       return AttributeSource{index.value_or(0), id};
     };
     const AttributeSource joints = read(joints_key, Use::kJoints), weights = read(weights_key, Use::kJointWeights);
@@ -226,8 +228,9 @@ void Parser::parse_skin(const JsonView& item, SkinSource& skin) {
   }
   skin.inverse_binds = parse_use(item, "inverseBindMatrices", Use::kInverseBinds);
   if (skin.inverse_binds && model_.accessors[*skin.inverse_binds].count < skin.joints.size())
-    item.complain("inverseBindMatrices", "the accessor has " + number(model_.accessors[*skin.inverse_binds].count) +
-                                             " matrices, but the skin has " + number(skin.joints.size()) + " joints");
+    item.complain("inverseBindMatrices",
+                  "the accessor has " + counted(model_.accessors[*skin.inverse_binds].count, "matrix", "matrices") +
+                      ", but the skin has " + counted(skin.joints.size(), "joint", "joints"));
 }
 
 std::optional<std::size_t> Parser::parse_use(const JsonView& object, const char* key, Use use, bool compressed) {
@@ -297,9 +300,9 @@ void Parser::check_use(const JsonView& object, const char* key, std::size_t inde
   const bool moved = use == Use::kMovedPosition || use == Use::kMovedNormal || use == Use::kMovedTangent;
   constexpr std::size_t kPlausible = 65536;
   if (!accessor.view && !moved && accessor.count > file_bytes_ + kPlausible)
-    return complain("has " + number(accessor.count) +
-                    " elements but no data (bufferView), which is more than a file of " + number(file_bytes_) +
-                    " bytes may declare");
+    return complain("has " + counted(accessor.count, "element", "elements") +
+                    " but no data (bufferView), which is more than a file of " + counted(file_bytes_, "byte", "bytes") +
+                    " may declare");
   if (accessor.sparse) check_sparse(object, key, index);
 }
 
@@ -317,15 +320,17 @@ void Parser::check_inside_view(const JsonView& object, const char* key, std::siz
   const std::size_t size = accessor.element_size(), stride = view.stride.value_or(size);
   const std::size_t alignment = component_size(accessor.component);
   if (accessor.offset % alignment != 0 || (view.offset + accessor.offset) % alignment != 0)
-    return complain("must begin at a multiple of " + number(alignment) + " bytes, the size of its components");
+    return complain("must begin at a multiple of " + counted(alignment, "byte", "bytes") +
+                    ", the size of its components");
   if (is_attribute && (accessor.offset % 4 != 0 || stride % 4 != 0))
     return complain("must have its elements at multiples of 4 bytes, as an attribute of vertices");
   if (stride < size)
-    return complain("has elements of " + number(size) + " bytes, more than the byteStride of " + number(stride));
+    return complain("has elements of " + counted(size, "byte", "bytes") + ", more than the byteStride of " +
+                    number(stride));
   if (accessor.offset > view.length || view.length - accessor.offset < size ||
       accessor.count - 1 > (view.length - accessor.offset - size) / stride)
-    return complain("ends beyond buffer view " + number(*accessor.view) + ", which has " + number(view.length) +
-                    " bytes");
+    return complain("ends beyond buffer view " + number(*accessor.view) + ", which has " +
+                    counted(view.length, "byte", "bytes"));
 }
 
 void Parser::check_sparse(const JsonView& object, const char* key, std::size_t index) {
@@ -339,11 +344,11 @@ void Parser::check_sparse(const JsonView& object, const char* key, std::size_t i
     const std::size_t alignment = component_size(component);
     if ((view.offset + offset) % alignment != 0)
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
-                               " must begin at a multiple of " + number(alignment) + " bytes");
+                               " must begin at a multiple of " + counted(alignment, "byte", "bytes"));
     if (offset > view.length || !binary::fits(sparse.count, size, view.length - offset))
       object.complain(key, "the sparse " + std::string(what) + " of accessor " + number(index) +
-                               " end beyond buffer view " + number(view_index) + ", which has " + number(view.length) +
-                               " bytes");
+                               " end beyond buffer view " + number(view_index) + ", which has " +
+                               counted(view.length, "byte", "bytes"));
   };
   check(sparse.indices_view, sparse.indices_offset, component_size(sparse.indices_component), sparse.indices_component,
         "indices");

@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "core/text.h"
 #include "io/gltf/model/unicode_forms.h"
 #include "io/system/names.h"
 
@@ -118,12 +119,13 @@ Result<std::string> decode_data_uri(std::string_view uri, std::size_t least, con
     if (!uri.starts_with(prefix)) continue;
     const std::string_view text = uri.substr(prefix.size());
     if (text.size() / 4 * 3 + 3 < least)
-      return invalid_input(place, "the data URI has fewer than the " + std::to_string(least) + " bytes of byteLength");
+      return invalid_input(place,
+                           "the data URI has fewer than the " + counted(least, "byte", "bytes") + " of byteLength");
     std::optional<std::string> bytes = decode_base64(text);
     if (!bytes) return invalid_input(place, "the data URI is not valid base64");
     if (bytes->size() < least)
-      return invalid_input(place, "the data URI has " + std::to_string(bytes->size()) + " bytes, but byteLength is " +
-                                      std::to_string(least));
+      return invalid_input(place, "the data URI has " + counted(bytes->size(), "byte", "bytes") +
+                                      ", but byteLength is " + grouped(least));
     return std::move(*bytes);
   }
   return invalid_input(place,

@@ -22,6 +22,7 @@
 #include "chronormal/analysis/quality.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/workflow/bake.h"
+#include "core/text.h"
 #include "io/bytes/output_file.h"
 #include "io/bytes/spool.h"
 #include "io/gltf/glb/glb_builder.h"
@@ -330,8 +331,8 @@ void warn_of_viewers(BakeEncoding encoding, std::span<const Viewer> viewers, std
         " so far from keyframe 0 that compressors change such normals; check the compressed file with audit");
   for (const Viewer& viewer : viewers)
     if (viewer.most_targets > 0 && targets > viewer.most_targets)
-      warnings.push_back(std::to_string(targets) + " targets are too many for " + std::string(viewer.title) + "; " +
-                         std::string(viewer.beyond));
+      warnings.push_back(counted(targets, "target is", "targets are") + " too many for " + std::string(viewer.title) +
+                         "; " + std::string(viewer.beyond));
 }
 
 // Returns the options with all viewers among the viewers for which the bake is made. A sequence has no candidates to

@@ -10,6 +10,7 @@
 
 #include "chronormal/core/views.h"
 #include "core/blocks.h"
+#include "core/text.h"
 #include "io/bytes/expansion.h"
 #include "io/gltf/model/gltf_bake_mark.h"
 #include "workflow/bake/sequence/harmless_sequence.h"
@@ -240,8 +241,8 @@ Status SequenceFile::check(std::uint64_t more) const {
   if (!builder_.status()) return builder_.status();
   if (Status status = expansion_.check(builder_.byte_count() + more, ""); !status) return status;
   if (builder_.byte_count() + more <= builder_.most_bytes()) return Success{};
-  return invalid_input("", "the result would have more than " + std::to_string(builder_.most_bytes()) +
-                               " bytes, which is the limit of its size");
+  return invalid_input("", "the result would have more than " + counted(builder_.most_bytes(), "byte", "bytes") +
+                               ", which is the limit of its size");
 }
 
 Result<std::size_t> SequenceFile::finish(const SequenceTargets& targets, const std::vector<float>& times,

@@ -95,13 +95,11 @@ void warn_of_track(const GltfMesh& mesh, const BakedMesh& baked, double error, s
 void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const BakedMesh& baked,
                     std::vector<MeshWarning>& warnings) {
   const std::string tolerance = rounded_text(options.tolerance.value_or(kHarmlessTolerance));
-  const std::string within = tolerance + (tolerance == "1" ? " degree" : " degrees");
+  const std::string within = with_degrees(tolerance);
   if (baked.left_tangents > 0) {
     warnings.push_back({label_of(mesh, baked),
-                        (baked.left_tangents == 1
-                             ? std::string("the tangents of 1 target no longer fit")
-                             : "the tangents of " + std::to_string(baked.left_tangents) + " targets no longer fit") +
-                            " the new normals, because --max-bytes leaves no room for new tangents"});
+                        "the tangents of " + counted(baked.left_tangents, "target", "targets") +
+                            " no longer fit the new normals, because --max-bytes leaves no room for new tangents"});
   }
   const auto chosen =
       std::find_if(baked.candidates.begin(), baked.candidates.end(), [](const auto& c) { return c.chosen; });
@@ -115,14 +113,14 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
             .append(viewer.title)
             .append(" (" + std::to_string(viewer.bits) + " bits)");
     warnings.push_back({label_of(mesh, baked), "the errors are within " + within + " before compression, but reach " +
-                                                   rounded_text(rounded_up(chosen->rounded)) +
-                                                   " degrees after compression by " + names});
+                                                   with_degrees(rounded_text(rounded_up(chosen->rounded))) +
+                                                   " after compression by " + names});
     return;
   }
   if (baked.already_baked) {
     warnings.push_back({label_of(mesh, baked), "this mesh was baked before, and errors reach " +
-                                                   rounded_text(rounded_up(chosen->played.worst)) +
-                                                   " degrees in its animations, beyond the tolerance of " + tolerance +
+                                                   with_degrees(rounded_text(rounded_up(chosen->played.worst))) +
+                                                   " in its animations, beyond the tolerance of " + tolerance +
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
