@@ -472,6 +472,33 @@ TEST_F(AuditCli, advice_is_kept_by_the_command_that_it_names) {
   EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
 }
 
+// A sheet in the plane z = 0 swings around the x axis. Its normal is linear in the weight, so one delta is right at all
+// weights. The tangents along y do not follow.
+TEST_F(AuditCli, advice_for_tangents_is_kept_by_the_command_that_it_names) {
+  constexpr double kAngle = 0.9;
+  test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
+  test::ShadedMesh::Target& target = sheet.targets[0];
+  target.normals.assign(sheet.positions.size(), 0);
+  for (std::size_t v = 0; v < sheet.vertices(); ++v) {
+    float* const position = sheet.positions.data() + 3 * v;
+    float* const delta = target.positions.data() + 3 * v;
+    position[2] = 0;
+    delta[0] = 0;
+    delta[1] = static_cast<float>(position[1] * (std::cos(kAngle) - 1));
+    delta[2] = static_cast<float>(position[1] * std::sin(kAngle));
+    target.normals[3 * v + 1] = static_cast<float>(-std::sin(kAngle));
+    target.normals[3 * v + 2] = static_cast<float>(std::cos(kAngle) - 1);
+    for (const std::size_t c : {0U, 1U, 2U}) sheet.normals[3 * v + c] = c == 2 ? 1.0F : 0.0F;
+    for (const float c : {0.0F, 1.0F, 0.0F, 1.0F}) sheet.tangents.push_back(c);
+  }
+  folder_.write("swing.glb", sheet.file().glb());
+  EXPECT_EQ(last_line(text_of("swing.glb")),
+            "chronormal bake swing.glb -o baked.glb computes new tangents; the normals are right");
+  const ProcessResult baked = run_shell(std::string(kProgram) + " bake swing.glb -o baked.glb -q", folder_.path(), "");
+  ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
+}
+
 TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   const auto bake = [&](const std::string& arguments) {
     const ProcessResult result = run_shell(std::string(kProgram) + " bake " + arguments, folder_.path(), "");

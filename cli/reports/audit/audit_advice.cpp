@@ -18,7 +18,8 @@ enum class Remedy {
   kNone,  // no normal is wrong
   // No judged normal is wrong, but some normals could not be judged, or no normal was judged at all.
   kUnknown,
-  // The normals are right but tangents are wrong. The remedy is to export other tangents.
+  // The normals are right but tangents are wrong. bake computes new tangents; a file that bake does not accept needs
+  // another export.
   kTangents,
   kViewers,   // normals are right by the specification, but wrong in viewers that differ from it
   kRule,      // the requested rule is not the one that viewers use for glTF files
@@ -64,6 +65,14 @@ std::string wrong_viewers(const Audited& input) {
     if (!viewer.error.is_within(limit_of(input))) titles.append(titles.empty() ? "" : ", ").append(viewer.viewer.title);
   }
   return titles;
+}
+
+// Returns true if bake would accept the file and some mesh with wrong tangents, which was not baked before.
+bool can_bake_tangents(const Audited& input) {
+  const auto& findings = input.audit.findings;
+  return !input.bake.empty() && std::any_of(findings.begin(), findings.end(), [&](const AuditFinding& finding) {
+    return finding.is_fault() && !(finding.mesh && input.document()->meshes()[*finding.mesh].mark.has_value());
+  });
 }
 
 Remedy remedy_of(const Audited& input) {
@@ -145,9 +154,12 @@ std::string advice(const Audited& input) {
                                                "right; give each side of a sheet its own vertices\n"
                                              : "\nnothing could be judged, since no face that moves has an area\n";
     case Remedy::kTangents:
-      return "\nthe normals are right, but the tangents are not, and bake does not correct them; export tangents for "
-             "all "
-             "targets, or for\nnone, so that viewers compute them\n";
+      if (!can_bake_tangents(input)) {
+        return "\nthe normals are right, but the tangents are not; export tangents for all targets, or for none, so "
+               "that "
+               "viewers\ncompute them\n";
+      }
+      return formatted("\nchronormal bake {} -o baked.glb computes new tangents; the normals are right\n", input.bake);
     case Remedy::kViewers:
       return formatted(
           "\nthe normals are right in viewers that add up targets as glTF says; these viewers do not: {}\n",
