@@ -45,7 +45,7 @@ export function makeFacePanel(report, player, view, compute) {
   const handles = layer(), rows = h('div', {}), frames = h('details', { className: 'frames' });
   triangle.append(handles);
   body.append(triangle, h('div', { className: 'timeline' }, slider, moment), sphere, h('label', { className: 'field' }, h('span', {}, 'sphere'), build, near), lengths, errors, rows, frames);
-  const box = panel('A face: Figures 1 to 3 of the paper', false,
+  const box = panel('One face and its normals over time', false,
     h('p', { className: 'acts' }, h('label', { className: 'number-field' }, 'face ', input), save, back), words, places, body);
   box.classList.add('face');
   save.disabled = true;

@@ -279,9 +279,9 @@ std::string doubt_of_cache(const Topology& faces, const std::vector<float>& mesh
            "together, without reordering vertices";
   const double farther = sum / std::sqrt(radius) / (sum_of_mesh / std::sqrt(radius_of_mesh));
   if (farther < kFarther && farther > 1 / kFarther) return "";
-  return "the cache does not seem to belong to this mesh, or has its vertices in another order, since edges are " +
-         std::to_string(farther).substr(0, 4) +
-         " times as long, relative to the size, in the first frame as in the mesh; export mesh and cache together";
+  return "the cache does not seem to belong to this mesh, or has its vertices in another order, since the edges of its "
+         "first frame, compared with the size of the model, are " +
+         std::to_string(farther).substr(0, 4) + " times as long as those of the mesh; export mesh and cache together";
 }
 
 Result<ReadMotion> read_cache_over_mesh(const CacheInput& input, const std::string& mesh_input,

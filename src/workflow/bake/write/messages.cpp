@@ -173,8 +173,8 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     }
   }
   if (baked.undriven > 0) {
-    warn(std::to_string(baked.undriven) + (baked.undriven == 1 ? " target is" : " targets are") +
-         " not driven by any animation, and only approximately right when set by hand");
+    warn("no animation moves " + counted(baked.undriven, "target", "targets") +
+         "; where a program sets such a weight by itself, the normals are only approximately right");
   }
   if (!baked.unmarked_nodes.empty()) {
     const std::size_t more = baked.unmarked_nodes.size() - 1;
