@@ -434,7 +434,8 @@ Command bake_command() {
       {input_table(options->input, refused),
        {{"--for VIEWER,...", &options->viewers,
          "the viewers that the result is made for, such as three\nViewers and compressors are " + viewer_names() +
-             "; all names all viewers. The default is three, babylon, playcanvas and bevy; the result is then no worse "
+             "; all stands for every viewer. The default is three, babylon, playcanvas and bevy; the result is then no "
+             "worse "
              "in the others"},
         {"--encode HOW", &options->encode,
          "how the new normals are stored (default: smallest)\nsmallest: the smallest errors in a file of at most 2.5 "

@@ -74,7 +74,7 @@ std::vector<Option> JudgeArguments::table(const std::string& of_viewers) {
       {"--for VIEWER,...", &viewers,
        of_viewers +
            ", such as three,godot\nViewers are three, babylon, playcanvas, godot, filament and bevy. Compressors, "
-           "whose result is judged in a viewer, are gltfpack, quantize and meshopt. all names all of them"},
+           "whose result is judged in a viewer, are gltfpack, quantize and meshopt. all stands for every one of them"},
       {"--host NAME,...",
        &viewers_by_old_name,
        "the old name of --for; the next version will not know --host",

@@ -216,17 +216,19 @@ Status check_kind(const Motion& motion, const AskedMoments& asked) {
 }  // namespace
 
 std::vector<Option> MomentArguments::table() {
-  return {{"--times LIST", &times,
-           "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
-           "keyframes. A mesh that does not move needs no times"},
-          {"--weights LIST", &weights,
-           "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
-           "target needs a weight. Repeat the option for more poses"},
-          {"--step N",
-           &step,
-           "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step is made from the one before by "
-           "additions, and anew every 64 steps; N:M for every M, N:0 for never. The largest drift is printed",
-           {.excludes = "--times", .rare = true}}};
+  return {
+      {"--times LIST", &times,
+       "times in seconds: 0,0.5,1 or FIRST:STEP:LAST, or keys\nThe word keys stands for the times of the "
+       "keyframes. A mesh that does not move needs no times"},
+      {"--weights LIST", &weights,
+       "a pose of blend shapes: NAME=W,... or W1,W2,...\nWith names, all other weights are 0; without names, each "
+       "target needs a weight. Repeat the option for more poses"},
+      {"--step N",
+       &step,
+       "play a scheme in N equal steps for each segment\nNeeds --scheme. Each step is computed from the one before by "
+       "additions, and every 64 steps from the curve; N:M does so every M steps, N:0 never. The largest drift is "
+       "printed",
+       {.excludes = "--times", .rare = true}}};
 }
 
 std::size_t AskedMoments::count() const noexcept {

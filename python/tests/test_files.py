@@ -25,7 +25,7 @@ def run(*arguments):
 
 
 def write_walk(folder, random):
-    """Write three keyframes of a sheet whose triangles have corners of their own, at common points."""
+    """Write three keyframes of a sheet whose triangles share no vertices, but meet at the same points."""
     folder.mkdir()
     p0, _, faces = sheet(int(random.integers(1000)))
     for k in range(3):

@@ -26,8 +26,8 @@ struct Slerp {
 
   [[nodiscard]] Formula formula() const { return Formula::kGreatArc; }
 
-  // Returns the number of planes of a state that is played. The curve is played by a rotation per step. The paper cites
-  // Barrera (2004) for such playback; this is the form that drifts least.
+  // Returns how many numbers the curve of an element needs to be played step by step. Each step rotates the normal by
+  // the same angle. The paper cites Barrera (2004) for such playback; the form that is used here drifts least.
   [[nodiscard]] std::size_t state_planes() const { return kTurnPlanes; }
   void anchor(ElementCoefficients c, double t, double step, double* state) const {
     put_turn(state, t * static_cast<double>(c[6]), step * static_cast<double>(c[6]));

@@ -497,6 +497,13 @@ TEST_F(AuditCli, advice_for_tangents_is_kept_by_the_command_that_it_names) {
   const ProcessResult baked = run_shell(std::string(kProgram) + " bake swing.glb -o baked.glb -q", folder_.path(), "");
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
+  // A bake for a viewer that does not morph tangents leaves them as they are, and a second bake changes nothing.
+  target.normals.clear();
+  folder_.write("bare_swing.glb", sheet.file().glb());
+  const ProcessResult of_three =
+      run_shell(std::string(kProgram) + " bake bare_swing.glb -o three.glb -q --for three", folder_.path(), "");
+  ASSERT_EQ(of_three.exit_code, 0) << of_three.err;
+  expect_words(text_of("three.glb"), {"the normals are right, but the tangents are not; export tangents"});
 }
 
 TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {

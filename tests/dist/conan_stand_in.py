@@ -211,6 +211,8 @@ def main(folder_of_recipe, archive, version, folder, *options):
     shutil.rmtree(recipe.package_folder, ignore_errors=True)
     recipe.package()
     recipe.package_info()
+    if "find_package(Threads" in ASKED and "pthread" not in recipe.cpp_info.components["core"].system_libs:
+        sys.exit("the project asks for threads, and the recipe does not link them")
     if not (recipe.package_folder / "licenses/LICENSE").is_file():
         sys.exit("the package has no licence")
 

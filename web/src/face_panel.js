@@ -88,7 +88,7 @@ export function makeFacePanel(report, player, view, compute) {
       figure = undefined;
       body.hidden = true;
       save.disabled = true;
-      words.textContent = `This file has figures for some of the worst places only, and none for face ${face.number.toLocaleString('en')}. The page with the program inside shows any face.`;
+      words.textContent = `This file has diagrams for some of the worst places only, and none for face ${face.number.toLocaleString('en')}. The page with the program inside shows any face.`;
       places.replaceChildren(...stored.map((one, i) => h('button', { type: 'button', className: 'plain', onclick: () => showStored(i) }, `face ${one.face.toLocaleString('en')}`)));
       return;
     }
@@ -307,7 +307,7 @@ export function makeFacePanel(report, player, view, compute) {
       face = figure = undefined;
       body.hidden = true;
       save.disabled = true;
-      words.textContent = compute ? 'Click a face of the mesh, or type its number.' : 'Click a face of the mesh, or type its number. This file has figures for some of the worst places only.';
+      words.textContent = compute ? 'Click a face of the mesh, or type its number.' : 'Click a face of the mesh, or type its number. This file has diagrams for some of the worst places only.';
       places.replaceChildren(...ofPart().map((one) => h('button', { type: 'button', className: 'plain', onclick: () => showStored(stored.indexOf(one)) }, `face ${one.face.toLocaleString('en')}`)));
     },
     restyle: draw,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "chronormal/normals/weighting.h"
@@ -34,8 +35,9 @@ double limit_of(const Audited& input) { return std::min(kAuditFault, input.limit
 
 bool is_wrong(const AuditSubject& subject, double limit) { return !subject.error.is_within(limit); }
 
-bool was_baked(const Audited& input, const AuditSubject& subject) {
-  return input.document() != nullptr && subject.mesh && input.document()->meshes()[*subject.mesh].mark.has_value();
+// Returns true if the mesh, where there is one, was baked before.
+bool was_baked(const Audited& input, std::optional<std::size_t> mesh) {
+  return input.document() != nullptr && mesh && input.document()->meshes()[*mesh].mark.has_value();
 }
 
 // Returns true if the subject is a target whose weight an animation drives. A subject that is not a target counts as
@@ -54,7 +56,7 @@ bool is_driven(const Audited& input, const AuditSubject& subject) {
 std::vector<const AuditSubject*> wrong_subjects(const Audited& input, bool baked) {
   std::vector<const AuditSubject*> result;
   for (const AuditSubject& subject : input.audit.subjects)
-    if (is_wrong(subject, limit_of(input)) && was_baked(input, subject) == baked) result.push_back(&subject);
+    if (is_wrong(subject, limit_of(input)) && was_baked(input, subject.mesh) == baked) result.push_back(&subject);
   return result;
 }
 
@@ -71,7 +73,7 @@ std::string wrong_viewers(const Audited& input) {
 bool can_bake_tangents(const Audited& input) {
   const auto& findings = input.audit.findings;
   return !input.bake.empty() && std::any_of(findings.begin(), findings.end(), [&](const AuditFinding& finding) {
-    return finding.is_fault() && !(finding.mesh && input.document()->meshes()[*finding.mesh].mark.has_value());
+    return finding.is_fault() && !was_baked(input, finding.mesh);
   });
 }
 
@@ -156,8 +158,7 @@ std::string advice(const Audited& input) {
     case Remedy::kTangents:
       if (!can_bake_tangents(input)) {
         return "\nthe normals are right, but the tangents are not; export tangents for all targets, or for none, so "
-               "that "
-               "viewers\ncompute them\n";
+               "that viewers\ncompute them\n";
       }
       return formatted("\nchronormal bake {} -o baked.glb computes new tangents; the normals are right\n", input.bake);
     case Remedy::kViewers:

@@ -93,9 +93,9 @@ std::string headline(const Audited& input) {
         grouped(audit.error.cancelled), cancelled_label(input));
   if (audit.error.faint_worst > input.limits.degrees.value_or(kAuditFault))
     text += formatted(
-        "  {} a direction where the faces have almost no area; errors there reach {} degrees, which "
-        "--tolerance counts\n",
-        counted(audit.error.faint, "sample still has", "samples still have"), degrees(audit.error.faint_worst));
+        "  at {}, the faces have almost no area but the normal has a direction; errors there reach {} degrees, and "
+        "--tolerance applies to them\n",
+        samples(audit.error.faint), degrees(audit.error.faint_worst));
   if (audit.error.unlit > 0)
     text += formatted(
         "  the normals of {} would be zero, infinite or NaN in a viewer, and count as errors of 180 degrees. The first "

@@ -196,7 +196,8 @@ struct AuditFinding {
   std::optional<AuditPlace> worst_at;  ///< the place of the worst error, if there is one
   std::optional<Viewer> viewer;        ///< the viewer concerned; no value if the finding concerns all viewers
 
-  /// Returns true for a fault, false for a note. Missing normals are not a fault if the motion turns no normals.
+  /// Returns true for a fault: the kind is no note, and the error is larger than kAuditFault. So missing normals are
+  /// not a fault if the motion turns no normals.
   [[nodiscard]] bool is_fault() const noexcept { return kind < Kind::kStaleKeys && degrees > kAuditFault; }
 };
 

@@ -229,8 +229,7 @@ class PartBuilder {
     chunk_bytes_ = part_.bytes - bytes_before;
   }
 
-  // Returns the elements in `count` tiles, from tile `first_tile` on, where the first tile begins with the first of
-  // `elements`.
+  // Returns the elements in `count` tiles, from tile `first_tile` on. Tile 0 begins with the first of `elements`.
   static IndexRange range_of(IndexRange elements, std::size_t first_tile, std::size_t count) {
     const std::size_t first = first_tile * kTile;
     return {elements.first + first, std::min(count * kTile, elements.count - first)};

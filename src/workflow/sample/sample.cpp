@@ -123,8 +123,9 @@ Result<NormalSampler> NormalSampler::make(MotionStream& stream, const SampleOpti
   const bool by_area = options.weighting == Weighting::kArea;
   if (options.length == NormalLength::kArea && !by_area)
     return misuse(
-        "the length area, twice the area of the faces, is only for the weighting area; choose this weighting, or the "
-        "length unit");
+        "the length 'area', which is twice the area of the faces, needs the weighting 'area'; choose this weighting, "
+        "or "
+        "the length 'unit'");
   if (options.stepping && options.scheme.empty()) return misuse("steps need a scheme; name one");
   if (!options.scheme.empty()) {
     const auto scheme = scheme_for(options.scheme, options.elements.kind);

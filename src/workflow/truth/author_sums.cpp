@@ -128,8 +128,8 @@ AuthorSums::AuthorSums(const GltfShading& shading, const Polygons& polygons, Wei
       whole_at[list].push_back(e);
     }
   }
-  // Calls add(element, corner) for each corner of a polygon that some element adds up. Returns true if there is such a
-  // corner.
+  // Calls add(element, corner) for each corner of polygon t that counts in the sum of some element. Returns true if
+  // there is such a corner.
   const auto for_corners = [&](std::size_t t, const auto& add) {
     const auto loop = polygons.corners(t);
     bool any = false;

@@ -884,7 +884,7 @@ TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
   ASSERT_EQ(result.subjects.size(), 1U);
   EXPECT_EQ(result.subjects[0].segments, 2U);
   EXPECT_EQ(result.error.judged, 3U * 2 * 5);
-  const double quarter = std::atan2(1.0, 3.0) * 180 / std::numbers::pi;  // the angle of n at t = 1/4, in degrees
+  const double quarter = std::atan2(1.0, 3.0) * 180 / std::numbers::pi;  // degrees from n(0) to n(1/4) of a segment
   EXPECT_NEAR(result.error.worst, 22.5 - quarter, 1e-5);
   EXPECT_EQ(result.error.worst_at.at, 0.5);
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);

@@ -172,7 +172,7 @@ TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
   EXPECT_EQ(nodes[2]["extras"]["chronormal"], baked.mesh()["extras"]["chronormal"]);
   EXPECT_EQ(baked.report.meshes[0].unmarked_nodes, std::vector<std::size_t>{1});
   const auto tells = [](const std::string& warning) {
-    return warning.find("extras of node 1 are no JSON object") != std::string::npos;
+    return warning.find("extras of node 1 are not a JSON object") != std::string::npos;
   };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
   // The encoding endpoint writes one delta for each target, so the file needs no drivers.

@@ -35,7 +35,7 @@ class PrefetchRule {
   static constexpr std::size_t kTrials = 16;
   // Bytes of curves that a trial reads.
   static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;
-  // Number of calls of next() without a trial before the trials are repeated.
+  // After the trials, this many calls of next() later, the trials are repeated.
   static constexpr std::size_t kCallsBetween = 1024;
 
   /// Creates a rule that tries the first `distances` numbers of kDistances.

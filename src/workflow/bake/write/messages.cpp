@@ -180,7 +180,7 @@ void warn_of_baked(const GltfMesh& mesh, const GltfShading& shading, const MeshP
     const std::size_t more = baked.unmarked_nodes.size() - 1;
     warn("the extras of node " + std::to_string(baked.unmarked_nodes.front()) +
          (more == 0 ? "" : " and of " + counted(more, "more node", "more nodes")) +
-         " are no JSON object, so only the mesh says how to drive the correction targets");
+         " are not a JSON object, so only the extras of the mesh say how to drive the correction targets");
   }
   if (baked.rescaled > 0) {
     warn(counted(baked.rescaled, "stored base normal is", "stored base normals are") +
