@@ -75,8 +75,8 @@ class Judge:
         return shown.degrees_between(normals[self.vertices], shown.unit(self.subject.normals(weights)))
 
     def judge(self, poses: Iterable[Pose]) -> Found:
-        """Judges poses one by one. Only the worst error of each corner is kept, since poses times corners can be too
-        many for memory."""
+        """Judges poses one by one. Only the worst error of each corner is kept, since the errors of all corners in all
+        poses may not fit into memory."""
         found = Found([], numpy.full(len(self.vertices), -1, numpy.float32), numpy.zeros(len(self.vertices), numpy.int32))
         for pose in poses:
             errors = self.errors(pose.weights, pose.time)
@@ -103,8 +103,8 @@ def _baked(path: Path) -> Path:
 
 
 def frames_of(scene: bpy.types.Scene) -> list[int]:
-    """Returns the frames of the timeline and the current frame. If there are very many, some are left out at even
-    distances."""
+    """Returns the frames of the timeline and the current frame. If the timeline has more than MOST_FRAMES frames, only
+    every second, third or later frame is returned, beside the last frame and the current one."""
     step = max(1, -(-(scene.frame_end - scene.frame_start + 1) // MOST_FRAMES))
     frames = set(range(scene.frame_start, scene.frame_end + 1, step)) | {scene.frame_end, scene.frame_current}
     return sorted(frames)

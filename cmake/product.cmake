@@ -107,7 +107,7 @@ endfunction()
 # names.
 set(position_independent ON)
 if(EMSCRIPTEN)
-  # a wasm module is never loaded as a library, and is smaller without position-independent code
+  # A wasm module is never loaded as a library, and is smaller without position-independent code.
   set(position_independent OFF)
 endif()
 set(linkable POSITION_INDEPENDENT_CODE ${position_independent} CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON CXX_EXTENSIONS OFF)
@@ -219,8 +219,8 @@ if(CHRONORMAL_FUZZ)
   set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS -fno-sanitize=all)
 elseif(CHRONORMAL_SANITIZED)
   # The targets with sanitizers for addresses and undefined behaviour use an optimisation level that compiles fast.
-  # Checks that double the compile time are left out: a null pointer crashes anyway, and clang's build (./test --full
-  # fuzz) has all checks.
+  # Checks that double the compile time are left out: a null pointer crashes without a check, and clang's build (./test
+  # --full fuzz) has all checks.
   set(sanitizers -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all)
   add_library(chronormal_sanitized_flags INTERFACE)
   target_link_libraries(chronormal_sanitized_flags INTERFACE chronormal_flags)

@@ -1,7 +1,7 @@
 # Compiles the libraries that find_package() normally finds from Debian's sources, which tools/wasm.sh unpacks into
 # build/wasm-sources. Only the parts that the product needs are compiled. Header-only libraries come from the system.
 #
-# The wasm module needs this, and so do programs for machines on which nothing is installed (CHRONORMAL_STATIC).
+# The wasm module is built in this way, as are programs for machines on which nothing is installed (CHRONORMAL_STATIC).
 enable_language(C)  # for zlib
 set(sources ${PROJECT_SOURCE_DIR}/build/wasm-sources)
 if(NOT EXISTS ${sources})

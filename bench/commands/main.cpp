@@ -3,7 +3,7 @@
 // (memcpy), reading the files as a motion, and copying the output to the disk for a command that writes a large file.
 // It also measures how long one frame of OBJ takes to read: by our reader, by a loop that finds its numbers with
 // std::from_chars, and by other libraries if they are installed. All of them must find the same positions before they
-// are timed. With --json FILE it also writes the results to a file, for docs/benchmarks.md.
+// are timed. With --json FILE it also writes the results to a file, from which docs/benchmarks.md is made.
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -190,7 +190,8 @@ Json measure_input(const std::string& program, const std::string& title, const s
   return {{"title", title}, {"bytes", bytes}, {"rows", rows}};
 }
 
-// Reads the vertices and corners of an OBJ file of triangles with plain indices, without any check.
+// Reads the vertices and corners of an OBJ file without any check. The faces must be triangles that have only vertex
+// indices, such as "f 1 2 3".
 std::vector<float> loop_over_numbers(std::string_view text) {
   std::vector<float> positions;
   std::vector<std::uint32_t> corners;

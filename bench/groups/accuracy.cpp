@@ -1,5 +1,5 @@
-// Measures the error of every path, which is a way to compute normals, against normals in double: on the grid, far from
-// the origin, and on the built-in morphs.
+// Measures the errors of all paths (ways to compute normals) against normals in double: on a grid, on the same grid far
+// from the origin, and on the built-in morphs.
 
 #include <fmt/core.h>
 
@@ -23,8 +23,8 @@ constexpr float kFar = 1000;  // distance from the origin, in multiples of the r
 // The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralBound = 7e-5, kRgb10A2Bound = 1.7e-3;
 
-// A way to compute the unit normals of all elements. evaluate() computes the normals of one sample at t, and
-// normal_of() returns one of them.
+// A way to compute the unit normals of all elements. evaluate() computes the normals at t, where `sample` is the index
+// of this t. normal_of() returns the normal of one element from the last call of evaluate().
 struct Path {
   std::string name;
   double bound = 0, bytes = 0;

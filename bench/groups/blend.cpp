@@ -26,8 +26,8 @@ constexpr double kExactError = 1e-6, kFloatError = 1e-3;
 // by design, so the limit reveals gross mistakes only.
 constexpr double kLinearError = 3.2;
 
-// Makes targets that move a region around a random vertex, less and less towards the border of the region. Their
-// vertices have the order of the mesh.
+// Makes targets that each move the region around one vertex, less and less towards the border of the region. A target
+// lists its vertices in the order of the mesh.
 BlendSet make_sparse(const Mesh& mesh) {
   BlendSet set;
   set.topology = mesh.topology();

@@ -1,5 +1,5 @@
-// Measures every scheme on the faces of the grid: the cost of an evaluation at any t and step by step, and the quality
-// of the normals.
+// Measures every scheme on the faces of the grid: the time of an evaluation at any t and in playback with small
+// steps, and the errors of the normals.
 
 #include "chronormal/schemes/scheme.h"
 

@@ -40,7 +40,7 @@ Vec3d way_at(const Segment& segment, std::size_t face, const View& view, double 
   return viewer - lerp(to_double(segment.from[a]), to_double(segment.to[a]), t);
 }
 
-// Finds by samples which sides of a face the viewer sees, as a renderer without exact answers does.
+// Finds which sides of a face the viewer sees at `samples` values of t, as a renderer without exact answers does.
 ShutterSide side_by_samples(const Question& q, std::size_t face, const View& view, int samples) {
   bool is_front = false, is_back = false;
   for (int i = 0; i < samples; ++i) {
@@ -69,8 +69,8 @@ std::string culled(const std::vector<ShutterSide>& sides) {
                      100.0 * static_cast<double>(count) / static_cast<double>(sides.size()));
 }
 
-// Checks the results of some faces against many samples. A face that is called front or back must show only this side
-// in all samples. Throws std::runtime_error otherwise.
+// Checks the results of some faces against the sides that the viewer sees at kSamples values of t. A face that is
+// called front or back must show only this side at all these t. Throws std::runtime_error otherwise.
 void verify(const Question& q, const View& view) {
   constexpr int kSamples = 257;
   const std::size_t step = std::max<std::size_t>(1, q.sides.size() / 500);

@@ -98,7 +98,7 @@ void verify(const Scene& scene) {
   }
 }
 
-// Counts the crossings that a program would notice that tests only at kSamples instants which points are inside.
+// Counts the crossings that are noticed by a program that finds the points inside the mesh only at kSamples instants.
 std::size_t noticed(const Scene& scene) {
   std::size_t count = 0;
   Windings before = scene.windings(0);

@@ -11,8 +11,8 @@ namespace chronormal::bench {
 /// Returns names and values in the order in which tables show them: cpu, cores, caches, compiler, ...
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> describe_machine();
 
-/// Returns how far ahead of an evaluation curves are prefetched (PrefetchRule), in words. The distances are those that
-/// this run has measured to be the fastest for each size of data.
+/// Returns in words the prefetch distances (PrefetchRule), which say how far ahead of the evaluation the curves are
+/// prefetched. They are the distances that this run has measured to be the fastest for each size of data.
 [[nodiscard]] std::string chosen_prefetch();
 
 /// Restarts the program with a tunable of the C library, so that every large allocation of this process uses huge

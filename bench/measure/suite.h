@@ -1,5 +1,6 @@
-/// Runs groups of cases, which are functions to be timed. It compares the result of each case with the oracle, then
-/// times all cases in random order, together with the speed of memory, and makes a row of the table from each case.
+/// Runs groups of cases, which are functions to be timed. A suite compares the result of each case with the oracle,
+/// then times all cases in random order, together with the speed of memory, and makes a row of the table from each
+/// case.
 #ifndef BENCH_MEASURE_SUITE_H_
 #define BENCH_MEASURE_SUITE_H_
 

@@ -6,8 +6,8 @@
 ///     stream   copy, one half to the other, and triad a = b + s c, in thirds; with ordinary stores, with stores past
 ///              the caches, and with prefetch; all bytes read and written count
 ///
-/// A working set is rounded to a power of 1.2 bytes. Working sets above 256 MiB are measured at 256 MiB, since they all
-/// lie in DRAM.
+/// The bytes of a working set are rounded to a power of 1.2. Working sets above 256 MiB are measured at 256 MiB, since
+/// they all lie in DRAM.
 #ifndef BENCH_MEMORY_BANDWIDTH_H_
 #define BENCH_MEMORY_BANDWIDTH_H_
 

@@ -36,7 +36,7 @@ struct Shared {
     if (!kept) kept = prepared(tolerance, Threads::kAll);
     return *kept;
   }
-  // Returns memory for a packed result, or for planes that begin at whole cache lines.
+  // Returns memory for one result: packed vectors, or three planes that each begin at the start of a cache line.
   [[nodiscard]] float* result() {
     if (result_.size() == 0) result_ = AlignedArray<float>(3 * plane_size());
     return result_.data();

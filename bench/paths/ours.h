@@ -15,7 +15,7 @@ namespace chronormal::bench {
 void add_ours(CaseList& list, const Segment& segment, const NormalGroups* groups, std::size_t recompute_bytes,
               double float_limit);
 
-/// Makes a check of the normals at t in a packed array (n, 3).
+/// Makes a check that compares a packed array (n, 3) of normals with the normals of the oracle at t.
 [[nodiscard]] Check packed_check(double t, const float* normals);
 
 }  // namespace chronormal::bench

@@ -43,7 +43,7 @@ struct BakeArguments {
   std::optional<double> tolerance;
   std::optional<std::size_t> most_targets;
   bool animations_only = false, plan = false;
-  // the file beside the result to which the drivers of the correction targets are written
+  // The file to which the drivers of the correction targets are written, beside the result.
   std::optional<std::string> drivers;
   std::optional<std::string> poses;  // the file of the poses for which the rig is baked
   bool json = false, no_audit = false, no_weld = false;
@@ -358,8 +358,8 @@ Result<int> run_sequence(const BakeArguments& options, BakeOptions how, Input& i
   return is_beyond_tolerance || !is_lit(options, told) ? kExitBeyond : kExitDone;
 }
 
-// Finds the name of the output file. Without -o, the last of several files is the output, as in IN OUT, if its
-// extension is one that bake can write.
+// Finds the name of the output file. Without -o, the last of several files is the output, as in `bake IN OUT`, if bake
+// can write files with its extension.
 Status take_output(BakeArguments& options) {
   std::vector<std::string>& files = options.input.files;
   if (options.output) {

@@ -21,7 +21,7 @@ Status check(const InputOptions& input, bool elements_given, const BlendArgument
   return Success{};
 }
 
-// Names `option` as the place of a usage error of the library that has no place.
+// Completes a usage error of the library that names no place: `option` becomes its place.
 Error blamed(Error error, const std::string& option) {
   if (error.code == ErrorCode::kUsage && error.place.empty()) error.place = option;
   return error;

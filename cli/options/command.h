@@ -33,8 +33,8 @@ struct CommonOptions {
   [[nodiscard]] std::vector<Option> table(bool output_required);
 };
 
-/// Returns the table of options that choose the input, as in io/input.h, without those that the command refuses.
-/// Parsing the options sets the members of `input`.
+/// Returns the table of the options that set the members of `input` (InputOptions in io/input.h), without the options
+/// that the command refuses.
 [[nodiscard]] std::vector<Option> input_table(InputOptions& input, const std::vector<RefusedOption>& refused = {});
 
 /// Opens the input that the options name, with a progress bar. Prints notes on how the input was read (Input::notes())

@@ -113,7 +113,8 @@ std::string latex_text(const std::string& text) {
   for (const char c : printable(text)) {
     const auto code = static_cast<unsigned char>(c);
     if (code >= 0xC0 || code == '?') {
-      // A character that takes several bytes in UTF-8 becomes one question mark. This byte is its first.
+      // A character that takes several bytes in UTF-8 becomes one question mark. This byte is the first byte of such a
+      // character.
       result += '?';
     } else if (code >= 0x80 || code < 0x20) {
       continue;

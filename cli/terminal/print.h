@@ -13,8 +13,8 @@
 
 namespace chronormal::cli {
 
-/// Prints to stdout, with emphasis if stdout shows colours. Errors: kFailed with the place "<stdout>" if some of the
-/// text could not be written.
+/// Prints a text to stdout, with emphasis if stdout shows colours. Errors: kFailed with the place "<stdout>" if some of
+/// the text could not be written.
 [[nodiscard]] Status print(std::string_view text);
 
 /// Prints to stdout if the path is "-"; otherwise writes the file, without emphasis. Errors: those of write_output().

@@ -15,9 +15,9 @@
 
 namespace chronormal::cli {
 
-/// Returns the rate and the time left: "12.5 segments/s, 3 min 20 s left". The task has `count` things, whose plural is
-/// `things`. The fraction share_done of them took `seconds`, and the fraction share_left is left. If `things` is empty,
-/// returns only the time.
+/// Returns the rate and the time left: "12.5 segments/s, 3 min 20 s left". The task has `count` steps, which are called
+/// `things`, such as "segments". The fraction share_done of the steps took `seconds`, and the fraction share_left is
+/// left. If `things` is empty, returns only the time.
 [[nodiscard]] std::string pace_text(double share_done, double seconds, double share_left, std::size_t count,
                                     const std::string& things);
 

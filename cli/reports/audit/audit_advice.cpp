@@ -69,7 +69,7 @@ std::string wrong_viewers(const Audited& input) {
   return titles;
 }
 
-// Returns true if bake would accept the file and some mesh with wrong tangents, which was not baked before.
+// Returns true if bake accepts the file, and some mesh with wrong tangents was not baked before.
 bool can_bake_tangents(const Audited& input) {
   const auto& findings = input.audit.findings;
   return !input.bake.empty() && std::any_of(findings.begin(), findings.end(), [&](const AuditFinding& finding) {

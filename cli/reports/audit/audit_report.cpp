@@ -25,7 +25,7 @@ using Align = Table::Align;
 constexpr std::size_t kLongestBar = 40;
 constexpr double kSeen = 0.005;                     // the smallest number of degrees that two decimals show
 constexpr double kMost = 0.99, kNearlyAll = 0.999;  // shares of the samples for the columns of percentiles
-// The smallest displacement of a vertex in a viewer that is reported, as a share of the size of the mesh.
+// The smallest displacement of a vertex that is reported for a viewer, as a share of the size of the mesh.
 constexpr double kDisplaced = 1e-5;
 
 // Returns words that say if the audit is within its limits, or in how many viewers: "within 1 degree and 0 torn edges
@@ -231,8 +231,8 @@ std::string offset_lines(const Audited& input) {
                    text;
 }
 
-// Names the place of the first sample that is counted in the member `count` of MotionError, such as unlit. The member
-// `place`, such as unlit_at, has this place.
+// Names the place of the first sample with a fault of one kind. `count` is the member of MotionError that counts such
+// samples, such as unlit. `place` is the member that has the place of the first one, such as unlit_at.
 std::string first_label(const Audited& input, std::size_t MotionError::*count, AuditPlace MotionError::*place) {
   const std::vector<AuditSubject>& subjects = input.audit.subjects;
   const auto first =

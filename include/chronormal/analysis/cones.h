@@ -8,7 +8,7 @@
 /// A cone is four floats, made for the test of back-face culling. For a direction of view d, from the eye into the
 /// scene,
 ///
-///     dot(d, axis) >= sine * length(d)   ->   every normal n of the cone has dot(d, n) >= 0: no face with such
+///     dot(d, axis) >= sine * length(d)   =>   every normal n of the cone has dot(d, n) >= 0: no face with such
 ///                                        a normal is front-facing
 ///
 /// The whole sphere is the axis 0 with the sine 1, which never passes this test. An element that has no normal at any
@@ -17,8 +17,8 @@
 ///
 /// Proof      Cones contain every exact n(t), and not only the rounded one: control normals are assumed to have
 ///            relative errors of at most 2^-26, as face_control_normals() guarantees, and the rounding of the cone
-///            itself is added. This increases the half-angle by about 3e-7 rad, and by 1e-6 of its sine.
-///            (docs/theory.md, section 20)
+///            itself is added. This increases the sine of the half-angle by about 3e-7, plus 1e-6 of the sine
+///            itself (docs/theory.md, section 20).
 /// Zero       Control normals that are zero are left out: n(t) is a combination of the others.
 /// Threads    pure, on the thread that calls: no allocation, no throw, the same bits on every instruction set.
 /// Source     Tang, Curtis, Yoon, Manocha: ICCD (2009), for the control normals and cones of them; Tang, Manocha, Tong:
@@ -38,8 +38,8 @@
 namespace chronormal {
 
 /// A set of directions around an axis. The axis is a unit vector up to float32 rounding, or zero in the two special
-/// cones, which are the whole sphere and the empty cone. The centre of the cone is the exact direction of these three
-/// floats.
+/// cones, which are the whole sphere and the empty cone. The centre of the cone is the exact direction of the three
+/// floats of `axis`.
 struct NormalCone {
   Vec3f axis;
   float sine = 0;  ///< sine of the half-angle, from 0 to 1
@@ -122,15 +122,15 @@ struct ClusterBounds {
 // Averages normals over an open shutter: the mean of n(t), and the mean of the unit normal n(t) / |n(t)|, over an
 // interval of time.
 //
-// A renderer with motion blur averages all instants of [t0, t1]. The normal of a pixel that it stores, or shades with
-// if it shades once, should be the mean of the unit normal, and not the normal at the middle of the interval or halfway
-// between the end normals:
+// A renderer with motion blur averages all instants of [t0, t1]. If it stores one normal for a pixel, or shades the
+// pixel only once, this normal should be the mean of the unit normal, and not the normal at the middle of the interval
+// or halfway between the end normals:
 //
-//     mean        1 / (t1 - t0) integral of n(t) dt             a third of the three control normals of [t0, t1],
-//                 exactly
+//     mean        1 / (t1 - t0) integral of n(t) dt             exactly a third of the sum of the three control
+//                                                               normals of [t0, t1]
 //     mean_unit   1 / (t1 - t0) integral of n(t) / |n(t)| dt    an elliptic integral, computed within a proven bound
 //
-// `mean` weights instants by the area of the face (half of it is the mean vector area); `mean_unit` does not. The
+// `mean` weights instants by the area of the face (half of `mean` is the mean vector area); `mean_unit` does not. The
 // length of mean_unit measures the spread of the normals: 1 if they are all equal, 0 if they cancel.
 //
 // Proof      Gauss's rule with 8 nodes on pieces in which |n(z)|^2 has no zero for complex z nearby, so that the unit

@@ -2,8 +2,8 @@
 /// surface.
 ///
 /// In a segment the vertices move on straight lines, and so does a point. The point is in the plane of the face (a, b,
-/// c) when (p(t) - a(t)) . n(t), a cubic in t, is zero; if it is then between the edges, it crosses the face. The
-/// winding number w counts how many times the surface goes around the point; a point is *inside* if w is not 0. A
+/// c) when (p(t) - a(t)) . n(t), a cubic in t, is zero; if the point is then between the edges, it crosses the face.
+/// The winding number w counts how many times the surface goes around the point; a point is *inside* if w is not 0. A
 /// crossing changes w by +1 if the point moves from the front of a face, to which the normal points, to its back
 /// (inward), and by -1 in the other direction. So between any two times (except for moments of touching, see *Moments*
 /// below),
@@ -15,8 +15,8 @@
 ///
 /// Ties       A point on the surface counts as if moved by an infinitely small step along +x, and if it is still on the
 ///            surface then, along +y, then +z. So if two closed meshes share a face, a point on the face is inside
-///            exactly one of the two; of a cube from (0, 0, 0) to (1, 1, 1), x = 0 is inside and x = 1 is outside. The
-///            step is the same at all times, so a resting point on a resting face does not cross the face.
+///            exactly one of the two. A cube from (0, 0, 0) to (1, 1, 1) contains its face x = 0, but not its face
+///            x = 1. The step is the same at all times, so a resting point on a resting face does not cross the face.
 /// Closed     Every edge must occur equally often in both directions among its faces, so that w is an integer
 ///            everywhere. Surfaces may intersect themselves, and have several pieces. Edges are between points of the
 ///            surface (normals/normal_groups.h), so seams of a file do not open the surface. A face of more than three
@@ -26,7 +26,7 @@
 ///            edge from outside has no crossing, and a point that goes through the edge has one. At the very moment of
 ///            touching, the tie may be decided either way, so w may differ from its value right before and right after.
 /// Shapes     P = points, as (P, 3) float32.
-/// Threads    const functions may run at the same time, and use all cores. Results are the same on any number.
+/// Threads    const functions may run at the same time, and use all cores. Results are the same on any number of cores.
 /// Source     docs/theory.md, section 2; Edelsbrunner, Muecke, Simulation of Simplicity (1990).
 #ifndef CHRONORMAL_ANALYSIS_CONTAINMENT_H_
 #define CHRONORMAL_ANALYSIS_CONTAINMENT_H_

@@ -110,7 +110,7 @@ struct View {
   }
 };
 
-/// The largest width, in t, of a bracket of a change of sides.
+/// The largest width, in t, of an interval that brackets a change of sides.
 inline constexpr double kWidestBracket = 0x1p-40;  // 9.1e-13
 
 enum class Side : std::int8_t {

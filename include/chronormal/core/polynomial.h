@@ -178,8 +178,9 @@ void find_roots(const std::array<double, M>& p, double t0, double t1, Roots<M - 
 }  // namespace detail
 
 /// Finds the roots of p in [0, 1], including the ends. The error of a simple root is at most 1e-15 times its condition
-/// number. The error of a root of multiplicity k is about the k-th root of that. A double root that rounding has moved
-/// off the axis may be missed, or found as two roots. Decisions that depend on double roots need exact arithmetic.
+/// number. The error of a root of multiplicity k is about the k-th root of this bound. A double root that rounding has
+/// moved off the axis may be missed, or found as two roots. Decisions that depend on double roots need exact
+/// arithmetic.
 template <std::size_t M>
 [[nodiscard]] Roots<M - 1> roots_in_unit_interval(const std::array<double, M>& p) {
   Roots<M - 1> roots;

@@ -80,7 +80,7 @@ template <class S>
   return scale * std::sqrt(dot(b, b));
 }
 
-/// Scales a to length 1, and returns (0, 0, 0) for the zero vector. It divides by the largest component first, so that
+/// Scales a to length 1, and returns (0, 0, 0) for the zero vector. Divides by the largest component first, so that
 /// vectors of any finite length are scaled correctly.
 [[nodiscard]] inline Vec3d unit(const Vec3d& a) noexcept {
   const double scale = max_abs(a);
@@ -100,8 +100,8 @@ template <class S>
 /// Degrees per radian. Angles are in radians; only output for people is in degrees.
 inline constexpr double kDegreesPerRadian = 57.295779513082320877;
 
-/// Returns the angle between two vectors in radians, in [0, pi], or 0 if one of the vectors is zero. It uses atan2,
-/// since acos loses all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
+/// Returns the angle between two vectors in radians, in [0, pi], or 0 if one of the vectors is zero. Uses atan2, since
+/// acos loses all angles below 1e-8 in double and below 3e-4 in float. The bits are the same on every machine.
 [[nodiscard]] double angle_between(const Vec3d& a, const Vec3d& b) noexcept;
 
 }  // namespace chronormal

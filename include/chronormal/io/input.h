@@ -79,7 +79,8 @@ struct InputOptions {
   /// Otherwise `files` are names and not patterns or folders, and the buffers of a glTF file are requested by their
   /// paths below its folder.
   FileResolver resolve = {};
-  /// Is called after each file has been read, with the number of files read so far and the number of all files.
+  /// A function that is called after each file has been read, with the number of files read so far and the number of
+  /// all files.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
   /// Select the keyframes of a sequence that are used. `from` and `to` are the indices of the first and the last one,
   /// counted from 0. `every` is the step from one keyframe to the next.
@@ -148,8 +149,8 @@ class Input {
   Input& operator=(Input&&) noexcept;
   ~Input();
 
-  /// Returns the name of the input for messages: the name of its only file, "first ... last", the base, or the built-in
-  /// morph.
+  /// Returns the name of the input for messages: the name of its only file, "FIRST ... LAST" with the names of the
+  /// first and last of several files, the base, or the built-in morph.
   [[nodiscard]] const std::string& name() const noexcept;
   /// Returns the size of the glTF file in bytes, or 0 for any other input.
   [[nodiscard]] std::size_t file_size() const noexcept;

@@ -5,7 +5,7 @@
 /// sees either the old file or the new one. After an error the old file is still there, and no temporary file remains.
 /// A symbolic link is followed: its target is replaced. An existing file keeps its permissions, and its owner if the
 /// system allows that; a new file gets the permissions that the umask allows. Pipes, devices and /dev/stdout,
-/// /dev/stderr, /dev/fd/N are written directly, never renamed over; "-" is the standard output.
+/// /dev/stderr, /dev/fd/N are written directly, and no file is renamed over them; "-" is the standard output.
 ///
 /// Threads    functions on different paths may run at the same time.
 #ifndef CHRONORMAL_IO_OUTPUT_H_

@@ -1,9 +1,9 @@
 /// A mesh that deforms: keyframes of vertex positions over one topology, and the segments between them.
 ///
 /// Inside a segment every vertex moves on a straight line, p(t) = (1 - t) p0 + t p1, with local t in [0, 1]. A sequence
-/// of keyframes 0, 1, 2 has the segments 0 -> 1 and 1 -> 2; blend shapes with base 0 and targets 1, 2 have 0 -> 1 and 0
-/// -> 2. Both are a Motion, and its kind tells which: code that computes normals need not know, but messages for people
-/// mention times for a sequence and weights for targets.
+/// of keyframes 0, 1, 2 has the segments from 0 to 1 and from 1 to 2; blend shapes with base 0 and targets 1, 2 have
+/// segments from 0 to 1 and from 0 to 2. Both are a Motion, whose kind tells them apart: code that computes normals
+/// need not know, but messages for people mention times for a sequence and weights for targets.
 ///
 /// find_instant() converts a time into a segment and its local t.
 ///
@@ -169,8 +169,8 @@ struct Motion {
 [[nodiscard]] Status validate(const Motion& motion);
 
 /// A local t in [0, 1] that is kept as an exact quotient of times. For example, time 1 between keys at 0 and 3 is t =
-/// 1/3, which no double represents. If n(t) is so small that rounding t to a double would turn it, integer arithmetic
-/// uses the exact quotient. A double converts to a LocalTime without change.
+/// 1/3, which no double represents. If n(t) is so small that rounding t to a double would change its direction, integer
+/// arithmetic uses the exact quotient. A double converts to a LocalTime without change.
 struct LocalTime {
   double t = 0;     ///< the local t, rounded to a double once
   double rest = 1;  ///< 1 - t, also rounded once; near t = 1 it has digits that t does not have

@@ -95,10 +95,10 @@ struct CubicSegment {
   /// Returns the positions of all vertices at a local t, (V, 3), rounded to float32.
   [[nodiscard]] std::vector<float> positions(double t) const;
 };
-/// Returns the cubics from keys[i] to keys[i + 1]; for kLinear they are straight lines. Only keyframes from files have
-/// curves, and these have no residuals, so residuals are ignored. If a key has end_velocities (motion/motion.h), these
-/// are its velocities. Only the keys that determine the velocities are read. Preconditions: keys ascend in time and
-/// have equally many positions; i + 1 < keys.size().
+/// Returns the cubics from keys[i] to keys[i + 1]; for kLinear they are straight lines. Curves run only through
+/// keyframes from files, which have no residuals, so residuals are ignored. If a key has end_velocities
+/// (motion/motion.h), these are its velocities. Only the keys that determine the velocities are read. Preconditions:
+/// keys ascend in time and have equally many positions; i + 1 < keys.size().
 [[nodiscard]] CubicSegment cubic_segment(std::span<const Motion::Keyframe* const> keys, std::size_t i, PathKind kind);
 
 /// Measures the bend of the paths through every `every`-th keyframe of a sequence: the second differences of vertices

@@ -27,8 +27,8 @@
 ///            counted. Weights that are not finite, or so large that n(w) overflows, give (0, 0, 0) at least for the
 ///            elements that they affect.
 /// Ownership  the set and the groups are moved in and kept. A moved-from object may only be destroyed or assigned.
-/// Threads    const functions may run at the same time. The same bits on any number of threads, in ranges of any size,
-///            and on every instruction set.
+/// Threads    const functions may run at the same time. Results have the same bits on any number of threads, in ranges
+///            of any size, and on every instruction set.
 #ifndef CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 #define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
 
@@ -69,8 +69,8 @@ struct BlendNormalsOptions {
   /// True to blend positions and compute normals in float32 on the path kWhole, like FloatRecompute. This takes about
   /// half as long, so kWhole is chosen more often. There is then no guarantee for the normals of this path: positions
   /// have an error of a unit in the last place, which turns a normal by the ratio of that unit to the length of an
-  /// edge. This is enough for shading. The other paths are still exact. The option has no effect if an element has a
-  /// ring of more than 64 points.
+  /// edge. This is enough for shading. The other paths stay exact. The option has no effect if an element has a ring of
+  /// more than 64 points.
   bool in_float32 = false;
 };
 

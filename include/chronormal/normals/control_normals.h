@@ -40,16 +40,17 @@ struct ControlNormals {
 };
 
 /// Writes the control normals of a range of faces, in double. Cost: four cross products per triangle. The error of each
-/// control normal is at most 2^-26 of its length, so its direction is never only rounding error. If rounding in double
-/// could exceed this bound, integer arithmetic computes the control normal. A control normal is exactly zero if the
-/// corners are exactly collinear. Preconditions: result has faces.count elements; the faces exist in the topology.
+/// control normal is at most 2^-26 of its length, so rounding errors never determine its direction. If rounding in
+/// double could exceed this bound, integer arithmetic computes the control normal. A control normal is exactly zero if
+/// the corners are exactly collinear. Preconditions: result has faces.count elements; the faces exist in the topology.
 void face_control_normals(const Segment& segment, IndexRange faces, std::span<ControlNormals> result) noexcept;
 
 /// Returns the true degree of n(t) in t: 0, 1 or 2. The normal of a translated face has degree 0, and that of a face
 /// with two vertices that move alike has at most degree 1. Other motions, such as a shear within the plane, have low
 /// degrees, too, so this function tests the coefficients and not the motion. A coefficient below 2^-28 of the largest
 /// control normal counts as zero. Leaving it out turns no direction by more than 1e-8 rad times the length of that
-/// control normal / |n(t)|. (A translation that was rounded to float32 is not exact, and may have degree 1 or 2.)
+/// control normal divided by |n(t)|. (A translation that was rounded to float32 is not exact, and may have degree 1 or
+/// 2.)
 [[nodiscard]] int degree(const ControlNormals& normals) noexcept;
 
 /// Returns n(t), by eq. 5, without scaling it to length 1. n(t) is a convex combination of the control normals, so its

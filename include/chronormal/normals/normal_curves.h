@@ -25,10 +25,11 @@
 ///            curves made from control normals give the direction of these, and uncertain_count() counts the elements
 ///            for which even that is not certain.
 /// Lengths    |n(t)| is kept if the tolerance is kExactTolerance, and is lost in compact curves.
-/// Ownership  the curves own their memory; results go to the caller's.
+/// Ownership  the curves own their memory; results go to memory of the caller.
 /// Threads    const functions may run at the same time. With one thread and one t they do not allocate or throw.
 ///            Results have the same bits on every instruction set, compiler and number of threads.
-/// Speed      results aligned to 64 bytes, packed, as planes or in four bytes, are fastest; docs/benchmarks.md.
+/// Speed      results are written fastest if they are aligned to 64 bytes, and are packed, planes or in four bytes each
+///            (docs/benchmarks.md).
 #ifndef CHRONORMAL_NORMALS_NORMAL_CURVES_H_
 #define CHRONORMAL_NORMALS_NORMAL_CURVES_H_
 

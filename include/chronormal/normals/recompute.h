@@ -1,4 +1,5 @@
-/// Unit normals from positions, recomputed at every t: a direct and fast implementation of eq. 1 and eq. 2.
+/// Unit normals from positions, recomputed at every t: a direct and fast implementation of eq. 1 and eq. 2 of
+/// docs/theory.md.
 ///
 /// This is the baseline for NormalCurves, and is faster than NormalCurves for one or two evaluations. Only scratch
 /// memory is prepared. Positions and topology are read at every call and must stay alive; positions may change between

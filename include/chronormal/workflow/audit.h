@@ -106,7 +106,7 @@ struct AuditOptions {
   bool skins = true;
   bool weld = true;          ///< true if vertices that coincide in all keyframes share a normal
   bool keep_errors = false;  ///< true to keep every single error in Audit::errors
-  /// Is called with the number of segments that are done, and the number of all segments.
+  /// A function that is called with the number of segments that are done, and the number of all segments.
   std::function<void(std::size_t done, std::size_t total)> progress = {};
 };
 

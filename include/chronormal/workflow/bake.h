@@ -1,10 +1,10 @@
 /// Writes true normals into ordinary glTF files.
 ///
 ///     smallest   the default: the candidate with the fewest bytes whose worst error along the animations is within a
-///                tolerance in every named viewer, and nowhere worse than before. Candidates are all that follow, the
-///                file's own normals, deltas of its targets alone, correction targets driven by products of weights,
-///                and correction targets of low rank that only the animations of the file drive (docs/theory.md,
-///                section 17)
+///                tolerance in every named viewer, and nowhere worse than before. The candidates are the file's own
+///                normals, deltas of its targets alone, correction targets driven by products or by quadratics of
+///                weights, and correction targets of low rank that only the animations of the file drive
+///                (docs/theory.md, section 17)
 ///     harmless   unit normals at weight 1 for each target, and correction targets of unit normals for the remaining
 ///                errors beyond a tolerance, at other weights and for combined targets: small errors in every named
 ///                viewer, and in none of them worse than before (docs/theory.md, section 16)
@@ -134,9 +134,9 @@ struct ViewerChange {
   bool is_named = true;  ///< true if the bake is made for this viewer, false for a viewer that is only spared
   /// True if the errors decrease as a whole and none of them increases by more than is allowed.
   bool is_better = false;
-  /// The errors in three kinds of poses. The first are the poses in the animations of the file as the viewer plays
-  /// them, and with its constant weights. The second are each target alone from 0 to 1. The third are poses that a
-  /// program sets.
+  /// The errors in three kinds of poses. The first kind has the poses in the animations of the file as the viewer plays
+  /// them, and in its constant weights. The second kind has each target alone, at weights from 0 to 1. The third kind
+  /// has poses that a program sets.
   std::array<Errors, 3> poses;
 };
 
@@ -273,14 +273,15 @@ struct SequenceBake {
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped
 /// weights. The encoding exact adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15). The
-/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) if viewers have
-/// room, and a LINEAR track (section 16). The encoding keys is like harmless, but without additional targets; it
-/// chooses its keys itself, and requires area weights. Vertices at hard edges (crease angle) are doubled. `glb` gets
-/// the bytes of the file; it does not change after an error. The file holds float32 positions, and its normals are
-/// exact for these positions; residuals of a computed motion are left out. Polygons become fans of triangles with the
-/// normals of the polygons; if a fan does not cover its polygon in keyframe 0, there is a warning. Errors:
-/// kInvalidInput for more than most_bytes or 4 GiB; kUsage in keys for other weights than area or a tolerance below
-/// kLeastKeyTolerance. Precondition: the motion is valid and a sequence (segments k -> k + 1).
+/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) in as many segments
+/// as viewers support, and a LINEAR track (section 16). The encoding keys is like harmless, but without additional
+/// targets; it chooses its keys itself, and requires the weighting by area. Vertices at hard edges (crease angle) are
+/// doubled. `glb` gets the bytes of the file, or does not change if there is an error. The file holds float32
+/// positions, and its normals are exact for these positions; residuals of a computed motion are left out. Polygons
+/// become fans of triangles with the normals of the polygons; if a fan does not cover its polygon in keyframe 0, there
+/// is a warning. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage if the encoding keys is used with
+/// another weighting than area or with a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a
+/// sequence, in which segment k leads from keyframe k to keyframe k + 1.
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// Bakes a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several

@@ -64,7 +64,8 @@ struct CompareOptions {
   std::vector<std::string> schemes;  ///< names of schemes, in the order of the rows; if empty, default_schemes()
   std::size_t samples = 21;          ///< number of samples per segment, both ends included; at least 2
   Access access = Access::kRandom;
-  /// Is called in the calling thread with the number of units of work that are done, and their total. It may be empty.
+  /// A function that is called in the calling thread with the number of units of work that are done, and their total.
+  /// It may be empty.
   std::function<void(std::size_t done, std::size_t total)> progress;
   /// The elements whose normals are compared. They are faces unless set, as in the tables of the paper.
   ElementOptions elements = {ElementKind::kFaces};

@@ -183,7 +183,7 @@ struct ErrorTable {
   std::vector<std::int64_t> primitives = {}, vertices = {};
 
   /// For each row, the subject (Audit::subjects) or the segment of the motion, and the moment, which is a time or a
-  /// weight. The other of the two is NaN.
+  /// weight. If the moment is a time, the weight of the row is NaN, and vice versa.
   std::vector<std::int64_t> subjects = {};
   std::vector<double> times = {}, weights = {};
   std::vector<float> degrees = {};  ///< the errors in degrees, (rows, columns)
