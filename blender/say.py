@@ -7,7 +7,7 @@ import sys
 
 import bpy
 
-# The level and the text of the last sentence, for scripts and tests.
+# The level and the text of the last sentence that was reported, for scripts and tests.
 last: tuple[str, str] = ("", "")
 
 

@@ -136,7 +136,8 @@ int copy_to_disk(const std::string& file) {
   return is_whole ? 0 : 1;
 }
 
-// Prints a row of the table and appends it to `rows`. `reading` is the processor time of reading the input, in seconds.
+// Prints a row of the table and appends it to `rows`. The row compares the processor time with `reading`, which is the
+// processor time of reading the input, in seconds.
 void add_row(Json& rows, const std::string& name, const Times& times, double reading) {
   fmt::print("{:<34}{:>10.2f}{:>10.2f}{:>12.2f}\n", name, times.wall, times.cpu, times.cpu / reading);
   std::fflush(stdout);

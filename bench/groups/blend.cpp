@@ -129,8 +129,8 @@ void blend(const BlendSet& set, std::span<const double> weights, std::span<float
   }
 }
 
-// The sum that engines compute: the unit normals of the base plus the weighted sparse deltas of each target. The
-// result is normalised.
+// Computes normals as engines do: adds the weighted sparse deltas of each target to the unit normals of the base, and
+// normalises the sums.
 class LinearSum {
  public:
   LinearSum(BlendNormals& normals, std::size_t vertices, std::size_t targets) : base_(3 * vertices) {

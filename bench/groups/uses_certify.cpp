@@ -25,7 +25,7 @@ struct Certified {
 };
 
 // Returns for each face the largest angle, over kSamples values of t, between the normal of the scheme and the exact
-// normal, in radians. A certificate must be at least as large.
+// normal, in radians. The upper bound of a certificate must be at least as large.
 std::vector<double> sampled(const Scheme& scheme, const Segment& segment, std::size_t count) {
   std::vector<double> worst(count);
   std::vector<float> shown(3 * count);

@@ -29,7 +29,7 @@ using Windings = std::vector<std::int32_t>;
 
 VectorView<const float> view(const Floats& xyz) { return VectorView<const float>::packed(xyz); }
 
-// A mesh, and points on straight lines through the box around it.
+// A mesh that deforms, and points that move on straight lines between random places in the bounding box of the mesh.
 struct Scene {
   Segment segment;
   Containment containment;

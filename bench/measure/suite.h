@@ -64,7 +64,8 @@ struct Row {
 
 struct SuiteOptions {
   bool quick = false;
-  /// A POSIX regular expression for "GROUP/SIZE/ORDER/NAME"; if empty, all cases run.
+  /// A POSIX regular expression that selects cases by their names, "GROUP/SIZE/ORDER/NAME". If it is empty, all cases
+  /// run.
   std::string filter;
   std::size_t threads = 2;
 };

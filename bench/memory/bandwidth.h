@@ -33,8 +33,8 @@ class BandwidthMeter {
   void want(std::size_t working_set);
   /// Appends to `functions` the functions that measure the bandwidths for which want() asked.
   void append(std::vector<Timed>& functions);
-  /// Takes the times of the functions that append() added last. `first` is the index in `functions` of the first
-  /// function that append() added.
+  /// Reads the measured times of the functions that append() added last. `first` is the index in `functions` of the
+  /// first function that append() added.
   void take(const std::vector<Timed>& functions, std::size_t first);
 
   /// Returns the bandwidth at a working set for which want() asked. Call take() before.

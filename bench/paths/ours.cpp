@@ -14,7 +14,7 @@ namespace {
 
 // The error bounds in radians that normals/normal_curves.h promises.
 constexpr double kOctahedralError = 7e-5, kRgb10A2Error = 1.7e-3;
-// The largest number of bytes of results in a case that evaluates many t.
+// A case that evaluates many t is left out if its results would take more bytes than this.
 constexpr std::size_t kManyTimesBytes = std::size_t{3} << 30;
 
 Vector to_vector(const Vec3f& v) { return {double{v.x}, double{v.y}, double{v.z}}; }

@@ -22,7 +22,7 @@ Result<Inspected> open_and_inspect(const InputOptions& options, Progress& progre
   InputOptions wanted = options;
   wanted.allow_mesh = true;
   wanted.stream = true;
-  // Faults of stored normals and groups are listed too, because they affect audits.
+  // Stored normals and groups are read too, since their faults affect audits and must be listed.
   wanted.shading = KeepShading::kFirst;
   Result<Input> input = open_input("inspect", std::move(wanted), progress);
   if (!input) return input.error();

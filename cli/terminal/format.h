@@ -23,7 +23,7 @@ struct Number {
   double value = 0;
 };
 
-/// Returns an argument of formatted() in the form in which it is formatted: a Number for floating-point types, and the
+/// Returns an argument of formatted() as it is passed to fmt::format(): a Number for floating-point types, and the
 /// argument itself for other types.
 template <class T>
 [[nodiscard]] const T& as_argument(const T& value) noexcept {

@@ -2,11 +2,13 @@
 ///
 ///     SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU   removes temporary files and prints a line, then the signal ends the
 ///                                                 program (128 + n to a shell); ignored signals stay ignored
-///     SIGBUS                                      an input that is mapped became shorter: the same, with exit code 1
+///     SIGBUS                                      an input that is mapped became shorter: removes temporary files,
+///                                                 prints a line, and exits with code 1
 ///     SIGXFSZ                                     ignored: writing beyond the limit is an error like any other
-///     no memory for an object                     the same as SIGBUS; destructors do not run (not all are safe)
-///     SIGABRT                                     the same: the C library aborts if it gets no memory for a thread
-///     an exception that nothing can catch         the same
+///     no memory for an object                     ends like SIGBUS; destructors do not run (not all are safe)
+///     SIGABRT                                     ends like SIGBUS: the C library aborts if it gets no memory for a
+///                                                 thread
+///     an exception that nothing can catch         ends like SIGBUS
 ///
 /// If results get lost because nobody reads them, as in front of `head`, SIGPIPE ends the program, as usual. If nobody
 /// reads stderr, messages get lost, and the program goes on. If SIGPIPE was ignored when the program started, it stays

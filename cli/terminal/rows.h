@@ -8,7 +8,7 @@
 
 namespace chronormal::cli {
 
-/// The largest number of characters of a name from a file that a table shows.
+/// The largest number of characters that a table shows of a name from a file.
 inline constexpr std::size_t kLongestName = 32;
 
 /// The largest number of rows in a table for people; --json has all rows.

@@ -190,7 +190,7 @@ class Input {
   [[nodiscard]] Result<std::size_t> keyframe_count();
 
   /// Returns the times of the keyframes, each once and ascending; for an animation of a document, the key times of its
-  /// weights, without the cuts of cubic splines. Errors: those of motion().
+  /// weights, without the keyframes that were added by cutting cubic splines. Errors: those of motion().
   [[nodiscard]] Result<std::vector<double>> key_times();
 
   /// Returns the normals that the input stores, as far as KeepShading keeps them. For a document these are the normals

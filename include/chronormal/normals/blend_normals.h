@@ -74,8 +74,8 @@ struct BlendNormalsOptions {
   bool in_float32 = false;
 };
 
-/// The memory that the normals of a set need, and the counts from which it follows. Bytes are in addition to the set
-/// and the groups.
+/// The memory that the normals of a set need, and the counts from which it follows. Bytes do not include those of the
+/// set and the groups.
 struct BlendCost {
   std::size_t target_elements = 0;    ///< number of elements that a target touches, summed over targets
   std::size_t overlapping_pairs = 0;  ///< number of pairs of targets that both move some face

@@ -92,7 +92,8 @@ class NormalGroups {
   /// below that state no other cost.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points);
   /// Makes one element of each point, with all corners at this point except those that are left out. All left-out
-  /// corners of a point become a separate element, to which no vertex belongs. `left_out` has a value for each corner.
+  /// corners of a point become a separate element, to which no vertex belongs. `left_out` has a value for each corner,
+  /// which is true to leave the corner out.
   [[nodiscard]] static NormalGroups of_vertices(const Topology& topology, const Points& points,
                                                 const std::vector<bool>& left_out);
 

@@ -131,7 +131,7 @@ struct AuditSubject {
   MotionError at_keys;                         ///< the errors only at both ends of each segment
   std::optional<SkinningError> skinning = {};  ///< present if the mesh was judged through a skin
 
-  /// Returns true if a sample of the subject is named by its weight, and not by its time.
+  /// Returns true if a sample of the subject is identified by its weight, and not by its time.
   [[nodiscard]] bool is_weighed() const noexcept {
     return kind == Kind::kTarget || kind == Kind::kExpression || kind == Kind::kOpening;
   }
@@ -170,7 +170,8 @@ struct AuditFinding {
     kMissingNormals,  ///< a target moves positions, but only the base has normals
     kWrongAtKeys,     ///< stored normals contradict the geometry at weight 1 or at keyframes
     kWrongBetween,    ///< normals are correct at weight 1 or at keyframes, but wrong in between
-    /// Normals are wrong where an animation or expression combines targets, and more so than with each target alone.
+    /// Normals are wrong where an animation or expression combines targets, with a larger error than for each target
+    /// alone.
     kWrongTogether,
     kWrongPose,      ///< normals are wrong in the pose in which a file opens, or in a requested pose
     kStaleTangents,  ///< tangents are not perpendicular to the true normal at weight 1, although they are in the base

@@ -135,8 +135,8 @@ struct ViewerChange {
   /// True if the errors decrease as a whole and none of them increases by more than is allowed.
   bool is_better = false;
   /// The errors in three kinds of poses. The first kind has the poses in the animations of the file as the viewer plays
-  /// them, and in its constant weights. The second kind has each target alone, at weights from 0 to 1. The third kind
-  /// has poses that a program sets.
+  /// them, and in the file's constant weights. The second kind has each target alone, at weights from 0 to 1. The third
+  /// kind has poses that a program sets.
   std::array<Errors, 3> poses;
 };
 
@@ -273,15 +273,15 @@ struct SequenceBake {
 
 /// Makes an animated GLB from a sequence: keyframe 0 is the base, and every later keyframe is a target with hat-shaped
 /// weights. The encoding exact adds a target per segment with the weight t (1 - t) (docs/theory.md, section 15). The
-/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) in as many segments
-/// as viewers support, and a LINEAR track (section 16). The encoding keys is like harmless, but without additional
-/// targets; it chooses its keys itself, and requires the weighting by area. Vertices at hard edges (crease angle) are
-/// doubled. `glb` gets the bytes of the file, or does not change if there is an error. The file holds float32
-/// positions, and its normals are exact for these positions; residuals of a computed motion are left out. Polygons
-/// become fans of triangles with the normals of the polygons; if a fan does not cover its polygon in keyframe 0, there
-/// is a warning. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage if the encoding keys is used with
-/// another weighting than area or with a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and a
-/// sequence, in which segment k leads from keyframe k to keyframe k + 1.
+/// encoding harmless has unit normals in all targets, additional targets with the weight 4 t (1 - t) for as many
+/// segments as viewers support, and a LINEAR track (section 16). The encoding keys is like harmless, but without
+/// additional targets; it chooses its keys itself, and requires the weighting by area. Vertices at hard edges (crease
+/// angle) are doubled. `glb` gets the bytes of the file, or does not change if there is an error. The file holds
+/// float32 positions, and its normals are exact for these positions; residuals of a computed motion are left out.
+/// Polygons become fans of triangles with the normals of the polygons; if a fan does not cover its polygon in keyframe
+/// 0, there is a warning. Errors: kInvalidInput for more than most_bytes or 4 GiB; kUsage if the encoding keys is used
+/// with another weighting than area or with a tolerance below kLeastKeyTolerance. Precondition: the motion is valid and
+/// a sequence, in which segment k leads from keyframe k to keyframe k + 1.
 [[nodiscard]] Result<SequenceBake> bake_sequence(const Motion& motion, const BakeOptions& options, std::string& glb);
 
 /// Bakes a stream, into a file that is written as chronormal/io/output.h describes. The stream is read in several
