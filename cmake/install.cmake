@@ -72,8 +72,8 @@ if(CHRONORMAL_PROGRAM)
   install(FILES ${written}/chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${written}/_chronormal DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   install(FILES ${written}/chronormal.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-  # Installs the page of reports, if ./run report has built the page. It lies in a folder beside all builds, where the
-  # programs in these builds look for it.
+  # Installs the page of reports, if ./run report has built the page. The page lies in a folder beside all builds, where
+  # the programs in these builds look for it.
   install(FILES ${PROJECT_BINARY_DIR}/../share/chronormal/report.html DESTINATION ${CMAKE_INSTALL_DATADIR}/chronormal
           OPTIONAL)
 endif()

@@ -1,4 +1,4 @@
-/// Splits JSON text into tokens, to check that an edit changes only one place. The tests use this too.
+/// Splits JSON text into tokens, to check that an edit changes only one place. The tests use this header too.
 #ifndef CHRONORMAL_FUZZ_JSON_TOKENS_H_
 #define CHRONORMAL_FUZZ_JSON_TOKENS_H_
 

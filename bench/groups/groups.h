@@ -15,15 +15,15 @@ void run_vertices(Suite& suite, const Size& size);
 /// Measures how long unit normals take on meshes other than the torus: thin triangles, varied valence, a sphere that
 /// collapses, and meshes by other people in CHRONORMAL_DATA (a dance, a human face).
 void run_meshes(Suite& suite);
-/// Measures how long every scheme takes, both at random t and in playback with small steps.
+/// Measures how long every scheme takes, both at one arbitrary t and in playback with small steps.
 void run_schemes(Suite& suite, const Size& size);
 
-/// Measures how long certificates of the largest errors of schemes take, and dense sampling of these errors for
-/// comparison.
+/// Measures how long it takes to compute certificates of the largest errors of schemes, and, for comparison, to sample
+/// these errors densely.
 void run_certificates(Suite& suite, const Size& size);
 
-/// Measures how long normal cones, bounds of clusters of faces, and mean normals take for a whole segment, and sampling
-/// of the normals for comparison.
+/// Measures how long it takes to compute normal cones, bounds of clusters of faces, and mean normals for a whole
+/// segment, and, for comparison, to sample the normals.
 void run_cones(Suite& suite, const Size& size);
 
 /// Measures how long normals of blend shapes take: many sparse targets with a few active at once, and few targets that

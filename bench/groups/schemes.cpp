@@ -1,4 +1,4 @@
-// Measures every scheme on the faces of the grid: the time of an evaluation at any t and in playback with small
+// Measures every scheme on the faces of the grid: the time of an evaluation at one t and in playback with small
 // steps, and the errors of the normals.
 
 #include "chronormal/schemes/scheme.h"

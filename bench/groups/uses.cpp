@@ -1,6 +1,6 @@
-// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side they
-// are seen. For comparison, also times the evaluation of the same control normals at one t, and the methods by which
-// other programs answer such a question.
+// Answers questions about a whole segment from control normals in memory: when faces collapse, and from which side a
+// viewer sees them. For comparison, also times the evaluation of the same control normals at one t, and the methods by
+// which other programs answer such a question.
 
 #include <fmt/core.h>
 

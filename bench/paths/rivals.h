@@ -16,8 +16,8 @@ namespace chronormal::bench {
 void add_loops(CaseList& list, const Mesh& mesh, Elements elements, double limit);
 /// Returns the largest allowed error of normals from float32 positions on the torus, in radians.
 [[nodiscard]] double float_limit(std::size_t elements);
-/// Adds the cases of libraries. Each library has the interpolated positions in its own structure already, and only
-/// computes normals.
+/// Adds the cases of libraries. The positions are interpolated and put into the structure of the library beforehand, so
+/// only the computation of normals is timed.
 void add_libraries(CaseList& list, const Mesh& mesh, Elements elements);
 
 /// Returns the names and versions of the libraries with which this benchmark was built.

@@ -6,8 +6,8 @@
 /// scheme has none, is counted as missing. It is left out, too.
 ///
 /// The exact normals that schemes are compared with are computed as in the paper, by the cross product (eq. 1) of
-/// vertices interpolated at t, in double and from positions alone. They use neither control normals nor schemes, so an
-/// error in either cannot stay hidden.
+/// vertices interpolated at t, in double and from positions alone. This computation uses neither control normals nor
+/// schemes, so an error in either cannot stay hidden.
 ///
 /// Units      radians; only output for people is in degrees.
 #ifndef CHRONORMAL_ANALYSIS_QUALITY_H_

@@ -56,7 +56,8 @@ void check_interruption();
 ///            loop uses those that it gets. A body may call parallel_for, whose loop shares the threads of the outer
 ///            one. A child of fork() has one thread, and a loop that was running on several threads ends with
 ///            Interrupted in the child. In wasm there is one thread.
-/// Order      a result must not depend on the order: write to slot i, and combine the slots in order afterwards.
+/// Order      results must not depend on the order of the calls: write to slot i, and combine the slots in order
+///            afterwards.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// The threads that a function uses: only the calling thread, or all cores if there is enough work.

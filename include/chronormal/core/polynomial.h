@@ -32,7 +32,7 @@ struct Power {
   return result;
 }
 
-/// The two parts of a polynomial p that is cut at t. They are the polynomials over [0, t] and over [t, 1], each as a
+/// The two parts of a polynomial p that is cut at t. They are p over [0, t] and p over [t, 1], each written as a
 /// polynomial over [0, 1]. split() computes them by de Casteljau's algorithm, with N (N+1) / 2 linear interpolations.
 template <class T, std::size_t N>
 struct Halves {

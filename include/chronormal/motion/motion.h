@@ -142,8 +142,8 @@ struct Motion {
   std::vector<std::uint32_t> body_of_vertex = {};
   MotionKind kind = MotionKind::kSequence;
   /// The point that is (0, 0, 0) in the positions of all keyframes. It is nonzero only if a file has coordinates far
-  /// from the origin with more digits than float32 keeps. Code that writes positions to files adds it. Normals do not
-  /// depend on it.
+  /// from the origin with more digits than float32 keeps. Code that writes positions to files adds this point. Normals
+  /// do not depend on it.
   std::array<double, 3> origin = {};
 
   /// Returns a view of segment i. Preconditions: the motion is valid (validate()), and i < segments.size().
@@ -284,7 +284,7 @@ struct BlendTarget {
   std::vector<std::uint32_t> vertices;  ///< indices of the vertices that the target moves, ascending
   std::vector<float> deltas;            ///< the displacement of each of these vertices at weight 1, (n, 3)
 
-  /// Makes a target from a delta for every vertex, (V, 3). It keeps only the vertices with deltas other than (0, 0, 0).
+  /// Makes a target from a delta for every vertex, (V, 3). Keeps only the vertices whose deltas are not (0, 0, 0).
   [[nodiscard]] static BlendTarget from_dense(std::span<const float> deltas, std::string name = {});
 };
 

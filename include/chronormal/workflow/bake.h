@@ -132,7 +132,8 @@ struct ViewerChange {
   };
   std::string viewer;
   bool is_named = true;  ///< true if the bake is made for this viewer, false for a viewer that is only spared
-  /// True if the errors decrease as a whole and none of them increases by more than is allowed.
+  /// True if the mean error decreases and no error grows by more than the tolerance allows. If an encoding other than
+  /// kSmallest was requested, errors may also grow as long as no more edges are torn.
   bool is_better = false;
   /// The errors in three kinds of poses. The first kind has the poses in the animations of the file as the viewer plays
   /// them, and in the file's constant weights. The second kind has each target alone, at weights from 0 to 1. The third
@@ -145,8 +146,8 @@ struct BakedCandidate {
   /// The name of the kind of candidate: "as it is", "own deltas", "products", "quadratics" or "low rank".
   std::string_view name;
   std::size_t targets = 0, bytes = 0;  ///< `bytes` counts new deltas and tangents, and the growth of tracks
-  /// The errors in the worst of the named viewers. They are those along the animations of the file, also between keys,
-  /// and in its constant weights. If no animation drives weights, they are those with each target alone, and in the
+  /// The errors in the worst of the named viewers, along the animations of the file, also between keys, and in the
+  /// file's constant weights. If no animation drives weights, these are the errors with each target alone, and in the
   /// poses of the options, to which nothing was fitted. Samples count if n(w) is longer than a thousandth of n(0).
   /// Normals are transformed by the skins of the nodes with the mesh.
   ShownErrors played;
@@ -234,9 +235,9 @@ struct GltfBake {
 /// Bakes a document into a new edit of the document, which the caller then writes. Meshes that were baked before do not
 /// change.
 ///
-/// Weights    those of all animations, of nodes and of meshes: if two targets are active at once, their pair gets a
-///            correction target. The encoding exact is exact at these weights, and at other weights except for pairs
-///            without a correction target.
+/// Weights    The weights of all animations, nodes and meshes of the file count: if two targets are active at once in
+///            them, their pair gets a correction target. The encoding exact is exact at these weights, and at other
+///            weights except for pairs without a correction target.
 /// Fits       with weightings other than area, n(w) is not a polynomial: exact then uses the quadratic form that is
 ///            exact if one target has the weight 0, 1/2 or 1, or if two have the weight 1.
 ///

@@ -71,7 +71,8 @@ struct CompareOptions {
   ElementOptions elements = {ElementKind::kFaces};
   /// The weighting of faces in the normals of vertices and corners. Normals with a weighting other than area are not
   /// quadratic in time. Schemes are then prepared from the exact weighted normals, and `polynomial` is the quadratic
-  /// through three of these. `quaternion:optimal` and `linear:scaled` search for the optimum for this quadratic.
+  /// through three of these normals. `quaternion:optimal` and `linear:scaled` search for the optimum for this
+  /// quadratic.
   Weighting weighting = Weighting::kArea;
   bool keep_errors = false;   ///< true to keep every single error in Comparison::errors
   bool keep_samples = false;  ///< true to keep the errors of each sample in SchemeComparison::samples

@@ -207,7 +207,8 @@ inline constexpr std::size_t kMostErrorBytes = std::size_t{1} << 30;
 ///             any, and for glTF primitives and vertices (columns) int64. If tables have names, so do their arrays:
 ///             mesh0_errors, linear_times
 ///     .ply    the mesh with the worst error, as it is at the first keyframe, with a property float quality for each
-///             vertex or face: the worst error of all samples, 0 if nothing was judged. MeshLab and Blender show it
+///             vertex or face: the worst error of all samples, 0 if nothing was judged. MeshLab and Blender show
+///             this property
 ///
 /// Errors: those of check_errors_output() and write_output(); kInvalidInput if there is no table; kUsage in PLY for
 /// corners, and for tables of several schemes, of which only one can be shown.
