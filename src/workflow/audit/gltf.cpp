@@ -83,8 +83,8 @@ Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<s
   return tracks;
 }
 
-// Measures the angles between the stored base normals and the sums of face normals that `truth` has for the base.
-// Ignores the side of the surface.
+// Measures the angles between the stored base normals and the sums of face normals that `truth` has for the base. The
+// side of the surface does not count, so an angle above 90 degrees is replaced by 180 degrees minus the angle.
 void measure_by_truth(const GltfShading& shading, const AuthorTruth& truth, AuthoredOffset& offset) {
   const auto position = [&](std::uint32_t v) { return to_double(vector_at(shading.set.base, v)); };
   std::vector<Vec3d> sums(shading.groups.size());
@@ -360,8 +360,8 @@ Result<std::optional<Measured>> audit_track(const MeshAudit& mesh, std::size_t a
 // result.
 Status audit_tracks(const MeshAudit& mesh, const Tracks& tracks, bool are_targets_judged, double worst_target,
                     Audit& result) {
-  // The key under which the result of a track is stored: the animation, the track's same_keys_as, and the skin of the
-  // node. Tracks with the same key have the same result.
+  // The key under which the result of a track is stored: the index of the animation, the index of its first track with
+  // the same keys (same_keys_as), and the skin of the node. Tracks with the same key have the same result.
   using Curve = std::tuple<std::size_t, std::size_t, bool, std::optional<std::uint32_t>>;
   std::map<Curve, std::optional<Measured>> of_curves;
   for (const auto& [animation, index] : tracks) {

@@ -24,8 +24,8 @@ inline constexpr std::size_t kRange = 4096;
 inline constexpr double kRoundingOfTerms = 1e-13;
 
 /// Returns a bound of the change of a polygon's normal if the coordinates of its corners are rounded to float32.
-/// Rounding changes a coordinate by at most 2^-24 of its value. The change of the normal is the sum over the corners c
-/// of d p[c] x (p[c+1] - p[c-1]).
+/// Rounding changes a coordinate by at most 2^-24 of its value. If the change of the position p[c] is d[c], the change
+/// of the normal is the sum over the corners c of d[c] x (p[c+1] - p[c-1]).
 template <class VertexAt>
 [[nodiscard]] double rounding_of_area(std::size_t corners, const VertexAt& vertex) {
   // The length by which rounding changes a vector at most, relative to its largest coordinate.
@@ -38,7 +38,8 @@ template <class VertexAt>
   return sum;
 }
 
-/// A vertex whose normal is judged. If the vertex has several normals, one corner with such a normal.
+/// A normal that is judged. It belongs to a vertex or, if the vertex has several normals, to a corner that shows one of
+/// these normals.
 struct JudgedOutput {
   std::uint32_t vertex = 0, element = 0;
   std::uint32_t face = 0, corner = 0;  ///< the face and the corner that show the normal; not set by all callers
@@ -49,8 +50,8 @@ struct PartNormals {
   std::vector<double> sizes;  ///< for each element, the sum of the largest components of its normal's terms
 };
 
-/// The part of a mesh that determines the normals of some outputs: their elements (groups of corners that share a
-/// normal), and the faces and vertices around these, renumbered.
+/// The part of a mesh that determines the normals of some outputs. It has the elements of the outputs (groups of
+/// corners that share a normal), and the faces and vertices around these elements.
 class JudgedPart {
  public:
   /// Creates the part. Elements and faces of the outputs are renumbered for this part, but vertices and corners keep

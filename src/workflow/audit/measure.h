@@ -110,7 +110,7 @@ void finish(Audit& result);
 //     right(first, normals)          replaces normals of the geometry by the true directions for outputs from number
 //                                    `first` on
 //     hides(output, n)               tells whether the true normal has no direction on the screen and is not judged
-//     at(segment, t, output)         returns the place as a message names it
+//     at(segment, t, output)         returns the place of an error, for messages
 //
 // Segments tell where to measure. They have these functions:
 //     look_over(look)                calls look(segment) for segments that determine the largest normals; returns a
@@ -141,8 +141,8 @@ struct PlacedPart {
 };
 
 /// Returns the length of the largest control normal of each element in all segments. The control normals of a segment
-/// follow from the normals at its ends and its middle. On curved paths they belong to the parabola through these three
-/// normals, which is accurate enough for a length to compare with.
+/// follow from the normals at its ends and its middle. If vertices move on curved paths, the control normals belong to
+/// the parabola through these three normals, which is accurate enough for a length to compare with.
 template <class Source, class Segments>
 [[nodiscard]] Result<std::vector<double>> largest_control_normals(Source& source, Segments& segments,
                                                                   PlacedPart& placed) {
@@ -168,8 +168,8 @@ template <class Source, class Segments>
 
 /// Adds the errors of some outputs, in order, to an empty result. Has the same effect as MotionError::add() and
 /// add_unlit(), in less time. degrees_of() returns the error of an output in degrees, kNotLit or kNotJudged. For an
-/// output with kNotJudged, faint_of() is called. It returns the error if a tolerance applies to this output all the
-/// same, kCancels, or kNotJudged if no face around the output has an area.
+/// output with kNotJudged, faint_of() is called. faint_of() returns the error in degrees to which a tolerance of the
+/// caller applies, or kCancels, or kNotJudged if no face around the output has an area.
 template <class Degrees, class Faint, class At>
 void add_errors(std::span<const JudgedOutput> outputs, const Degrees& degrees_of, const Faint& faint_of, const At& at,
                 MotionError& result) {

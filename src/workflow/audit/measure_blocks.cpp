@@ -198,7 +198,8 @@ Status measure_blocks(const SegmentsOfRun& segments, const JudgedPart& part, Aud
                       AuditSubject& subject) {
   const Motion& motion = segments.stream.motion();
   const std::vector<Block> blocks = make_blocks(part);
-  // For each block, the length of the largest control normal of each element; an element between two blocks is in both.
+  // For each block, the length of the largest control normal of each element. An element whose outputs lie in two
+  // blocks is in the lists of both blocks.
   std::vector<std::vector<double>> largest;
   largest.reserve(blocks.size());
   for (const Block& block : blocks) largest.emplace_back(block.elements.count, 0.0);

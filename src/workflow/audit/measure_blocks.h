@@ -18,7 +18,7 @@
 
 namespace chronormal::inline internal {
 
-/// Returns true if measure_blocks() can be used. This function needs triangles with area weights, a rule that
+/// Returns true if measure_blocks() can be used. measure_blocks() needs triangles with area weights, a rule that
 /// interpolates linearly or not at all, and so few samples that the errors of one segment take little memory.
 [[nodiscard]] bool can_measure_blocks(const JudgedPart& part, AuditRule rule, Weighting weighting,
                                       std::size_t samples) noexcept;
@@ -37,7 +37,8 @@ struct SegmentsOfRun {
   }
   /// Returns the segments that the run reads first, to find which vertices move and how long normals get.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Returns the segments whose errors the run measures. Shards divide only a sequence, which is a single subject.
+  /// Returns the segments whose errors the run measures. If the run is divided, these are the segments of its share that
+  /// no earlier run has measured. Otherwise these are all segments.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }

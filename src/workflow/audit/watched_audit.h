@@ -36,9 +36,10 @@ using AuditRun = RecordedRun<SegmentErrors>;
 using AuditShard = ShardOf<Audit, SegmentErrors>;
 
 /// Audits the share of a sequence's segments that belongs to the run. Every shard needs facts about the whole motion,
-/// such as which vertices move and how long a normal gets. A shard finds these facts in all segments, or, if it has
-/// peers, in its own segments and with maximize(). Errors: those of an undivided audit; kUsage if single errors are
-/// requested of a divided run or of targets, or if known segments belong to another audit; those of run.keep.
+/// such as which vertices move and how long a normal gets. A shard without peers finds these facts in all segments. A
+/// shard with peers examines only its own segments, and asks the peers with maximize(). Errors: those of an undivided
+/// audit; kUsage if single errors are requested of a divided run or of targets, or if known segments belong to another
+/// audit; those of run.keep.
 [[nodiscard]] Result<Audit> audit(MotionStream& stream, const StoredNormals& normals, const AuditOptions& options,
                                   AuditRun& run);
 

@@ -1,7 +1,7 @@
 // Bakes a glTF file. A mesh goes through these steps, and each step uses the results of the steps before it:
 //
 //     read_gltf_shading     the vertices, and the faces that determine their true normals             shading/
-//     plan_mesh             the encoding and, for exact, the pairs that the animations need           plan
+//     plan_mesh             the encoding and, for exact, the pairs of targets that get corrections    plan
 //     *_target_deltas       the terms of n(w) as arrays for each target                              terms, deltas
 //     choose_candidate      for other encodings: the best candidate in the viewers                    chooser
 //     MeshWriter            the arrays, and all lists with an item for each target, as edits of the file  write_mesh

@@ -153,8 +153,8 @@ class BlendMeter {
     return std::any_of(moved_.begin(), moved_.end(), [](const auto& outputs) { return !outputs.empty(); });
   }
 
-  // Measures the errors at the weights in `rows`. Deltas by least squares are fitted to the weights in fitted_rows,
-  // which are different.
+  // Measures the errors at the weights in `rows`. Deltas by least squares are fitted to other weights, which are in
+  // fitted_rows.
   BlendErrors measure(std::span<const double> rows, std::span<const double> fitted_rows,
                       const std::function<void()>& progress) {
     const DeltaNormals best = best_deltas(normals_, fitted_rows);

@@ -440,7 +440,7 @@ Result<Comparison> internal::compare(MotionStream& stream, const CompareOptions&
   Result<Elements> elements = elements_of(stream, options);
   if (!elements) return elements.error();
   Elements& all = elements.value();
-  // The errors of every row, for all elements at all samples.
+  // The errors of every scheme in `rows`, for all elements at all samples.
   std::vector<std::vector<float>> each;
   if (options.keep_errors) {
     const std::size_t samples = motion.segments.size() * options.samples;

@@ -9,8 +9,8 @@
 namespace chronormal {
 namespace {
 
-// The average error of `linear`, in radians, below which this error is only rounding error. Errors of other schemes are
-// then not divided by it.
+// The average error of `linear`, in radians, below which this error is only rounding error. The errors of other schemes
+// are then not divided by the error of `linear`.
 constexpr double kNoError = 1e-6;  // radians
 
 // Returns the cheapest scheme whose error is within `degrees`. Leaves out a scheme for which no normal could be

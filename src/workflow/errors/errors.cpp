@@ -104,7 +104,7 @@ Status internal::reserve_rows(ErrorTable& table, std::size_t rows, const Expansi
                  "the errors of " + counted(rows, "sample", "samples") + " of " +
                      counted(columns, one_element(table.kind), element_kind_name(table.kind)) +
                      " take more than 1 GiB; ask for fewer samples, or for a part of the input"};
-  // Cannot overflow, since the table of each mesh has at most 1 GiB.
+  // The sum cannot overflow, since the table of each mesh has at most 1 GiB.
   earlier += std::uint64_t{sizeof(float)} * rows * columns;
   if (Status status = expansion.check(earlier, "the errors of every sample"); !status) return status;
   table.degrees.reserve(rows * columns);

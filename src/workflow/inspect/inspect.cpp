@@ -358,8 +358,8 @@ Result<Inspection> inspect(MotionStream& stream,
   const std::size_t wave = block_count(kBlocksPerThread * thread_count(), blocks);
   std::vector<VertexTally> vertex_blocks(std::min(wave, total) * blocks);
   std::vector<SegmentTally> face_blocks(std::min(wave, total) * blocks);
-  // Maps an index to the keyframes at both ends. Indices of segments come first, followed by those of the keyframes
-  // that no segment judges.
+  // Maps an index to two keyframes. Indices of segments come first, and have the keyframes at both ends of the segment.
+  // They are followed by the keyframes that no segment judges, which have the same keyframe twice.
   const auto moves = [&](std::size_t s) { return s < segment_count; };
   const auto keys_of = [&](std::size_t s) {
     return moves(s) ? motion.segments[s] : Motion::SegmentKeys{still[s - segment_count], still[s - segment_count]};

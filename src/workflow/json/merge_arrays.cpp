@@ -25,8 +25,8 @@ struct ShardRows {
 
   [[nodiscard]] std::uint64_t end() const { return place.first + array.shape.front(); }
 
-  // Returns true if the arrays of two shards have the same number of rows in all, and rows of the same shape. Arrays
-  // with matching checksums do, unless somebody forged the parts.
+  // Returns true if the arrays of two shards have the same number of rows in all, and rows of the same shape. If the
+  // checksums of the shards match, the result is false only if somebody forged the parts.
   [[nodiscard]] bool is_like(const ShardRows& other) const {
     return place.total == other.place.total &&
            std::equal(array.shape.begin() + 1, array.shape.end(), other.array.shape.begin() + 1);

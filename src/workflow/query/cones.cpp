@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostTriangles = 512;  // the largest number that meshoptimizer allows for a meshlet
 // The weight, from 0 to 1, with which meshoptimizer prefers meshlets whose faces point in similar directions, since
-// these are culled more often.
+// such meshlets are culled more often.
 constexpr float kConeWeight = 0.5F;
 
 // Returns the half angle of a cone in degrees, rounded up.
@@ -64,7 +64,7 @@ Meshlets build_meshlets(const Motion& motion, std::size_t most_triangles) {
       const unsigned char* const local = &triangles[meshlet.triangle_offset + 3 * i];
       const unsigned* const global = &vertices[meshlet.vertex_offset];
       const Triangle triangle = from_the_lowest({global[local[0]], global[local[1]], global[local[2]]});
-      // Takes each of several faces with the same corners once.
+      // If several faces have the same corners, takes a face that was not taken before.
       auto found = std::lower_bound(faces.begin(), faces.end(), std::pair{triangle, std::uint32_t{0}});
       while (taken[found->second] != 0) ++found;
       taken[found->second] = 1;

@@ -57,8 +57,7 @@ void add_fronts(const Facing& facing, std::size_t element, const SegmentPart& pa
   if (is_front) close();
 }
 
-// Returns the view (viewer) in one segment. A moving eye moves at constant speed from time `first` to time `last` of
-// the motion.
+// Returns the view in one segment. A moving eye moves at constant speed from time `first` to time `last` of the motion.
 View view_in(const Segment& segment, const View& view, double first, double last) {
   if (view.from == view.to) return view;
   return View::of_moving_eye(view.from, view.to, LocalTime::between(first, segment.start_time, last),

@@ -25,8 +25,8 @@ namespace chronormal::inline internal {
   return span.expansion != nullptr ? *span.expansion : Expansion::unlimited();
 }
 
-/// Checks that the answer is within the limit if it has rows_of_part rows for every part (a face, vertex or corner
-/// each). A row takes bytes_per_row bytes. Errors: those of Expansion::check().
+/// Checks that the answer is within the limit if it has rows_of_part rows for every part: one row for each face, vertex
+/// or corner. A row takes bytes_per_row bytes. Errors: those of Expansion::check().
 [[nodiscard]] inline Status check_rows(std::size_t rows_of_part, std::string_view what,
                                        std::span<const SegmentPart> parts, std::uint64_t bytes_per_row,
                                        const QuerySpan& span) {

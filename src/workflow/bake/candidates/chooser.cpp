@@ -23,13 +23,13 @@ constexpr double kAlike = 1e-3;
 // errors so large that all candidates are beyond the tolerance.
 constexpr int kMostTightened = 3;
 constexpr double kPartOfMissed = 0.9, kLeastPart = 0.01;
-// Factors for a glance, which measures a candidate in only a few of the poses. A candidate is not examined further
-// if its mean error in the glance is kHopeless times that of the best candidate. If the best candidate meets all
-// criteria except the tolerance, a candidate that is also beyond the tolerance is given up already at kFarther times
-// the mean error of the best candidate.
+// Factors for a glance, which measures a candidate in only a few of the poses. A candidate is given up if its mean
+// error in the glance is more than kHopeless times that of the best candidate. If the best candidate meets all criteria
+// except the tolerance, a smaller factor suffices: a candidate that is also beyond the tolerance is given up if its
+// mean error is more than kFarther times that of the best candidate.
 constexpr double kHopeless = 2, kFarther = 1.25;
-// The number of correction targets up to which a file may grow by more bytes, and the bytes that a correction target
-// takes for each vertex, roughly.
+// kFewExtras is the largest number of correction targets with which deltas may take more bytes than the file.
+// kBytesOfExtra is roughly the number of bytes that a correction target takes for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
 // The largest mean error of a candidate that is better than the deltas of the file, relative to the mean error of these
 // deltas.
@@ -438,7 +438,8 @@ ChosenCandidate choose_candidate(const DeltaSource& source, const MeshWeights& w
     if (source.plan.lines.elements() == 0 || has_author) return chooser.take();
     chooser.consider(own_candidate(source, rights, Lengths::kFree));
     ChosenCandidate chosen = chooser.take();
-    // If targets are played together, the error of each target's deltas is known only in the poses that were measured.
+    // If targets are played together, the errors of their deltas are known only in the poses that were measured. For
+    // this reason the error of the fit is raised to the largest error in these poses.
     if (chosen.candidate.fit_error < source.plan.lines.largest_error())
       for (const ViewerChange& change : chosen.viewers)
         if (change.is_named)

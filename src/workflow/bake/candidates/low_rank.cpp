@@ -42,9 +42,9 @@ constexpr std::size_t kRowsAtOnce = 64, kFormBlock = 16;
 // should remain after least squares.
 constexpr double kPartOfNeed = 0.05, kPartOfSingular = 0.36, kPartOfWorst = 0.85;
 constexpr double kMoreExtras = 1.2;
-// Limits for a fit in which no tried number of correction targets reaches the tolerance. The first number is taken
-// whose error is at most kNoGain times the smallest error of all tried numbers, provided that at least kManyMore times
-// as many targets were tried.
+// Limits for a fit in which no tried number of correction targets reaches the tolerance. The fit then takes the
+// smallest number whose error is at most kNoGain times the smallest error of all tried numbers, provided that at least
+// kManyMore times as many targets were tried.
 constexpr double kNoGain = 1.05;
 constexpr std::size_t kManyMore = 2;
 // Positions in a gap between keys, from 0 to 1, at which a fit is checked. The fit does not use these positions.
@@ -94,8 +94,9 @@ struct Rows {
   std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };
 
-// Returns the tracks that are used if a fit may have at most `most` rows. Each of these tracks needs room for the rows
-// of its most telling piece (telling_tracks() and telling_keys() in poses/played_poses.h).
+// Returns the tracks that are used if a fit may have at most `most` rows. Leaves out tracks if there are too many, so
+// that each remaining track can have rows in about one gap between keys. telling_tracks() (poses/played_poses.h) chooses
+// the tracks that remain.
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -116,8 +117,8 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // Estimates at how many keys there is room for rows. A piece of a curve takes three rows if its neighbours are left
-    // out, and otherwise two rows, because it shares its ends.
+    // Estimates after how many keys the curves can have rows. A piece of a curve takes three rows if its neighbours are
+    // left out, and otherwise two rows, because it shares its ends.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});
@@ -422,8 +423,8 @@ LowRank find_low_rank(const RightNormals& rights, const MeshWeights& weights, st
   return found;
 }
 
-// Multiplies vectors by a factor. If is_unit is true, changes each vector E instead, so that N + E has the length of N;
-// keeps_along then keeps the part of E along N.
+// Multiplies vectors by a factor. If is_unit is true, also changes each vector E so that N + E has the length of N. If
+// keeps_along is true as well, adds back the part of E along N.
 void shorten(const RightNormals& rights, double factor, bool is_unit, bool keeps_along, VertexVectors& vectors) {
   for (std::size_t n = 0; n < vectors.vertices.size(); ++n) {
     Vec3f& vector = vectors.vectors[n];

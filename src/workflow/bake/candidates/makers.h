@@ -36,8 +36,8 @@ enum class Lengths {
   kFree
 };
 
-/// Returns the lengths of deltas that restrict deltas least, among those that all of these viewers render with little
-/// or no loss.
+/// Returns, among the lengths of deltas that all of these viewers render with little or no loss, those that restrict
+/// deltas least.
 [[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
 /// Returns the factor by which weights for these lengths are larger than weights for deltas of any length.

@@ -274,8 +274,8 @@ class Corrector {
       if (u) result.one = base.length * (*u - base.direction);
       result.error_of_one = error_with((1 / base.length) * result.one);
     }
-    // Tries lengths of the corrected normal in the pose, up to what two unit vectors can reach. Chooses the length with
-    // the smallest error half-way.
+    // Tries lengths of the corrected normal in the pose, up to the length that two unit vectors can reach. Chooses the
+    // length with the smallest error half-way to the pose.
     std::optional<Vec3d> best;
     double size = kLongestSum;
     for (int n = 0; n < kTriedSums; ++n, size *= kNextSum) {

@@ -18,10 +18,10 @@ namespace {
 // The largest number of rounds of a fit. A viewer scales the sum of a normal and its deltas to length 1, so the sum may
 // have any length. Each round fits the sum to the length that is nearest to the length after the last round.
 constexpr int kRounds = 12;
-// The part of the squared error of the round before. If a round leaves more than this part, it is the last round.
+// A fit ends with the first round that leaves more than this part of the squared error of the round before.
 constexpr double kStandstill = 0.99;
-// The length of the vector to which a sum is fitted if the sum points away from the true normal, relative to the length
-// of the sum. The vector has the direction of the true normal.
+// If a sum of a normal and its deltas points away from the true normal, the sum is fitted to a vector in the direction
+// of the true normal. The length of this vector is kLeastPart times the length of the sum.
 constexpr double kLeastPart = 0.1;
 // The smallest length of a normal that is judged, relative to its longest term.
 constexpr double kLeastLine = 1e-4;
@@ -38,7 +38,7 @@ constexpr std::size_t kMostTargets = 64;
 // kSums is the largest number of weighted deltas that a round adds up, over all elements and poses. The other constants
 // limit the number of poses to which deltas are fitted.
 constexpr std::size_t kSums = 50000000, kPosesPerTarget = 4, kLeastPoses = 17, kEnoughPoses = 256, kMostPoses = 2000;
-// The largest number of poses in which the error that is left is measured. If there are few elements, these poses
+// The largest number of poses in which the error after the fit is measured. If there are few elements, these poses
 // include all keys.
 constexpr std::size_t kMostStated = 100000;
 constexpr std::size_t kLineBlock = 64;
@@ -213,8 +213,8 @@ class Together {
     }
   }
 
-  // Returns the shown elements at which at least one pair of targets meets. Each has, for each of its targets, the
-  // delta that is best for this target alone.
+  // Returns the shown elements that two targets move at the same time in some pose. Each element has, for each of its
+  // targets, the delta that is best for this target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {

@@ -27,17 +27,16 @@ class FittedLines {
   FittedLines() = default;
   /// Fits deltas of the elements for which is_shown is true. `largest` has the length of the largest term of each
   /// element. Computes the normals of all elements in 17 to 2,000 poses for the fit, and in more poses for the error.
-  /// In addition, each element takes some ten times the square of the number of its active targets in operations for
-  /// each pose.
+  /// In addition, an element with k active targets takes some 10 k^2 operations in each pose.
   FittedLines(const GltfShading& shading, const NormalTerms& terms, const WeightUse& use,
               const std::vector<bool>& is_shown, const std::vector<double>& largest);
 
   /// Writes the fitted delta that a target has for an element to `delta`. Returns false if there is no fitted delta.
   [[nodiscard]] bool find(std::size_t target, std::uint32_t element, Vec3d& delta) const;
   /// Returns the largest angle that the fitted deltas leave between rendered and true normals, in radians. The angle is
-  /// measured at all keys, and at fifteen times between neighbouring keys. If these times are too many, it is measured
-  /// at fewer times. If even the keys are too many, it is measured at some of the keys; the limit depends on the size
-  /// of the mesh, and is never above 100,000 keys.
+  /// measured at all keys, and at fifteen times between neighbouring keys. If these times are too many, fewer times are
+  /// used. If even the keys are too many, only some of the keys are used; the limit depends on the size of the mesh,
+  /// and is never above 100,000 keys.
   [[nodiscard]] double largest_error() const noexcept { return largest_error_; }
   /// Returns the number of elements that have fitted deltas.
   [[nodiscard]] std::size_t elements() const noexcept { return elements_; }

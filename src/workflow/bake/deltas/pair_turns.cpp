@@ -45,8 +45,8 @@ double tangent_between(const Vec3d& unit, const Vec3d& other) {
   return along > 0 ? length(cross(unit, other)) / along : std::numeric_limits<double>::infinity();
 }
 
-// Returns a bound of the tangent of the angle between a unit vector and another vector. `difference` is the length of
-// the vector between them.
+// Returns a bound of the tangent of the angle between a unit vector and another vector. `difference` is the distance
+// between the ends of the two vectors.
 double tangent_bound(double difference) {
   return difference < 1 ? difference / std::sqrt(1 - difference * difference) : std::numeric_limits<double>::infinity();
 }
@@ -141,7 +141,8 @@ PairMeter::PairMeter(const GltfShading& shading, const NormalTerms& terms, const
       normals_(shading, terms, poses) {}
 
 // Returns true if a normal of this length is long enough for its direction to be judged. The first test takes less
-// time. Its limit is at least as high as that of the second test, and it decides for most normals.
+// time, and decides for most normals. Its limit is at least as high as that of the second test, so a normal that passes
+// the first test would also pass the second test.
 bool PairMeter::is_judged(std::uint32_t element, double size) const {
   if (size > kLeastLength * std::fmax(longest_base_, largest_[element])) return true;
   return size > kLeastLength * std::fmax(length(terms_.base_of(element)), largest_[element]);
@@ -257,7 +258,7 @@ double PairMeter::turn_without(std::span<const ExtraWeight> extras) {
     const std::size_t count = std::min(normals_.chunk(), elements - first);
     std::vector<double> tangents(count, 0.0);
     parallel_blocks(count, kElements, [&](IndexRange range) {
-      // The vectors by which the normals of these elements differ if the terms are left out, in all poses, as an array
+      // The vectors by which the normals of these elements change if the terms are left out. They form an array
       // (elements, poses).
       std::vector<Vec3d> left(range.count * poses);
       std::vector<bool> is_touched(range.count, false);

@@ -16,8 +16,9 @@ namespace {
 
 constexpr std::size_t kPlanBlock = 1024;
 constexpr std::size_t kMostExtras = 10000;
-// Limits for the number of poses in which pairs of targets are measured: so many poses that some kSampledCorners
-// corners are measured in all, but at least kLeastSamples and at most kMostSamples poses.
+// Limits for the number of poses in which pairs of targets are measured. There are so many poses that about
+// kSampledCorners corners are measured in all poses together, but at least kLeastSamples and at most kMostSamples
+// poses.
 constexpr std::size_t kLeastSamples = 17, kMostSamples = 2000, kSampledCorners = 20000000;
 
 std::string place_of(const GltfDocument& document, std::size_t mesh) {
@@ -71,9 +72,9 @@ std::vector<WeightRange> weight_ranges(const WeightUse& use) {
   return ranges;
 }
 
-// Tells for each target if it gets the best single delta, instead of two terms. For the encoding exact, a target gets
-// this delta if it moves vertices but no animation drives it. For other encodings, every target that moves vertices
-// gets this delta.
+// Tells for each target if it gets the best single delta, instead of a linear and a square term. For the encoding
+// exact, a target gets this delta if it moves vertices but no animation drives it. For other encodings, every target
+// that moves vertices gets this delta.
 std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encoding) {
   std::vector<bool> result(mesh.use.targets(), false);
   for (std::size_t i = 0; i < result.size(); ++i)

@@ -116,8 +116,8 @@ BlendTerm NormalTerms::pair(std::size_t i, std::size_t j) const {
     return term;
   }
   if (i == j) return {fits_[i].elements, fits_[i].square, {}};
-  // The term of the pair is the true normal with both targets at weight 1, minus the sum of the terms of the single
-  // targets.
+  // The term of the pair is the true normal with both targets at weight 1, minus the base normal, and minus the terms
+  // of the single targets.
   std::vector<float> to = shading_.set.base;
   add_deltas(shading_.set.targets[i], to);
   add_deltas(shading_.set.targets[j], to);

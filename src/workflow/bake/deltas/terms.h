@@ -81,7 +81,7 @@ class NormalTerms {
 
   void fit_targets();
   // Returns the true normals of all elements at some weights, with the lengths of normals weighted by area. Stores the
-  // result for later calls as long as there is room.
+  // result for later calls, unless the memory for such results is used up.
   [[nodiscard]] std::vector<Vec3d> sample_all(std::span<const double> weights, std::span<const double> positions) const;
 
   const GltfShading& shading_;

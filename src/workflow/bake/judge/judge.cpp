@@ -344,8 +344,8 @@ TearCounts Judge::tears_of(const KnownSet& known, const Differences& differences
       known.edges.size(), kEdgeBlock,
       [&](std::size_t edge, TearCounts& counts) {
         const auto [a, b] = known.edges[edge];
-        // Skips an edge if its two errors are too small for a tear: their difference is at most as long as both
-        // together.
+        // Skips an edge if the errors at its two ends are too small for a tear. The length of the difference of these
+        // errors is at most the sum of their lengths.
         const float most = differences.largest[a] + (b < count ? differences.largest[b] : 0);
         if (most * most < TearCounts::kSquares[0]) return;
         counts.add(differences.planes.data() + 3 * a * poses,

@@ -8,7 +8,6 @@
 /// The right normals of all poses are computed once. The normals that viewers render of the file before the bake are
 /// computed once as well.
 ///
-/// Shapes     n is the number of a vertex in the list of judged vertices.
 /// Units      degrees
 /// Threads    Uses all cores for one measurement after the other. The results have the same bits on any number of
 ///            cores.

@@ -35,7 +35,7 @@ struct ExtraCurves;
 class CurveNodes {
  public:
   explicit CurveNodes(const WeightTrack& track);
-  /// Creates the nodes that `curves`, given over the track, already have.
+  /// Creates the nodes at which `curves` has values. `curves` are the curves over this track.
   CurveNodes(const WeightTrack& track, const ExtraCurves& curves);
 
   [[nodiscard]] std::size_t size() const noexcept { return pieces_ == 0 ? keys_ : 2 * pieces_ * (keys_ - 1) + 1; }
@@ -106,13 +106,13 @@ struct ExtraDrivers {
   /// Returns a pose with the weights of correction targets appended to the weights of own targets. Formulas or sums
   /// give the appended weights.
   [[nodiscard]] std::vector<double> with_extras(std::vector<double> own) const;
-  /// Returns poses that stand still (outside of animations) with the weights of correction targets appended. If curves
-  /// drive the correction targets, these weights are zero in the expressions of an avatar, which come after the poses
-  /// for which `rest` has weights.
+  /// Returns poses outside of animations with the weights of correction targets appended. If curves drive the
+  /// correction targets, `rest` has these weights for the first poses. All later poses are expressions of an avatar, in
+  /// which these weights are zero.
   [[nodiscard]] PoseList standing(const PoseList& poses) const;
   /// Returns a track with the weights of correction targets. Cubic splines get more keys until the errors of formulas
-  /// turn no normal by more than `tolerance` or spline_tolerance, in radians. If that takes more than most_keys keys,
-  /// the result has no values.
+  /// turn no normal by more than the smaller one of `tolerance` and spline_tolerance, in radians. If that takes more
+  /// than most_keys keys, the result has no values.
   [[nodiscard]] ExtendedTrack extended(const TrackName& name, const WeightTrack& track, double tolerance,
                                        std::size_t most_keys = std::numeric_limits<std::size_t>::max()) const;
 };

@@ -119,7 +119,8 @@ std::vector<std::size_t> telling_tracks(std::span<const WeightTrack> tracks, std
 
 namespace {
 
-// Positions in a gap between two keys at which a track is judged, from 0 to 1. The most telling positions come first.
+// Positions in a gap between two keys at which a track is judged, from 0 to 1. If fewer positions are used, the first
+// ones of this list are taken.
 constexpr std::array<double, 5> kParts = {0.63, 0, 0.37, 0.88, 0.11};
 
 // Returns at most `room` times of one track, in seconds. The times are at the telling keys of the track and after these

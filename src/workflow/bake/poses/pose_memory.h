@@ -14,9 +14,9 @@
 
 namespace chronormal::inline internal {
 
-/// A store of vectors. It stores new vectors until its room is used up. Poses come in the same order each time, so if
-/// new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions may run at the same
-/// time.
+/// A store of vectors. New vectors are stored until the store takes most_bytes bytes. Poses come in the same order each
+/// time, so if new vectors replaced the oldest ones, no vectors would be found again. Threads: all functions may run at
+/// the same time.
 class PoseMemory {
  public:
   explicit PoseMemory(std::size_t most_bytes) : room_(most_bytes) {}
@@ -30,7 +30,7 @@ class PoseMemory {
     return found == kept_.end() ? nullptr : &found->second;
   }
 
-  /// Stores a copy of the vectors of a pose if there is room.
+  /// Stores a copy of the vectors of a pose if enough of the most_bytes bytes are left.
   void keep(std::span<const double> pose, const std::vector<Vec3d>& vectors) {
     const std::size_t bytes = vectors.size() * sizeof(Vec3d) + pose.size() * sizeof(double);
     std::vector<double> key(pose.begin(), pose.end());

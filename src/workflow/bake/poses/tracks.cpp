@@ -45,8 +45,8 @@ Sextic extra_weight(const ExtraWeight& extra, const std::vector<Cubic>& weights)
   return result;
 }
 
-// Returns the slope of a correction target's weight. a and b are the values of the two weights of which it is the
-// product, and slope_a and slope_b are their slopes.
+// Returns the slope of a correction target's weight, which is computed from two weights. a and b are the values of
+// these two weights, and slope_a and slope_b are their slopes.
 double slope_of(const ExtraWeight& extra, double a, double b, double slope_a, double slope_b) {
   return extra.linear * slope_a + extra.quadratic * (slope_a * b + a * slope_b);
 }
@@ -237,7 +237,7 @@ ExtendedTrack extended_track(const WeightTrack& track, std::span<const ExtraWeig
     result.error = error_of_clamping(result.values);
     return result;
   }
-  // In a spline with one key, only the value has an effect.
+  // In a spline with one key, slopes have no effect, so the slopes of correction targets stay 0.
   const std::size_t columns = track.targets + extras.size();
   result.values.assign(3 * columns, 0.0F);
   for (std::size_t i = 0; i < track.targets; ++i) {

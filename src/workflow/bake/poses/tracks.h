@@ -60,7 +60,7 @@ inline constexpr std::size_t kBytesPerWeight = 48;
                                            std::size_t most_keys = std::numeric_limits<std::size_t>::max());
 
 /// Extends a LINEAR track by the weights of correction targets, so that it stays LINEAR. The gap between two keys gets
-/// as many straight pieces of equal length as `pieces` tells. The weights in the file play as before (up to float32),
+/// as many straight pieces of equal length as `pieces` tells. The weights in the file play as before (up to rounding),
 /// and the weights of correction targets are right at all keys. If the pieces take more than most_keys keys, the result
 /// has no values, but the number of keys that it would have. pieces must have one number for each pair of neighbouring
 /// keys, and none of these numbers may be 0.

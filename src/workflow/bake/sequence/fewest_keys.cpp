@@ -1,5 +1,5 @@
 // Chooses the keys of a sequence. A line is what a viewer renders between two keys. Extends the line that starts at a
-// key as far as its certificate allows, and puts the next key there.
+// key as far as its certificate allows, and puts the next key at the end of this line.
 #include "workflow/bake/sequence/fewest_keys.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // The sum is then eq. 41 of docs/theory.md (section 15), so the normals are exact.
 //
 //     AreaSums                        sums of the areas of faces around elements, in blocks          area_sums
-//     SequenceNormals                 normals at keys, and their bends between, from a stream       sequence_normals
+//     SequenceNormals                 normals at keys and bends between keys, from a stream         sequence_normals
 //     sequence_elements               base normals, and which of them key 0 cannot have             sequence_deltas
 //     *_deltas, each_exact_segment    the deltas of each target, as arrays                          sequence_deltas
 //     unit_*                          deltas that every viewer renders alike                        harmless_sequence
@@ -92,8 +92,8 @@ Result<std::vector<float>> file_times(const Motion& motion, std::vector<std::str
   return times;
 }
 
-// Returns elements as HarmlessElements, without counting deltas beyond 1. For encodings that do not limit deltas for
-// compressors.
+// Returns elements as HarmlessElements, without counting deltas beyond 1. Is used for encodings that do not limit
+// deltas for compressors.
 Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> elements) {
   if (!elements) return elements.error();
   return HarmlessElements{std::move(elements).value(), 0};

@@ -137,7 +137,7 @@ namespace {
 
 // Returns a function that computes exact sums of the areas at the points a + b, in integers. The arrays a and b are
 // made by make_a and make_b when they are first needed. At t = 1/2 of a segment from a to b, the points are half of a +
-// b, and the areas are a fourth.
+// b, so the areas are a fourth of these sums.
 template <class MakeA, class MakeB>
 AreaSums::Exact exact_sums(const Topology& topology, const NormalGroups& groups, const MakeA& make_a,
                            const MakeB& make_b) {

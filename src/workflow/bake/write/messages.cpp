@@ -15,8 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The number of morphed attributes that viewers support at least. Viewers that keep morphed data in vertex attributes
-// have no more room in WebGL 1, and the glTF specification requires that viewers support at least this number.
+// The number of morphed attributes that every viewer supports. The glTF specification requires at least this number,
+// and viewers that keep morphed data in vertex attributes cannot support more of them in WebGL 1.
 constexpr std::size_t kMorphedAttributes = 8;
 // Factors by which a file may grow without a warning. kLargeTimesOfMany applies if there are more than kFewExtras
 // correction targets.

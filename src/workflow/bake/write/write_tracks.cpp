@@ -233,8 +233,8 @@ class TrackWriter {
   GltfEdit& edit_;
   WrittenTracks written_;
   std::map<std::size_t, std::size_t> place_of_mesh_;  // for the index of a mesh, its index in meshes_
-  // The samplers that were written, keyed by the index of the animation, the keys of the track, and the index of the
-  // mesh in meshes_.
+  // The samplers that were written, keyed by the index of the animation, the index of its first track with the same
+  // keys, and the index of the mesh in meshes_.
   std::map<std::tuple<std::size_t, std::size_t, std::size_t>, Sampler> samplers_;
 };
 
