@@ -122,8 +122,8 @@ void note_offset(const GltfShading& shading, const AuthorTruth& truth, const Aut
 }
 
 // Returns the mesh of the original file, from which the audited file was baked. Reuses the mesh of an earlier audit if
-// its base normals equal those of the audited mesh. Returns nothing if there is no original file, or if its mesh
-// differs too much to be the original.
+// that mesh has the same base normals as the audited mesh. Returns nothing if there is no original file, or if the mesh
+// in this file has other base positions, the mark of a bake, or more targets than the audited mesh.
 Result<std::shared_ptr<AuthorOfMesh>> original_of(const AuditOptions& options, const GltfShading& baked,
                                                   const KnownAuthors* known) {
   std::shared_ptr<AuthorOfMesh> author;
@@ -147,7 +147,7 @@ JudgedPart part_of(const MeshAudit& mesh, const Involved& involved) {
   JudgedPart part =
       judged_part(mesh.shading, mesh.truth, moving_outputs(mesh.shading, mesh.truth, involved, mesh.rule), mesh.rule);
   if (mesh.rule != AuditRule::kFlat)
-    // The rule flat intends folds between faces, so edges are not examined for tears.
+    // Flat shading intends folds between faces, so edges are not examined for tears.
     part.set_edges(mesh.edges, mesh.shading.element_of_vertex.size());
   return part;
 }

@@ -117,8 +117,8 @@ void maximize(const SegmentRun& run, std::vector<std::vector<double>>& numbers) 
   }
 }
 
-// Computes the normals that a viewer stores at a keyframe and interpolates afterwards. They are the true normals,
-// rounded.
+// Computes the normals that a viewer stores at a keyframe and interpolates afterwards: the true normals, rounded to
+// float32.
 void keep_as_viewer(AuditRule rule, const PlanesOf4& sums, PlanesOf4& result) {
   result.resize(sums.x.size());
   for (std::size_t e = 0; e < sums.x.size(); ++e) {

@@ -100,8 +100,8 @@ class SequenceSource {
     return stored_normal(normals_, keyframe, output);
   }
 
-  // Turns a direction by the angle between the author's normal and the geometry at a keyframe. If that angle is larger
-  // than in keyframe 0, the direction is turned only by the angle of keyframe 0.
+  // Turns a direction by the rotation from the normal of the geometry to the author's normal at a keyframe. If the
+  // angle of this rotation is larger than in keyframe 0, turns the direction only by the angle in keyframe 0.
   [[nodiscard]] Vec3d offset_by(std::size_t keyframe, const Vec3d& geometry, const JudgedOutput& output,
                                 const Vec3d& direction) const {
     const Vec3d from = unit(geometry), to = unit(stored_at(keyframe, output));

@@ -19,7 +19,8 @@ namespace chronormal::inline internal {
 
 class StoredSums {
  public:
-  /// The number of sets of weights for which sums are computed in one pass. They take hardly longer than one set.
+  /// The number of sets of weights for which sums are computed in one pass. One pass takes hardly longer for several
+  /// sets than for a single set.
   static constexpr std::size_t kAtOnce = 4;
 
   /// Creates an empty store. shading and outputs must outlive the store. `involved` lists targets in ascending order. A

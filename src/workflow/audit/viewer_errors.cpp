@@ -19,7 +19,8 @@ bool adds_as_specified(const Viewer& viewer, bool is_skinned) noexcept {
   return viewer.normals == NormalRule::kSum && viewer.bits == 32 && (!is_skinned || viewer.skins == SkinRule::kBlended);
 }
 
-// The source as one viewer shows it through a skin, with the functions of a source that error_at() calls.
+// A source as one viewer shows its normals through a skin. It has those functions of a source (measure.h) that
+// error_at() calls.
 struct SeenByViewer {
   const BlendSource& source;
   SkinRule rule;

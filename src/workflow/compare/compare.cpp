@@ -52,7 +52,7 @@ double median(std::vector<float> values) {
   return *middle;
 }
 
-// The results of one scheme on one block, or on all blocks of a segment so far.
+// The results of one scheme on one block, or on all blocks of a segment that were added.
 struct Tally : SchemeTally {
   std::vector<Quality> samples;                // the errors at each sample; set only if samples are kept
   std::vector<float> prepare_ns, evaluate_ns;  // nanoseconds per element, one value for each block

@@ -98,7 +98,7 @@ struct Box {
   [[nodiscard]] double most() const { return maximum_number(max_abs(to_double(low)), max_abs(to_double(high))); }
 };
 
-// The findings about vertices in one block of a segment, or in all of its blocks so far.
+// The findings about vertices in one block of a segment, or in all blocks of the segment that were added.
 struct VertexTally {
   Box from, to;  // boxes of those keyframes at both ends that this segment judges
   Largest motion;
@@ -125,7 +125,7 @@ void keep_larger(Largest& largest, const Largest& other) {
   if (other.value > largest.value) largest = other;
 }
 
-// The findings about faces in one block of a segment, or in all of its blocks so far.
+// The findings about faces in one block of a segment, or in all blocks of the segment that were added.
 struct SegmentTally {
   KeyframeTally from, to;  // results of those keyframes at both ends that this segment judges
   FaceTally collapses, vanishing, turned_over, turned_far, without_normals;
@@ -230,8 +230,8 @@ double square_of_cosine_above(double angle) {
   return cosine * cosine * (1 + 1e-12);
 }
 
-// Examines face f in a segment. most_of_square is square_of_cosine_above() of the largest turn of a face so far. If
-// face f turns by less, the exact angle is not computed.
+// Examines face f in a segment. most_of_square is square_of_cosine_above() of the largest turn of all faces that were examined before.
+// If face f turns by less, the exact angle is not computed.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);

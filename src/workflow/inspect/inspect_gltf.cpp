@@ -84,8 +84,8 @@ Result<GltfTrackInspection> inspect_track(const GltfDocument& document, std::siz
   if (times.empty()) return result;
   result.first_time = times.front();
   result.last_time = times.back();
-  // Takes the middle one of the three rows that a cubic spline has for each key. It has the weights, and the others
-  // have tangents.
+  // Takes only the middle one of the three rows that a cubic spline has for each key. The middle row has the weights,
+  // and the other rows have tangents.
   const bool is_cubic = document.animations()[animation].tracks[track].interpolation == GltfInterpolation::kCubicSpline;
   const std::size_t rows = times.size() * (is_cubic ? 3 : 1), width = values.size() / rows;
   bool is_first = true;

@@ -70,8 +70,8 @@ class RowsInBounds {
  public:
   explicit RowsInBounds(const Expansion& expansion) noexcept : expansion_(expansion) {}
 
-  /// Adds the bytes of another part of a segment. `done` of `total` parts are then finished, which a message tells.
-  /// Errors: those of Expansion::check(), as soon as the sum is too large.
+  /// Adds the bytes of another part of a segment. The message of an error states that `done` of `total` parts are
+  /// finished. Errors: those of Expansion::check(), as soon as the sum is too large.
   [[nodiscard]] Status add(std::uint64_t bytes, std::size_t done, std::size_t total) {
     bytes_ += bytes;
     return expansion_.check(

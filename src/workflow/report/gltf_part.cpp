@@ -9,8 +9,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the vectors that are not zero, with the indices of their vertices. If no vector is zero, returns all vectors
-// without such a list.
+// Returns the vectors that are not zero, with the indices of their vertices. If no vector is zero, returns all vectors,
+// without indices.
 ModelVectors without_zeros(const std::vector<float>& vectors) {
   ModelVectors result;
   for (std::size_t v = 0; 3 * v < vectors.size(); ++v) {

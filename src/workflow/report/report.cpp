@@ -19,8 +19,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The factor by which the bytes for the arrays of a report are reduced again if a page is still too large, and the
-// smallest share of the first limit that is tried.
+// If a page is still too large after its arrays were thinned out, they are thinned out again, to kShare times the bytes
+// of the last attempt. The last attempt is the first one below kLeastShare of the bytes that should fit.
 constexpr double kShare = 0.9, kLeastShare = 0.1;
 
 std::function<void(std::size_t, std::size_t)> told(const ReportOptions& options, std::string_view what) {

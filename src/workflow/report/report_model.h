@@ -20,7 +20,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::uint32_t kNoReportElement = static_cast<std::uint32_t>(-1);
 
-/// Vectors of some vertices, in ascending order of the vertices. If is_dense is true, vectors of all vertices.
+/// Vectors of some vertices, in ascending order of the vertices, or of all vertices if is_dense is true.
 struct ModelVectors {
   bool is_dense = false;
   std::vector<std::uint32_t> vertices;  ///< the vertices that have a vector; empty if is_dense is true
@@ -69,7 +69,7 @@ struct ModelTruth {
     std::vector<float> values;  ///< (n, 2), the changes of these offsets
   };
 
-  /// The corners of the polygons whose normals are added up, and the first corner of each polygon. Both are empty if
+  /// The corners of the polygons whose normals are added up, and the first corner of each polygon. Both lists are empty if
   /// triangles are added up.
   std::vector<std::uint32_t> first, corners;
   /// Pairs of a corner of a polygon and the element that adds up this corner, in ascending order of corners, (n, 2).

@@ -97,8 +97,8 @@ std::size_t thin_keyframes(ReportModel& model, std::size_t most_bytes) {
     if (s > 0) keep(s - 1);
   }
   const std::size_t have = static_cast<std::size_t>(std::count(is_kept.begin(), is_kept.end(), true));
-  // Counts the segments for which there is room. In a sequence, a segment away from others needs two keyframes. In
-  // targets, all segments share the base, so each segment needs only one more keyframe.
+  // Counts the segments that fit into the limit of keyframes. In a sequence, a segment away from others needs two
+  // keyframes. In targets, all segments share the base, so each segment needs only one more keyframe.
   const std::size_t room = left(most, have) / (model.kind == "sequence" ? 2 : 1);
   for (std::size_t n = 0; n < room; ++n) keep(n * segments / room);
 

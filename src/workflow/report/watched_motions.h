@@ -24,8 +24,8 @@ struct WatchedPart {
 class WatchedMotions {
  public:
   /// Creates an object without motions. `audited` lists the viewers of the audit, and `kept` the viewers whose weights
-  /// the report contains. vertex_of_corner has the report's vertex for each corner, and must outlive this object. If it
-  /// is empty, the report has the vertices of the audit.
+  /// the report contains. vertex_of_corner has the report's vertex for each corner, and must outlive this object. If
+  /// vertex_of_corner is empty, the report has the vertices of the audit.
   WatchedMotions(std::span<const Viewer> audited, std::span<const Viewer> kept,
                  std::span<const std::uint32_t> vertex_of_corner = {});
 

@@ -43,8 +43,8 @@ std::vector<float> positions_at(const Segment& segment, double t) {
   return positions;
 }
 
-// Makes a keyframe from computed positions. Returns an error, which names `mover`, if a position is too large for
-// float32.
+// Makes a keyframe from computed positions. Returns an error if a position is too large for float32. The message of the
+// error begins with `mover`.
 Result<Motion::Keyframe> pose_of(const LongSums& positions, const std::string& mover) {
   for (std::size_t i = 0; i < positions.high().size(); ++i) {
     if (!(std::fabs(positions.high()[i]) <= kLargestFloat))

@@ -368,8 +368,8 @@ Result<SampleSummary> internal::write_samples(MotionStream& stream, const Sample
       return status.error();
   }
 
-  // Files that are complete but do not have their names yet. They get them only at the end, since a name may be that of
-  // a file with a keyframe of the input.
+  // Files that are complete but do not have their names yet. The files get their names only at the end, since such a
+  // name may be the name of a file from which keyframes are still read.
   std::vector<OutputFile> meshes;
   run.skip(written);
   const auto keys = [&](std::size_t i) {

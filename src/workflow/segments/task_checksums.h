@@ -1,5 +1,5 @@
-/// Computes checksums that show whether two parts (files of shards) belong to the same task. They are computed while a
-/// shard reads keyframes. Private to workflow.
+/// Computes checksums that show whether two parts (files of shards) belong to the same task. The checksums are computed
+/// while a shard reads keyframes. Private to workflow.
 #ifndef CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 #define CHRONORMAL_WORKFLOW_SEGMENTS_TASK_CHECKSUMS_H_
 
@@ -59,7 +59,7 @@ void check_part_version(const JsonView& part);
 /// Returns the member "checksums" of a part (the file of a shard).
 [[nodiscard]] TaskChecksums read_task_checksums(const JsonView& part);
 
-/// The parts of one task that were read so far. Their checksums show that they belong together.
+/// The parts of one task that were read so far. The checksums of the parts show that they belong to the same task.
 class KnownParts {
  public:
   /// Adds a part by its name and its checksums. Errors: kUsage if this part and an earlier part belong to different

@@ -65,7 +65,7 @@ struct GltfShading {
   /// The normal deltas that the file stores for each target, as arrays (V, 3). An array is empty if no primitive stores
   /// deltas for the target.
   std::vector<std::vector<float>> normal_deltas;
-  /// For each target, true if any of its normal deltas is not zero, even if they are not kept.
+  /// For each target, true if any of its normal deltas is not zero, even if the deltas are not kept.
   std::vector<bool> turns;
   std::vector<float> tangents;                     ///< (V, 4); empty if no primitive has tangents
   std::vector<std::vector<float>> tangent_deltas;  ///< as normal_deltas, for tangents
@@ -131,7 +131,7 @@ class ShownTurn {
 };
 
 /// Computes the weights of correction targets from the weights of the mesh's own targets. weights must have one value
-/// for each target. The function overwrites those of correction targets.
+/// for each target. The function overwrites the weights of correction targets.
 void fill_extra_weights(const GltfShading& shading, std::span<double> weights) noexcept;
 
 }  // namespace chronormal::inline internal

@@ -6,8 +6,8 @@
 /// surface. No target can correct this. For this reason the error is measured between normals that L has transformed,
 /// and the error of L itself is reported separately.
 ///
-/// Copies     All copies share the data of the file. Each copy has its own pose. Threads    const functions may run at
-/// the same time.
+/// Copies     All copies share the data of the file. Each copy has its own pose.
+/// Threads    const functions may run at the same time.
 #ifndef CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 #define CHRONORMAL_WORKFLOW_SHADING_MESH_SKIN_H_
 

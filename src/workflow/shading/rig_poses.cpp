@@ -1,6 +1,6 @@
 // Draws random poses of morph targets. The names of targets are split into words. A word ends before a capital that
-// follows a small letter, and at each character that is not a letter. Words for a side (left, right) tell the two
-// halves of a symmetric pair.
+// follows a small letter, and at each character that is not a letter. Words for a side (left, right) show
+// which two targets are the halves of a symmetric pair.
 #include "workflow/shading/rig_poses.h"
 
 #include <algorithm>
@@ -125,8 +125,8 @@ PoseList RigPoses::sample(std::size_t count, unsigned seed) const {
         if (left < 0) break;
       }
       pose[targets_[drawn]] = 1 - random_part(random);
-      // Computes the chance of each target to be drawn next: the sum of its togetherness with all targets that are
-      // active already.
+      // Computes the chance of each target to be drawn next: the sum of togetherness() over the pairs of this target
+      // with all targets that are active already.
       for (std::size_t a = 0; a < n; ++a) {
         if (pose[targets_[a]] != 0)
           chances[a] = 0;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kSamplesPerPiece = 16;
 
-// Counts the samples of a track: its keys and, if weights change between keys, every step-th of the usual samples
-// between two keys.
+// Counts the samples of a track. If weights do not change between keys, each key is one sample. Otherwise there are
+// kSamplesPerPiece / step samples from each key up to the next, and one sample at the last key.
 std::size_t count_samples(const WeightTrack& track, std::size_t step) {
   if (track.interpolation == GltfInterpolation::kStep || track.size() < 2) return track.size();
   return kSamplesPerPiece / step * (track.size() - 1) + 1;

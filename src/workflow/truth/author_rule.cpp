@@ -363,10 +363,11 @@ class Candidates {
   [[nodiscard]] static Weighting weighting_of(std::size_t c) { return kWeightings[c % kWeightings.size()].weighting; }
   [[nodiscard]] static bool is_of_polygons(std::size_t c) { return c / kWeightings.size() >= 2; }
 
-  // Returns the candidate with the smallest distance, measured at keys, or else in the base. The distance of a
-  // candidate is the angle in degrees that the share `share` of the normals does not exceed. If the smallest distance
-  // is above `clear` times the distance of weighting by area, no candidate is accepted, except weighting by area if
-  // or_area is true. Returns nothing if no candidate with a distance of at most `follows` is accepted.
+  // Returns the candidate with the smallest distance. Compares distances at keys first and, if no candidate is accepted
+  // there, distances in the base. The distance of a candidate is the angle in degrees that the share `share` of the
+  // normals does not exceed. If the smallest distance is above `clear` times the distance of weighting by area, no
+  // candidate is accepted, except weighting by area if or_area is true. Returns nothing if no candidate with a distance
+  // of at most `follows` is accepted.
   [[nodiscard]] std::optional<std::size_t> closest(double share, double follows, double clear, bool or_area) {
     for (Distances* of : {&keys_, &of_base_}) {
       if (of->told[0].empty()) continue;

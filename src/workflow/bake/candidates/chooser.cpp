@@ -31,8 +31,8 @@ constexpr double kHopeless = 2, kFarther = 1.25;
 // kFewExtras is the largest number of correction targets with which deltas may take more bytes than the file.
 // kBytesOfExtra is roughly the number of bytes that a correction target takes for each vertex.
 constexpr std::size_t kFewExtras = 8, kBytesOfExtra = 9;
-// The largest mean error of a candidate that is better than the deltas of the file, relative to the mean error of these
-// deltas.
+// A candidate is better than the deltas of the file only if its mean error is below kBetter times the mean error of
+// these deltas.
 constexpr double kBetter = 0.95;
 // The largest part of the mean error that may remain after the number of correction targets of a rig is doubled. If
 // more remains, doubling is not worth it.
@@ -57,9 +57,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has grown more than is allowed, or if too many more edges are torn beyond one of the first
-// `thresholds` angles. A mean error may grow up to the tolerance, and single normals may turn by the tolerance. For
-// each hundred torn edges, one more edge may be torn.
+// Returns true if an error has grown more than is allowed, or if too many more edges are torn by more than one of the
+// first `thresholds` angles (10, 20 and 40 degrees). A mean error may grow up to the tolerance, and single normals may
+// turn by the tolerance. For each hundred torn edges, one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);
@@ -219,8 +219,8 @@ class Chooser {
  private:
   static bool is_rounding(const Viewer& viewer) { return viewer.normals == NormalRule::kClamped; }
 
-  // Returns the errors in one viewer that decide which candidate is better: the sum over the kinds of poses that
-  // decide.
+  // Returns the errors in one viewer by which candidates are compared: the errors in all kinds of poses that decide
+  // (Judge::decides()).
   [[nodiscard]] ShownErrors file_of(const ErrorsOfKinds& kinds) const {
     JudgedErrors all;
     for (std::size_t k = 0; k < kPoseKinds; ++k)
@@ -240,8 +240,8 @@ class Chooser {
                        [&](const ErrorsOfKinds& of_viewer) { return of_viewer[0].spread.worst > tolerance_; });
   }
 
-  // Returns the mean error in the named viewer in which it is smallest, because a candidate may help this viewer and
-  // harm others.
+  // Returns the smallest of the mean errors in the named viewers, because a candidate may help one viewer and harm the
+  // others.
   [[nodiscard]] double mean_of(const std::vector<ErrorsOfKinds>& errors) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < options_.viewers.size(); ++v) least = std::fmin(least, file_of(errors[v]).mean);
@@ -366,8 +366,8 @@ bool has_few_products(const Making& making, const MeshWeights& weights) {
          count_products(making, kMostProducts) <= kMostProducts;
 }
 
-// Makes deltas of any length for the mesh's own targets. They are similar to those of own_candidate(), but the best
-// lengths are not searched.
+// Makes deltas of any length for the mesh's own targets. Each delta is the sum of the linear and the square term of its
+// target, so no best single delta is searched as in the plan of the source.
 Candidate similar_to_own(const DeltaSource& source, const RightNormals& rights) {
   MeshPlan plan = source.plan;
   plan.is_line.assign(plan.is_line.size(), false);

@@ -83,8 +83,9 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
   };
   parallel_each(vertices.size(), kTurnBlock,
                 [&](std::size_t n) { turn(n, [&](std::size_t p, float open) { note(n, p, open); }); });
-  // Leaves out vertices whose true normal has no direction. They are rare, so only the vertex with the largest error in
-  // each pose is checked. If its true normal has no direction, all vertices are measured again in this pose.
+  // Leaves out vertices whose true normal has no direction. Such vertices are rare, so only the vertex with the largest
+  // error in each pose is checked. If the true normal of this vertex has no direction, all vertices are measured again
+  // in this pose.
   std::vector<std::size_t> again;
   PoseList poses_again;
   for (std::size_t p = 0; p < poses; ++p) {

@@ -50,8 +50,9 @@ constexpr double kLeastCorrection = 1e-5;
 constexpr double kRight = 1e-5;
 // Limits for the length of the normal at weight 1, relative to n(0), if deltas may have any length.
 constexpr double kShortestEnd = 1.0 / 1024, kLongestEnd = 1024;
-// The product of both weights of a pair drives its correction target. At unit lengths the product is multiplied by a
-// scale, so that its largest value in the file becomes kStrongest. The scale is at most kMostScale.
+// The product of both weights of a pair drives its correction target. If deltas must have unit lengths
+// (Lengths::kUnit), the product is multiplied by a scale, so that its largest value in the file becomes kStrongest. The
+// scale is at most kMostScale.
 constexpr double kMostScale = 4, kStrongest = 0.95;
 // The weight, or product of two weights, below which a pair of targets counts as not active.
 constexpr double kLeastProduct = 1e-6;
@@ -178,8 +179,8 @@ class Corrector {
   }
 
   // Adds a correction for a pair of targets. The correction makes normals right in `pose`, and as good as possible
-  // half-way to this pose. It has two correction targets with the same weight. A single correction target is used if it
-  // is nearly as good as two, or if its error is a small part of `tolerance` (radians).
+  // half-way to this pose. Usually it consists of two correction targets with the same weight. A single correction
+  // target is used if its error is nearly as small as that of two, or is a small part of `tolerance` (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);
@@ -312,8 +313,8 @@ class Corrector {
     return max_abs(vector) > kLeastCorrection * base.length ? vector : Vec3d{};
   }
 
-  // Returns the sum of deltas in a pose, for the normal of one vertex: those of target i, and those of the correction
-  // targets that target i alone drives.
+  // Returns the sum of the weighted deltas of one vertex in a pose, over target i and the correction targets that
+  // target i alone drives.
   [[nodiscard]] Vec3d sum_of(std::size_t i, std::size_t vertex, const std::vector<double>& pose) const {
     Vec3d sum = pose[i] * to_double(form_.own[i].at(vertex));
     for (const std::size_t k : of_target_[i])

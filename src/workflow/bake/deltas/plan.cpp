@@ -84,8 +84,8 @@ std::vector<bool> single_delta_targets(const MeshUse& mesh, BakeEncoding encodin
 
 void note_length(const Vec3d& value, double& largest) { largest = std::fmax(largest, length(value)); }
 
-// Returns for each element the length of its largest linear or square term. Takes the terms of single targets, but not
-// those of pairs.
+// Returns for each element the length of its largest linear or square term. Does not include the terms of pairs of
+// different targets.
 std::vector<double> largest_own_terms(const MeshUse& mesh, const std::vector<bool>& is_line) {
   std::vector<double> largest(mesh.shading.groups.size(), 0.0);
   const auto note_lengths = [&](const std::vector<std::uint32_t>& elements, const NormalTerms::Term& term) {

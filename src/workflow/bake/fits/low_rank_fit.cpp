@@ -203,8 +203,9 @@ void LowRankFit::measure_rows() {
   parallel_each(missing_.points(), kPointBlock, [&](std::size_t p) { errors_[p] = error_of(p, basis, {}); });
 }
 
-// Measures the largest error of each listed point over rows, places, unseen places and dips, in degrees. If the own
-// deltas of the mesh are corrected as well, own_weights has the weights by which these corrections are multiplied.
+// Measures the largest error of each listed point, in degrees, over the rows, the fitted and the unseen places between
+// rows, and the dips. If the own deltas of the mesh are corrected as well, own_weights has the weights by which these
+// corrections are multiplied.
 void LowRankFit::measure(std::span<const float> own_weights, std::span<const std::size_t> points) {
   std::vector<PlaceOfRows> places(places_.begin(), places_.end());
   places.insert(places.end(), unseen_.begin(), unseen_.end());

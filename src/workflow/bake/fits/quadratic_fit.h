@@ -43,7 +43,8 @@ class QuadraticFit {
   [[nodiscard]] std::size_t extras() const noexcept { return extras_; }
 
   struct Extras {
-    /// Weights of the correction targets, from about -1 to 1 in the poses of the rig. Their member `target` is not set.
+    /// Weights of the correction targets, from about -1 to 1 in the poses of the rig. The member `target` of each
+    /// weight is not set.
     std::vector<GltfExtraTarget> weights;
     std::vector<VertexVectors> vectors;  ///< deltas of any length
   };

@@ -50,7 +50,7 @@ struct MeshWeights {
 };
 
 /// Reads the weights that the animations of a file give to a mesh. Tracks with the same keys drive the mesh through
-/// several nodes, and count once. Errors: those of reading tracks from the document.
+/// several nodes, and count as one track. Errors: those of reading tracks from the document.
 [[nodiscard]] Result<MeshWeights> read_weights(const GltfDocument& document, const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

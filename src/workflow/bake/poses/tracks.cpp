@@ -24,7 +24,7 @@ struct Knot {
 constexpr auto kMost = static_cast<double>(std::numeric_limits<float>::max());
 
 // Returns pi as the error in radians if any value was clamped to the range of float32, and otherwise 0. A clamped value
-// lies on no product or straight line, so the error of the normal is unknown.
+// differs from the exact weight or slope, so the error of the normal is unknown.
 double error_of_clamping(const std::vector<float>& values) {
   for (const float value : values)
     if (std::fabs(value) == static_cast<float>(kMost)) return std::numbers::pi;
@@ -134,7 +134,7 @@ class TrackExtender {
     }
     result.keys = keys_;
     if (keys_ > most_keys_) return result;
-    // Keeps the file's slopes before the first key and after the last key. They have no effect.
+    // Keeps the file's slopes before the first key and after the last key, although these slopes have no effect.
     if (track_.interpolation == GltfInterpolation::kCubicSpline) {
       for (std::size_t i = 0; i < track_.targets; ++i) spline_.last(i).out = track_.tangent(track_.size() - 1, true, i);
     }

@@ -43,8 +43,8 @@ struct ExtendedTrack {
   GltfInterpolation interpolation = GltfInterpolation::kLinear;
   std::vector<float> times;   ///< the times of the keys in seconds; empty if they stay as they are
   std::vector<float> values;  ///< weights of the track's targets and of correction targets, in the order of the file
-  /// A bound of the angle, in radians, by which errors of the weights turn a normal. It is pi if float32 cannot hold a
-  /// number.
+  /// A bound of the angle, in radians, by which errors of the weights turn a normal. It is pi if some weight or slope
+  /// is too large for float32.
   double error = 0;
   std::size_t keys = 0;
 };

@@ -124,7 +124,7 @@ void warn_of_choice(const GltfMesh& mesh, const BakeOptions& options, const Bake
                                                    "; bake the ORIGINAL file with this tolerance"});
     return;
   }
-  // Gives no warning if no limit was requested, because the report states the remaining error anyway.
+  // Gives no warning if no limit was requested, because the report states the remaining error in any case.
   if (!options.tolerance && !options.most_targets && !options.most_delta_bytes) return;
   std::vector<std::string> remedies;
   if (options.most_targets || options.most_delta_bytes)
