@@ -69,10 +69,10 @@ std::optional<MeshSkin> standing_skin(const GltfDocument& document, const GltfSh
   return read_skin(document, shading, static_cast<std::size_t>(found - nodes.begin()), std::nullopt, unread);
 }
 
-// A list of tracks. Each pair has the index of an animation, and the index of a track in this animation.
+// A list of tracks. Each track is given by the index of its animation, and by its index in this animation.
 using Tracks = std::vector<std::pair<std::size_t, std::size_t>>;
 
-// Lists the tracks that drive a mesh: in all animations, or only in the requested one.
+// Lists the tracks that drive a mesh: in all animations, or only in the requested animation.
 Tracks tracks_of(const GltfDocument& document, std::size_t mesh, std::optional<std::size_t> only) {
   Tracks tracks;
   for (std::size_t a = 0; a < document.animations().size(); ++a) {

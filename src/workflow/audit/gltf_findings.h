@@ -38,7 +38,8 @@ namespace chronormal::inline internal {
 [[nodiscard]] std::optional<AuditFinding> fault_of_track(const AuditSubject& subject, bool are_targets_judged,
                                                          double worst_target);
 
-/// Makes notes on keys from which the author's normals cannot be derived, and on normals whose rule is unknown.
+/// Makes notes on keys from which the author's normals cannot be derived, and on stored normals that follow no known
+/// rule by which face normals are added up.
 [[nodiscard]] std::vector<AuditFinding> notes_of_truth(const GltfShading& shading, const AuthorTruth& truth);
 
 /// Finds the fault of a pose in which a file opens, or of a requested pose.

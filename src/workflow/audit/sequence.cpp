@@ -109,7 +109,7 @@ class SequenceSource {
     if (from == Vec3d{} || to == Vec3d{} || first == Vec3d{} || first_stored == Vec3d{}) return direction;
     const double offset = angle_between(from, to), allowed = angle_between(first, first_stored);
     if (offset <= allowed) return turned(from, to, direction);
-    // Limits the offset to the allowed angle, along the arc from the geometry's normal to the stored one.
+    // Limits the offset to the allowed angle, along the arc from the geometry's normal to the stored normal.
     const Vec3d side = to - dot(from, to) * from;
     const Vec3d across = length(side) > kVanished ? unit(side) : any_perpendicular(from);
     return turned(from, portable::cos(allowed) * from + portable::sin(allowed) * across, direction);

@@ -28,8 +28,8 @@ class StoredSums {
   StoredSums(const GltfShading& shading, std::span<const JudgedOutput> outputs, std::vector<std::size_t> involved,
              const Viewer& viewer = {});
 
-  /// Computes the sum of the normal and of weight times delta over the targets, for every output and each set of
-  /// weights. Adds in float32 and in the order of targets, as viewers do. Discards earlier results. Skips deltas of
+  /// Computes for every output and each set of weights the sum of the stored normal and the weighted deltas of all
+  /// targets. Adds in float32 and in the order of targets, as viewers do. Discards earlier results. Skips deltas of
   /// zero, even if their weight is infinite or NaN. Uses all threads.
   void add_up(std::vector<std::vector<double>> sets);
 

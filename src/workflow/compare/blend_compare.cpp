@@ -136,7 +136,7 @@ std::vector<std::vector<std::uint32_t>> moved_outputs(const Subject& subject) {
   return result;
 }
 
-// A meter of the errors of a subject's normals. It measures at the rows of weights one after the other.
+// A meter that measures the errors of a subject's normals in one pose after the other. Each pose is a row of weights.
 class BlendMeter {
  public:
   explicit BlendMeter(const Subject& subject)

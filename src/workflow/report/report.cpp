@@ -141,7 +141,8 @@ std::size_t page_bytes(std::size_t packed, const ReportOptions& options) {
 // Returns the bytes of the container. If the page would be too large, thins out the model first.
 std::string write_within(const std::string& head, ReportModel& model, const ReportOptions& options) {
   std::string container = write_container(head, model);
-  // Measures on the whole model how well its arrays compress. Some of the arrays alone may compress worse.
+  // Measures how well the arrays of the whole model compress, as an estimate for the thinned model. The arrays of the
+  // thinned model may compress worse.
   const std::size_t packed = page_bytes(gzipped(container).size(), options);
   if (packed <= options.most_bytes) return container;
   const double per_byte = static_cast<double>(packed - options.template_bytes) / static_cast<double>(container.size());

@@ -1,6 +1,6 @@
 // Draws random poses of morph targets. The names of targets are split into words. A word ends before a capital that
-// follows a small letter, and at each character that is not a letter. Words for a side (left, right) show
-// which two targets are the halves of a symmetric pair.
+// follows a small letter, and at each character that is not a letter. Words for a side (left, right) show which two
+// targets are the halves of a symmetric pair.
 #include "workflow/shading/rig_poses.h"
 
 #include <algorithm>

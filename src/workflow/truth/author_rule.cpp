@@ -275,8 +275,9 @@ class Mending {
     return best > 0;
   }
 
-  // Returns by how many more elements would follow their sums if `count` triangles from `first` on were one polygon.
-  // Elements that only come nearer to their sums do not count, since that may be chance.
+  // Returns how many more elements would have stored normals that follow their sums of face normals if `count`
+  // triangles from `first` on were one polygon. Elements whose stored normals only come nearer to the sums do not
+  // count, since that may be chance.
   std::size_t try_run(std::size_t first, std::size_t count, bool keep) {
     // The first triangle and the number of triangles of each polygon that the run takes apart.
     std::vector<std::pair<std::size_t, std::size_t>> before;

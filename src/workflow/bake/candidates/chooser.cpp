@@ -139,13 +139,13 @@ class Chooser {
     return bytes;
   }
 
-  // Returns true if a glance (a measurement in a few poses) shows that a candidate is beyond the tolerance. A plan must
-  // measure all candidates, so the result is then always false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate is beyond the tolerance. If a plan
+  // is requested (options_.plan), all candidates must be measured, so the result is false.
   [[nodiscard]] bool is_far(const Candidate& candidate) const {
     return !options_.plan && is_beyond(judge_->measure(candidate, Judge::Depth::kGlance));
   }
-  // Returns true if a glance (a measurement in a few poses) shows that a candidate cannot be the best. A plan must
-  // measure all candidates, so the result is then always false.
+  // Returns true if a glance (a measurement in a few poses) shows that a candidate cannot be the best. If a plan is
+  // requested (options_.plan), all candidates must be measured, so the result is false.
   [[nodiscard]] bool is_hopeless(const Candidate& candidate) const {
     if (!best_ || options_.plan) return false;
     const std::vector<ErrorsOfKinds> glance = judge_->measure(candidate, Judge::Depth::kGlance);
@@ -170,12 +170,12 @@ class Chooser {
   [[nodiscard]] std::size_t extras_within(std::size_t bytes_of_own) const {
     const std::size_t of_one = std::max<std::size_t>(1, kBytesOfExtra * judge_->vertices().size());
     const auto room = [&](std::size_t bytes) { return (bytes - std::min(bytes, bytes_of_own)) / of_one; };
-    // Allows one correction target more than fits. If it does not fit, fewer are tried.
+    // Allows one correction target more than the estimate. If its deltas take too many bytes, fewer targets are tried.
     if (options_.most_delta_bytes) return room(most_bytes()) + 1;
     return std::max(std::min(kFewExtras, room(bearable_bytes(kFewExtras))), room(bearable_bytes(kFewExtras + 1)));
   }
   // Returns true if the best candidate is accurate enough and takes at most `bytes` bytes, so that no other candidate
-  // must be tried. A plan must measure all candidates, so the result is then always false.
+  // must be tried. If a plan is requested (options_.plan), all candidates must be measured, so the result is false.
   [[nodiscard]] bool is_found(std::size_t bytes = std::numeric_limits<std::size_t>::max()) const {
     return best_ && of_best_.choice.within && serves_all() && of_best_.choice.bytes - tangent_bytes_ <= bytes &&
            !options_.plan;

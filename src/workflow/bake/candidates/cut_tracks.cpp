@@ -43,7 +43,8 @@ std::vector<double> middle_errors(const RightNormals& rights, const WeightTrack&
     for (std::size_t c = track.targets; c < missing.size(); ++c)
       missing[c] = (at_start[c] + at_end[c]) / 2 - middles.back()[c];
   }
-  // Lays out the weights of poses in rows. Each column of weights has a row, with one entry for each pose.
+  // Lays out the weights of poses in rows: one row for each target and each correction target, with one entry for each
+  // pose.
   const std::size_t poses = middles.size(), stride = block_count(poses, kPosePadding) * kPosePadding;
   const auto rows_of = [&](const PoseList& of) {
     std::vector<float> rows((track.targets + extra_count) * stride);

@@ -55,8 +55,8 @@ struct Making {
   double tolerance = 0;  ///< degrees: the largest error that the candidate should have
   std::size_t most_extras = 0;
   bool animations_only = false;
-  /// True if correction targets may have only deltas perpendicular to the stored normal, because some viewers keep no
-  /// lengths.
+  /// True if correction targets may have only deltas perpendicular to the stored normal, because some viewers do not
+  /// keep the lengths of normals.
   bool keeps_across = false;
 
   [[nodiscard]] std::size_t targets() const { return source.shading.set.targets.size(); }

@@ -248,8 +248,8 @@ class Together {
     if (!has_linear && !has_square) return;
     const ControlNormals normals = of_powers(terms_.base_of(element.index), a, c);
     element.targets.push_back(static_cast<std::uint32_t>(target));
-    // An element without a normal in the base has no normal from which deltas start. Its delta is then the true normal
-    // at weight 1.
+    // An element without a normal in the base has no direction from which a delta could start, so its delta is the true
+    // normal at weight 1.
     element.deltas.push_back(max_abs(element.base) > 0 ? best_end_delta(normals).delta
                                                        : unit_normal_at(normals, 1).vector);
   }

@@ -20,8 +20,8 @@ constexpr unsigned kFitSeed = 101, kTermSeed = 102;
 constexpr std::size_t kQuadraticBlock = 16;
 constexpr std::size_t kMostRows = 400, kBytes = std::size_t{500} << 20, kFewestRows = 48;
 constexpr std::size_t kQuadraticPoints = 8000;
-// The largest number of weights and products of two weights from which the weight of a correction target is made. More
-// of them would take too long.
+// The largest number of weights and products of two weights from which the weight of a correction target is made. A fit
+// with more weights and products would take too long.
 constexpr std::size_t kMostFeatures = 20000;
 constexpr std::size_t kPosesOfTerms = 4000;
 // Angles as parts of the tolerance. kPartOfNeed: a smaller error needs no correction. kPartOfEntry: the angle by which

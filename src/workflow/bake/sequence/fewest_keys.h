@@ -36,7 +36,8 @@ struct SequenceKeys {
   std::vector<std::size_t> at;  ///< the keys in steps, ascending; keyframe k is at step k kKeySteps
   /// The largest error of any normal at any instant, in radians. Leaves out the normals counted in `beyond`.
   double largest_error = 0;
-  /// The number of (normal, segment) pairs whose error is beyond the tolerance even if a key is put at every step.
+  /// The number of pairs of a normal and a segment in which the error is beyond the tolerance even if a key is put at
+  /// every step.
   std::size_t beyond = 0;
   /// The number of keys that would be needed if all keyframes stayed, and all segments were split into the same number
   /// of pieces, at most kKeySteps.

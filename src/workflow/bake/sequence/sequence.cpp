@@ -99,7 +99,7 @@ Result<HarmlessElements> without_limits(Result<std::vector<SequenceElement>> ele
   return HarmlessElements{std::move(elements).value(), 0};
 }
 
-// Counts the polygons that cross themselves. Some of their triangles face the other way.
+// Counts the polygons that cross themselves. Some triangles of such a polygon face the other way.
 std::size_t count_crossing(const Topology& topology, const std::vector<float>& positions) {
   const auto at = [&](std::uint32_t v) {
     return to_double(VectorView<const float>::packed(positions.data(), topology.vertex_count())[v]);

@@ -16,7 +16,7 @@ namespace chronormal::inline internal {
 /// The normal that a file shows for an element without a normal.
 inline constexpr Vec3d kAnyNormal{0, 0, 1};
 
-/// The data of one element that are the same for all keys: they follow from the whole sequence.
+/// The data of one element that are the same for all keys, because they follow from the whole sequence.
 struct SequenceElement {
   Vec3d normal;             ///< N, the base normal: a unit vector in float32
   double scale = 1;         ///< the number by which the element's normals are divided
