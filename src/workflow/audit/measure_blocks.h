@@ -37,8 +37,8 @@ struct SegmentsOfRun {
   }
   /// Returns the segments that the run reads first, to find which vertices move and how long normals get.
   [[nodiscard]] IndexRange looked_at() const noexcept { return run.looked_at(of_motion.size()); }
-  /// Returns the segments whose errors the run measures. If the run is divided, these are the segments of its share that
-  /// no earlier run has measured. Otherwise these are all segments.
+  /// Returns the segments whose errors the run measures. If the run is divided, the result has the segments of its
+  /// share that no earlier run has measured. Otherwise the result has all segments.
   [[nodiscard]] IndexRange rest() const noexcept {
     return run.is_divided() ? run.rest() : IndexRange{0, of_motion.size()};
   }

@@ -230,8 +230,8 @@ double square_of_cosine_above(double angle) {
   return cosine * cosine * (1 + 1e-12);
 }
 
-// Examines face f in a segment. most_of_square is square_of_cosine_above() of the largest turn of all faces that were examined before.
-// If face f turns by less, the exact angle is not computed.
+// Examines face f in a segment. most_of_square is square_of_cosine_above() of the largest turn among faces that were
+// examined before. If face f turns by less, the exact angle is not computed.
 void inspect_face(const Segment& segment, std::size_t f, const ControlNormals& c, double& most_of_square,
                   FaceMarks& marks, SegmentTally& tally) {
   const double along = dot(c.n0, c.n1);

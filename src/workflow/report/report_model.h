@@ -69,8 +69,8 @@ struct ModelTruth {
     std::vector<float> values;  ///< (n, 2), the changes of these offsets
   };
 
-  /// The corners of the polygons whose normals are added up, and the first corner of each polygon. Both lists are empty if
-  /// triangles are added up.
+  /// The corners of the polygons whose normals are added up, and the first corner of each polygon. Both lists are empty
+  /// if triangles are added up.
   std::vector<std::uint32_t> first, corners;
   /// Pairs of a corner of a polygon and the element that adds up this corner, in ascending order of corners, (n, 2).
   /// The list is empty if each corner counts for its own vertex.

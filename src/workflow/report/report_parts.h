@@ -21,7 +21,8 @@
 namespace chronormal::inline internal {
 
 /// Builds the part of a glTF mesh, with its normals as `viewers` store them. The true normals are sums by the weighting
-/// `asked`. If no weighting is asked for, the true normals follow the normals of the author. Errors: those of reading the document.
+/// `asked`. If no weighting is asked for, the true normals follow the normals of the author. Errors: those of reading
+/// the document.
 [[nodiscard]] Result<ModelPart> gltf_part(const GltfDocument& document, std::size_t mesh,
                                           std::optional<Weighting> asked, std::span<const Viewer> viewers,
                                           WatchedPart watched);

@@ -57,9 +57,9 @@ std::size_t most_extras(const BakeOptions& options, std::size_t targets) {
   return most;
 }
 
-// Returns true if an error has grown more than is allowed, or if too many more edges are torn by more than one of the
-// first `thresholds` angles (10, 20 and 40 degrees). A mean error may grow up to the tolerance, and single normals may
-// turn by the tolerance. For each hundred torn edges, one more edge may be torn.
+// Returns true if an error has grown more than is allowed, or if too many more edges are torn beyond one of the angles
+// 10, 20 and 40 degrees, of which only the first `thresholds` count. A mean error may grow up to the tolerance, and
+// single normals may turn by the tolerance. For each hundred torn edges, one more edge may be torn.
 bool grows(const ShownErrors& before, const ShownErrors& after, double tolerance, std::size_t thresholds) {
   constexpr std::size_t kOneOf = 100;
   const double turn = std::fmax(tolerance, kHarmless);

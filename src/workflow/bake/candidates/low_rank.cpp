@@ -94,9 +94,9 @@ struct Rows {
   std::vector<PlaceOfRows> unseen;    // other instants, at which the fit is checked
 };
 
-// Returns the tracks that are used if a fit may have at most `most` rows. Leaves out tracks if there are too many, so
-// that each remaining track can have rows in about one gap between keys. telling_tracks() (poses/played_poses.h) chooses
-// the tracks that remain.
+// Returns the tracks that are used if a fit may have at most `most` rows. If all tracks would need more rows, leaves
+// out tracks, so that each remaining track can have rows in about one gap between keys. telling_tracks()
+// (poses/played_poses.h) chooses the tracks that remain.
 std::vector<std::size_t> tracks_within(const FileInstants& all, const std::vector<WeightTrack>& tracks,
                                        std::size_t most) {
   std::size_t least = 0;
@@ -117,8 +117,8 @@ Rows choose_rows(const FileInstants& all, const std::vector<WeightTrack>& tracks
   };
   for (const std::size_t t : tracks_within(all, tracks, most)) {
     const std::size_t nodes = all.tracks[t].size(), first = all.first[t], pieces = all.tracks[t].pieces();
-    // Estimates after how many keys the curves can have rows. A piece of a curve takes three rows if its neighbours are
-    // left out, and otherwise two rows, because it shares its ends.
+    // Estimates the number of keys for which there are enough rows. A piece of a curve takes three rows if its
+    // neighbours are left out, and otherwise two rows, because it shares its ends.
     const auto of_share = static_cast<std::size_t>(2 * share / 3 * static_cast<double>(tracks[t].size()));
     std::vector<std::size_t> keys(tracks[t].size());
     std::iota(keys.begin(), keys.end(), std::size_t{0});

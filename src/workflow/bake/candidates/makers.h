@@ -36,8 +36,7 @@ enum class Lengths {
   kFree
 };
 
-/// Returns, among the lengths of deltas that all of these viewers render with little or no loss, those that restrict
-/// deltas least.
+/// Returns the least restrictive lengths of deltas that all of these viewers render with little or no loss.
 [[nodiscard]] Lengths lengths_for(std::span<const Viewer> named, std::span<const Viewer> spared);
 
 /// Returns the factor by which weights for these lengths are larger than weights for deltas of any length.
@@ -72,7 +71,8 @@ inline constexpr double kPartOfTracks = 0.2;
 
 /// Makes a candidate with deltas of the mesh's own targets that are right at weight 1 of each target alone. If lengths
 /// are free, makes the deltas that the plan of the source requires instead, whose errors are also small between the
-/// weights 0 and 1. The deltas include those that were fitted by least squares to the weights of the file (FittedLines).
+/// weights 0 and 1. The deltas include those that were fitted by least squares to the weights of the file
+/// (FittedLines).
 [[nodiscard]] Candidate own_candidate(const DeltaSource& source, const RightNormals& rights, Lengths lengths);
 
 // Makers of correction targets whose weights are products of own weights (products.cpp).

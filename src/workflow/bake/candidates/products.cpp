@@ -179,8 +179,9 @@ class Corrector {
   }
 
   // Adds a correction for a pair of targets. The correction makes normals right in `pose`, and as good as possible
-  // half-way to this pose. Usually it consists of two correction targets with the same weight. A single correction
-  // target is used if its error is nearly as small as that of two, or is a small part of `tolerance` (radians).
+  // half-way to this pose. The correction consists of two correction targets with the same weight. Only a single
+  // correction target is used if its error is nearly as small as the error of two, or is a small part of `tolerance`
+  // (radians).
   void add_pair(const ExtraWeight& weight, const std::vector<double>& pose, double tolerance) {
     const double t = weight.at(pose[weight.i], pose[weight.j]);
     const std::vector<std::uint32_t> elements = elements_of(weight);

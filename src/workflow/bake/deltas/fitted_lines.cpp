@@ -213,8 +213,8 @@ class Together {
     }
   }
 
-  // Returns the shown elements that two targets move at the same time in some pose. Each element has, for each of its
-  // targets, the delta that is best for this target alone.
+  // Returns the shown elements that at least two targets move at the same time in some pose. Each element has, for each
+  // of its targets, the delta that is best for this target alone.
   [[nodiscard]] std::vector<Element> elements(const std::vector<bool>& is_shown) const {
     std::vector<Element> result;
     for (std::uint32_t e = 0; e < targets_of_.size(); ++e) {

@@ -39,8 +39,8 @@ struct SequenceTargets {
   [[nodiscard]] std::size_t of_key(std::size_t key) const noexcept { return key - (has_key_0 ? 0U : 1U); }
 };
 
-/// The vertices of a file. First come the vertices of the motion. If a vertex shows several normals, copies of
-/// this vertex follow, one for each further normal.
+/// The vertices of a file. First come the vertices of the motion. If a vertex shows several normals, copies of this
+/// vertex follow, one for each further normal.
 struct SequenceVertices {
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
 
