@@ -291,8 +291,8 @@ Status check(const BlendCompareOptions& options) {
 }
 
 // Lists the numbers of targets that are active at the same time. Schemes are compared separately for each number. If
-// `wanted` is not 0, the list has only this number; otherwise it has the usual numbers that are below the number of
-// targets, and the number of targets.
+// `wanted` is not 0, the list has only this number; otherwise it has the numbers in kActive that are below the
+// number of targets, and the number of targets.
 std::vector<std::size_t> active_counts(std::size_t targets, std::size_t wanted) {
   if (wanted > 0) return {std::min(wanted, targets)};
   std::vector<std::size_t> result;

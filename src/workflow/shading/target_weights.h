@@ -61,8 +61,8 @@ class WeightUse {
   /// returns the poses that add_pose() added. If there are more than `most` poses, returns `most` of them, evenly
   /// spaced.
   [[nodiscard]] std::vector<std::vector<double>> samples(std::size_t most) const { return samples(most, 1); }
-  /// Returns poses that the tracks pass through, like samples(), but keeps all keys as long as possible. For this
-  /// purpose, the fifteen poses between two keys become seven, three, one or none.
+  /// Returns poses that the tracks pass through, like samples(), but leaves out poses between keys before it leaves out
+  /// keys. For this purpose, the fifteen poses between two keys become seven, three, one or none.
   [[nodiscard]] std::vector<std::vector<double>> samples_with_keys(std::size_t most) const;
 
  private:

@@ -14,7 +14,7 @@ namespace chronormal::inline internal {
 namespace {
 
 // Limits for accepting a rule (see author_rule.h). kTells and kFollowsRule are angles in degrees. kClear is the largest
-// ratio of a candidate's distance to the distance of triangles by area.
+// ratio of the distance of a candidate to the distance of the candidate that adds up triangle normals by area.
 constexpr double kTells = 0.1, kFollowsRule = 1, kClear = 2.0 / 3;
 constexpr double kOff = 0.001;        // degrees: a normal that is farther from its sum does not follow the rule
 constexpr double kNothingLeft = 180;  // degrees: the distance if both sides of a sheet add up to zero
@@ -76,12 +76,13 @@ std::vector<OffsetEdge> edges_around(const GltfShading& shading, const ForEdges&
 }
 
 // Angles in degrees at the stored normals that tell candidates apart: `told` has the angle between each candidate and
-// the stored normal, and `spread` the largest angle between a candidate and triangles by area.
+// the stored normal, and `spread` the largest angle between a candidate and the sum of triangle normals by area.
 struct Distances {
   std::array<std::vector<float>, kCandidates> told;
   std::vector<float> spread;
   // `silent` is the number of stored normals at which all candidates are nearly equal, so that the normals tell
-  // nothing. `silent_off` is the number of such normals that are more than kTells degrees from triangles by area.
+  // nothing. `silent_off` is the number of such normals that are more than kTells degrees from the sum of triangle
+  // normals by area.
   std::size_t silent = 0, silent_off = 0;
 
   void add(const Distances& other) {

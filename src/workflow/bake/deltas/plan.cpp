@@ -143,7 +143,8 @@ Poses poses_to_measure_at(const MeshUse& mesh) {
 void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, const Poses& poses, PairMeter& meter,
                    double tolerance, MeshPlan& plan) {
   // If the file has more poses than were measured, a short movement in a long animation, such as a wink, may have been
-  // missed. The turn of a pair is then bounded by its largest weight in the file.
+  // missed. For this reason the turn of a pair is then replaced by a bound: the size of its term times its largest
+  // weight in the file.
   for (MeasuredPair& candidate : candidates)
     if (!poses.are_all) candidate.turn = candidate.size * mesh.largest_weight(candidate.extra);
   std::vector<std::size_t> order(candidates.size());
@@ -156,8 +157,8 @@ void choose_extras(const MeshUse& mesh, std::vector<MeasuredPair> candidates, co
     turn += candidates[order[count++]].turn;
   order.resize(count);
   // Leaves out fewer pairs if their terms together turn a normal too far. A term along a normal does not turn this
-  // normal alone, but the sum of several such terms may be longer than the normal and turn it. As long as the pairs
-  // turn a normal by more than the tolerance, only half of them are left out.
+  // normal alone, but the sum of several such terms may be longer than the normal and turn it. The number of pairs that
+  // are left out is halved until they turn no normal by more than the tolerance.
   while (!order.empty() && poses.are_all) {
     std::vector<ExtraWeight> left_out;
     left_out.reserve(order.size());

@@ -104,8 +104,8 @@ class LineJudge {
     }
     return largest;
   }
-  // Leaves out elements of a segment from all later judgements: those whose error on the line from a to b, in this
-  // segment, is beyond the tolerance.
+  // Leaves out those elements of a segment from all later judgements whose error on the line from a to b is beyond the
+  // tolerance in this segment.
   void leave_out(double a, double b) {
     if (!hold(a, b)) return;
     const Instant start = at(a);

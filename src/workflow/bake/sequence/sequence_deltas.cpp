@@ -39,9 +39,9 @@ void look_at(const ControlNormals& n, bool is_first, SequenceElement& element, S
   sizes.largest = std::max(sizes.largest, size);
 }
 
-// Decides the base normal N of an element. Usually N = n_0 / |n_0|, where n_0 is the normal at key 0. This is
-// impossible if n_0 = 0. If normals at other keys are much shorter than n_0, their directions would be lost in float32,
-// so N is then different too.
+// Decides the base normal N of an element. Usually N = n_0 / |n_0|, where n_0 is the normal at key 0. Another N is used
+// if n_0 = 0, or if normals at other keys are much shorter (kMuchSmaller) or longer (kMuchLarger) than n_0. For
+// example, the directions of much shorter normals would be lost in float32.
 void settle(const Sizes& sizes, SequenceElement& element) {
   constexpr double kWidest = 0x1p-60;
   const auto& [at_key_0, smallest, largest] = sizes;
