@@ -34,14 +34,15 @@ using RealVector = std::array<Real, 3>;
   return std::max({max_abs(c.n0), max_abs(c.m), max_abs(c.n1)});
 }
 
-/// Returns the angle between u and n(t) in radians, or NaN if u is not finite.
+/// Returns the angle between u and the normal n(t) in radians, or NaN if a component of u is NaN.
 [[nodiscard]] inline double angle_to(const Vec3f& u, const ControlNormals& c, double t) {
   const RealVector n = normal_in_long_double(c, t);
   const Real x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   return static_cast<double>(std::atan2(length({x, y, z}), u.x * n[0] + u.y * n[1] + u.z * n[2]));
 }
 
-/// Returns the t at which |n(t)| is smallest, with an error of 2^-40.
+/// Returns the t in [0, 1] at which |n(t)| is smallest. The search narrows an interval of t down to a length of about
+/// 2^-40.
 [[nodiscard]] inline double hardest_time(const ControlNormals& c) {
   const auto size = [&c](double t) { return length(normal_in_long_double(c, t)); };
   double best = 0;
@@ -89,8 +90,8 @@ using RealVector = std::array<Real, 3>;
   return {s * c.n0, s * c.m, s * c.n1};
 }
 
-/// Returns control normals close to n. Each of the three vectors is the sum of n and `turn` times a random vector,
-/// multiplied by a number from factor().
+/// Returns three control normals whose directions are close to n. Each of the three vectors is the sum of n and `turn`
+/// times a random vector, multiplied by a number from factor().
 template <class Factor>
 [[nodiscard]] ControlNormals three_near(fixtures::Random& random, const Vec3d& n, double turn, Factor factor) {
   std::array<Vec3d, 3> v;
@@ -170,8 +171,9 @@ struct HardFamily {
          const auto near = [&r, height](const Vec3d& v) { return v + 0.1 * height * random_vector(r); };
          return ControlNormals{near(c.n0), 0.5 * near(c.m), near(c.n1)};
        }},
-      // The components are hard to round to multiples of M / 1023 or M / 32767: M, -M, a half-integer times M / 1023 or
-      // M / 32767, or close to one of these values. M is the largest component.
+      // Control normals that are stored as integers are rounded to multiples of M / 1023 or M / 32767, where M is the
+      // largest component. The components here are hard to round: M, -M, a value halfway between two such multiples, or
+      // a value close to one of these.
       {"where integers round",
        [](Random& r) {
          const double largest = r.below(3) == 0 ? r.uniform(0.5, 1) : 1;
@@ -196,8 +198,8 @@ struct HardFamily {
            return Vec3d{x, y, component()};
          };
          ControlNormals c{vector(), vector(), vector()};
-         // No z is negative, so the three vectors do not cancel, and most sums n(t) of them are long enough to be
-         // stored as integers.
+         // Makes every z positive or 0, so that the three vectors do not cancel. Most normals n(t) are then long enough
+         // for the vectors to be stored as integers.
          for (Vec3d* v : {&c.n0, &c.m, &c.n1}) v->z = std::fabs(v->z);
          if (r.below(2) == 0) c.m.z = largest;
          return c;
@@ -206,7 +208,8 @@ struct HardFamily {
   return families;
 }
 
-/// Makes an element of a random family. If any_scale, its magnitude is anywhere in the range of double.
+/// Makes the control normals of an element of a random family. If `any_scale` is true, multiplies about a third of the
+/// elements by a random power of two between 2^-1000 and 2^999.
 [[nodiscard]] inline ControlNormals hard_element(fixtures::Random& random, bool any_scale) {
   const auto& families = hard_families();
   const ControlNormals c = families[random.below(families.size())].make(random);

@@ -17,7 +17,8 @@
 namespace chronormal::test {
 
 /// Makes a grid of cells x cells squares, each of two triangles. Bands of rows rest, translate, turn in their plane,
-/// shrink to a point, or move freely, so all degrees, all formats and flagged elements occur.
+/// shrink to a point, or move freely, so the grid has elements of every degree and in every packed format, and elements
+/// that are flagged because float32 is not accurate enough for them.
 [[nodiscard]] inline Motion integer_grid(std::size_t cells, std::uint64_t seed = 91) {
   std::mt19937_64 engine(seed);
   // Returns a random signed integer of `bits` bits, divided by 2^12.

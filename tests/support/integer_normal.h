@@ -66,14 +66,15 @@ struct IntegerTime {
   return mantissa;
 }
 
-/// Returns the angle between u and n, in radians, with an error of 1e-15. Returns NaN if u is zero or not finite.
+/// Returns the angle between u and n, in radians, with an error of 1e-15. Returns NaN if a component of u is NaN, or if
+/// |u|^2 is at most 1/2, since u must be a unit vector.
 [[nodiscard]] inline double angle_between(const Vec3f& u, const std::array<double, 3>& n) {
   const double x = u.y * n[2] - u.z * n[1], y = u.z * n[0] - u.x * n[2], z = u.x * n[1] - u.y * n[0];
   if (!(double{u.x} * u.x + double{u.y} * u.y + double{u.z} * u.z > 0.5)) return std::nan("");
   return std::atan2(std::sqrt(x * x + y * y + z * z), u.x * n[0] + u.y * n[1] + u.z * n[2]);
 }
 
-/// Computes the normals of all faces of one segment.
+/// Computes the normals of all faces in one segment of a motion.
 class IntegerNormals {
  public:
   explicit IntegerNormals(const Segment& segment) : segment_(segment) {

@@ -48,8 +48,8 @@ class ByteWriter {
   return writer.bytes();
 }
 
-/// Makes a PLY file with everything that the format allows: other elements before, between and after the known ones,
-/// lists, and every scalar type. The faces, a quad and a triangle, precede the vertices.
+/// Makes a PLY file with everything that the format allows: unknown elements before, between and after the faces and
+/// the vertices, lists, and every scalar type. The faces, a quad and a triangle, precede the vertices.
 [[nodiscard]] inline std::string mixed_binary_ply(bool big_endian) {
   ByteWriter writer(std::string("ply\r\nformat ") + (big_endian ? "binary_big_endian" : "binary_little_endian") +
                         " 1.0\r\ncomment a b c\r\nobj_info d\r\n"

@@ -21,7 +21,7 @@ std::string contents(const std::filesystem::path& path) {
 }  // namespace
 
 ProcessResult run_shell(const std::string& command, const std::string& folder, const std::string& input) {
-  // Streams are redirected to files, since a process could wait forever if a pipe is full.
+  // Redirects the streams of the process to files, since a process could wait forever to write to a full pipe.
   char name[] = "/tmp/chronormal_process_XXXXXX";
   const std::filesystem::path scratch = mkdtemp(name);
   std::ofstream(scratch / "in", std::ios::binary) << input;

@@ -6,15 +6,15 @@
 ///     exact        eq. 1 on the interpolated vertices, never a polynomial
 ///     lagrange     Neville's recursion, never weights
 ///     slerp        the paper's eq. 5; de Casteljau as its literal recursion
-///     quaternion   frames as matrices -> quaternions -> slerp in four dimensions -> matrix -> third column
+///     quaternion   a slerp in four dimensions between the quaternions of two frames; the normal is a matrix column
 ///     circle       plane, circumcentre, radius and in-plane angles of three points, never an axis formula
 ///     optimal      a dense search over the circles of eq. 6; gives only the error, not the path
-///     scaled       a dense search over the scale; gives only the error, too
+///     scaled       a dense search over the scale; also gives only the error
 ///
 /// A triangle is given by six points, and t is in [0, 1]. Functions return std::nullopt if a scheme is not defined, or
 /// if t is so close to such a case that rounding decides the answer. A scheme is not defined for antipodal ends of a
-/// slerp, two coinciding points of a circle, a node without a normal, or a quaternion arc of exactly half a turn. Tests
-/// skip these samples.
+/// slerp, two coinciding points of a circle, a node (a time of an interpolated normal) at which the normal is zero, or a
+/// quaternion arc of exactly half a turn. Tests skip such cases.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 
@@ -44,17 +44,19 @@ using VectorD = Vec<double>;  ///< in double, for the dense searches, which comp
 
 inline constexpr Real kPi = std::numbers::pi_v<Real>;
 
-/// The distance in radians from antipodal ends below which rounding decides the great circle between the ends.
+/// If the angle between two ends differs from half a turn by less than this limit, in radians, rounding decides which
+/// great circle joins the ends.
 inline constexpr Real kNearAntipodal = 1e-6L;
 /// The distance in radians below which two points count as one when a circle is put through them.
 inline constexpr Real kNearCoincident = 1e-6L;
-/// The angle in radians below which slerp equals a normalised linear interpolation, far beyond the precision of
+/// Below this angle, in radians, slerp and normalised linear interpolation differ by far less than the precision of
 /// float32.
 inline constexpr Real kTinyAngle = 1e-9L;
 /// The limit of |q0 . q1| below which rounding decides which arc between the quaternions q0 and q1 is shorter.
 inline constexpr Real kNearHalfTurn = 1e-9L;
 
-/// The indices of a face (`element`) and of a segment. They determine the angle by which `quaternion:random` rotates.
+/// The indices of a face (`element`) and of a segment. They determine the angle by which `quaternion:random` rotates
+/// the second frame about its normal.
 struct Place {
   std::uint64_t element = 0;
   std::uint64_t segment = 0;
@@ -172,8 +174,8 @@ template <class Moving>
   return nodes;
 }
 
-/// Interpolates exact unit normals by Lagrange's polynomial of degree `degree`, by Neville's recursion, and normalises
-/// the result.
+/// Interpolates exact unit normals by Lagrange's polynomial of degree `degree`, which Neville's recursion evaluates,
+/// and normalises the result.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> lagrange(const Moving& triangle, std::size_t degree, Real t) {
   auto nodes = exact_nodes(triangle, degree + 1);
@@ -278,8 +280,8 @@ template <std::size_t N>
                                    1 + 2 * r[2][2] - trace};
   const auto largest = static_cast<std::size_t>(
       std::distance(four_squares.begin(), std::max_element(four_squares.begin(), four_squares.end())));
-  // Four times the products of two components of the quaternion. The antisymmetric part of the matrix gives w x, w y
-  // and w z, and the symmetric part gives the others.
+  // Each variable is four times the product of two components of the quaternion: wx is 4 w x. The antisymmetric part of
+  // the matrix gives w x, w y and w z, and the symmetric part gives the others.
   const Real wx = r[2][1] - r[1][2], wy = r[0][2] - r[2][0], wz = r[1][0] - r[0][1];
   const Real xy = r[0][1] + r[1][0], xz = r[0][2] + r[2][0], yz = r[1][2] + r[2][1];
   Quaternion q{};
@@ -390,8 +392,8 @@ template <std::size_t N>
     Frame mapped{};
     mapped.normal = *normal1;
     mapped.binormal = normalised(Vector{image[0], image[1], image[2]});
-    // The paper prints n1 x b1, which would give a frame with the determinant -1. The correct tangent is binormal x
-    // normal.
+    // As the tangent, the paper prints n1 x b1, which would give a frame with the determinant -1. The correct tangent
+    // is the cross product of the binormal and the normal.
     mapped.tangent = cross(mapped.binormal, mapped.normal);
     return std::pair{*frame0, mapped};
   }
@@ -433,7 +435,8 @@ struct Circle {
   circle.centre = add(first, arm);
   circle.radius = length(arm);
   circle.x = scaled(-1 / circle.radius, arm);
-  // Either of the two normals of the plane will do, since the angles below decide the direction of the circle.
+  // The plane of the circle has two opposite normals. Either of them will do, since the angles below decide the
+  // direction of the circle.
   const Real side = normal[0] + Real(0.37L) * normal[1] + Real(0.11L) * normal[2] > 0 ? 1 : -1;
   circle.y = cross(normalised(scaled(side, normal)), circle.x);
   const auto turn = [&circle](const Vector& point) {
@@ -498,7 +501,7 @@ struct SchemeName {
   return std::nullopt;
 }
 
-/// Tells whether a scheme searches for a number on which its path depends.
+/// Tells whether a scheme finds a parameter of its path by a search.
 [[nodiscard]] inline bool is_searched(std::string_view name) {
   return name == "quaternion:optimal" || name == "linear:scaled";
 }
@@ -506,10 +509,10 @@ struct SchemeName {
 /// Returns the unit normal that a scheme must give at t, or nothing if the scheme is not defined there or `name` is
 /// unknown.
 ///
-/// Some schemes search for a number, for which is_searched() is true. For such a scheme, `observed_middle` is the
-/// result of the tested scheme at t = 1/2, which determines the number, and thereby the result at every other t.
-/// Without `observed_middle`, the function returns nothing for such a scheme. optimal_circle_error() and
-/// scaled_linear_error() test the search itself.
+/// Some schemes find a parameter of their path by a search; is_searched() is true for them. For such a scheme,
+/// `observed_middle` is the result of the tested scheme at t = 1/2, which determines the parameter, and thereby the
+/// result at every other t. Without `observed_middle`, the function returns nothing for such a scheme.
+/// optimal_circle_error() and scaled_linear_error() test the search itself.
 template <class Moving>
 [[nodiscard]] std::optional<Vector> unit_normal(std::string_view name, const Moving& triangle, Real t,
                                                 const Place& place = {},
@@ -537,8 +540,8 @@ template <class Moving>
     const auto ends = exact_nodes(triangle, 2);
     if (!ends || !observed_middle) return std::nullopt;
     if (kind == "linear:scaled") {
-      // The observed middle is parallel to u0 + s u1, where u0 and u1 are the normals at both ends. The number s is |u0
-      // x middle| divided by |middle x u1|.
+      // At t = 1/2, the observed normal (`middle`) is parallel to u0 + s u1, where u0 and u1 are the normals at t = 0
+      // and t = 1. The number s is |u0 x middle| divided by |middle x u1|.
       const Real with_end = length(cross(*observed_middle, ends->back()));
       const Real with_start = length(cross(ends->front(), *observed_middle));
       if (length(cross(ends->front(), ends->back())) < kNearCoincident) return std::nullopt;
@@ -645,8 +648,9 @@ template <class Coarse, class Fine>
 }
 
 /// Returns the smallest average error over the samples, in radians, that a dense search over all pairs of frames finds.
-/// Each pair of frames gives a circle of eq. 6 of the paper, which runs at constant speed on its shorter arc (|phi| <=
-/// pi/2). Returns nothing if the ends coincide or are antipodal.
+/// Each pair of frames gives a circle of eq. 6 of the paper, which an angle phi selects. The normal runs at constant
+/// speed on the shorter arc of the circle, for which |phi| <= pi/2. Returns nothing if the ends coincide or are
+/// antipodal.
 ///
 /// The search tries `density` values that are equidistant in phi, and as many that are equidistant in the direction in
 /// which the circle leaves u0. Equidistant directions are needed if u0 and u1 are close, since circles then differ
@@ -675,14 +679,15 @@ template <class Coarse, class Fine>
       [&](double phi) { return circle_family_error(exact, u0, u1, phi); });
 }
 
-/// Returns the average error, in radians, of the straight line u0 + t (s u1 - u0).
+/// Returns the average error, in radians, of the normals along the straight line u0 + t (s u1 - u0).
 [[nodiscard]] inline double scaled_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double s, std::size_t stride = 1) {
   return mean_error(
       exact, [&](double t) { return add(scaled(1 - t, u0), scaled(t * s, u1)); }, stride);
 }
 
-/// Returns the smallest average error, in radians, of the straight line u0 + t (s u1 - u0) over all s > 0.
+/// Returns the smallest average error, in radians, of the normals along a straight line u0 + t (s u1 - u0), over all s
+/// > 0.
 [[nodiscard]] inline std::optional<double> scaled_linear_error(const Triangle& triangle, const ExactSamples& exact,
                                                                std::size_t density = 320,
                                                                std::size_t coarse_stride = 2) {

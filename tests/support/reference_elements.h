@@ -139,8 +139,8 @@ struct MovingElement {
 }
 
 /// Returns the class of each corner. Corners of one class share a normal at a crease angle of `degrees`. point[v] is
-/// the number of the point at which vertex v is. All faces must have normals at t = 0, and no angle may be so close to
-/// the crease angle that rounding decides.
+/// the number of the point at which vertex v lies, so vertices at one position have the same number. All faces must
+/// have normals at t = 0, and no angle may be so close to the crease angle that rounding decides.
 [[nodiscard]] inline std::vector<std::size_t> crease_classes(const Mesh& mesh, const std::vector<std::size_t>& point,
                                                              Real degrees) {
   const std::vector<Corner> corners = corners_of(mesh);

@@ -112,7 +112,7 @@ class ReportFile {
     const std::string weighting = of["weighting"];
     Point result = {};
     for (std::size_t t = 0; 3 * t < triangles.size();) {
-      // Puts together the polygon that a fan of triangles stands for.
+      // Rebuilds a polygon from the triangles of the fan into which the polygon was cut.
       const std::size_t first = 3 * t;
       std::vector<std::uint32_t> polygon(triangles.begin() + static_cast<std::ptrdiff_t>(3 * t),
                                          triangles.begin() + static_cast<std::ptrdiff_t>(3 * t + 3));

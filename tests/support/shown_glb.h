@@ -41,7 +41,7 @@ class ShownGlb {
   [[nodiscard]] std::size_t targets() const { return position_deltas.size(); }
   [[nodiscard]] double end() const { return times.back(); }
 
-  /// Returns the weights at a time, by appendix C of the glTF specification.
+  /// Returns the weights of the targets at a time in seconds, by appendix C of the glTF specification.
   [[nodiscard]] std::vector<double> weights(double time) const {
     std::size_t k = 0;
     while (k + 2 < times.size() && time >= times[k + 1]) ++k;

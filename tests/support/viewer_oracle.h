@@ -96,8 +96,8 @@ using Triple = std::array<double, 3>;
   return scaled_to_one({2 * x * z + 2 * w * y, 2 * y * z - 2 * w * x, 1 - 2 * x * x - 2 * y * y});
 }
 
-/// Returns the integer that is nearest to value * most. Finds it by trying all integers. If two are equally near,
-/// returns the one with the larger absolute value.
+/// Returns the integer that is nearest to value * most. Finds it by trying all integers. If two integers are equally
+/// near, returns the integer with the larger absolute value.
 [[nodiscard]] inline int nearest_integer(double value, int most) {
   int best = 0;
   for (int k = 1; k <= most; ++k)
@@ -184,7 +184,7 @@ using Triple = std::array<double, 3>;
   return scaled_to_one(sum);
 }
 
-/// Returns the weights that a viewer computes from a track at a time between keys. All times are in seconds. The
+/// Returns the weights that a viewer computes from the keyframes of a track at `time`. All times are in seconds. The
 /// animation starts at `start` and ends at `end`.
 [[nodiscard]] inline std::vector<double> played_by(std::string_view viewer, GltfInterpolation interpolation,
                                                    const std::vector<float>& times, const std::vector<float>& values,
@@ -213,7 +213,7 @@ using Triple = std::array<double, 3>;
     return weights;
   }
   if (viewer == "playcanvas" && is_spline) {
-    // PlayCanvas makes a separate track for each number of a key.
+    // A keyframe of a cubic spline has three numbers for each target. PlayCanvas makes a separate track of each number.
     const std::size_t tracks = values.size() / times.size(), keys = times.size();
     std::vector<double> weights;
     for (std::size_t j = 0; j < targets; ++j) {

@@ -92,7 +92,7 @@ class WholePolynomial {
   }
 
   /// Tells whether this polynomial is linear. If so, slope_at_root() returns the sign of the derivative of another
-  /// polynomial p at the root of this one.
+  /// polynomial p at the root of this polynomial.
   [[nodiscard]] bool is_linear() const { return a_.size() == 2; }
   [[nodiscard]] int slope_at_root(const WholePolynomial& p) const {
     const Whole root = -a_[0], unit = a_[1];  // t = root / unit

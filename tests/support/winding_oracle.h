@@ -69,8 +69,8 @@ template <class Integer>
   return sign_of(Integer(a[0] * x + a[1] * y + a[2] * z));
 }
 
-/// Returns the winding number of the origin, counted along a half-line in this direction, or nothing if a determinant
-/// is zero.
+/// Returns the winding number of the origin, counted along a half-line in the given direction. Returns nothing if the
+/// half-line meets an edge or a vertex, so that a determinant is zero.
 template <class Integer>
 [[nodiscard]] std::optional<int> winding_along(const std::vector<Place<Integer>>& vertices,
                                                std::span<const Corners> faces, const Place<Integer>& direction) {

@@ -62,8 +62,8 @@ def everything():
 
 
 def models(folder, program, seed):
-    """Exports every model three times: without the add-on, with the add-on switched off, and with it switched on. Also
-    lets the panel check each model."""
+    """Exports every model without the add-on, with the add-on switched off, before and after the panel has checked the
+    model, and with the add-on switched on."""
     result = {}
     for name in blender_truth.MODELS:
         truth, how = blender_truth.make(int(seed), name)
@@ -153,7 +153,8 @@ def failures(folder, program):
 
 
 def leaves(folder, program):
-    """Compares the state of Blender before the add-on was enabled with the state after it was disabled."""
+    """Returns the state of Blender before the add-on is enabled, while the add-on is in use, and after it is disabled.
+    """
     from io_scene_gltf2.io.exp import gltf2_io_export
 
     def state():

@@ -133,7 +133,7 @@ describe('The add-on', () => {
     eachModel(context, (model, { over_time: plain, baked_over_time: baked, leaves }, own) => {
       const { times } = errors(model.exported, model);
       own.diagnostic(`plain ${plain.average}, corrected ${baked.average}, the file ${times.mean}`);
-      // The panel checks every frame, but only every third frame was recorded.
+      // The panel checks every frame, but only every third frame was recorded, so the panel may find a larger error.
       assert.ok(plain.poses > 40 && plain.worst >= times.worst - AGREE);
       assert.ok(plain.findings.some(([kind]) => kind === 'FRAME') && plain.findings.some(([kind]) => kind === 'PLACE'));
       if (!HARD_IN_POSES.includes(model.name)) assert.ok(baked.mean <= MEAN && baked.worst <= WORST, JSON.stringify(baked));

@@ -9,8 +9,9 @@ import { nodeWeights, read, shownNormals } from './reader.mjs';
 // Two positions at this distance or less count as equal. Models are about two units wide.
 const ROUNDING = 1e-5;
 
-// Reads the files that blender_truth.py wrote for a model. `loops` is the number of loops, and `instants` lists the
-// instants. place() and normal() return the position and the normal of a loop at an instant.
+// Reads the files that blender_truth.py wrote for a model. `loops` is the number of loops (the corners of the
+// polygons), and `instants` lists the instants. place() and normal() return the position and the normal of a loop at an
+// instant.
 export function readTruth(path) {
   const { loops, instants } = JSON.parse(readFileSync(`${path}.json`, 'utf8'));
   const bytes = readFileSync(`${path}.bin`);
@@ -70,7 +71,7 @@ export function errors(file, { truth, exported, loops }) {
     assert.deepEqual(primitive.positions, exported.meshes[0].primitives[p].positions);
     truth.instants.forEach(({ time, weights }, i) => {
       const still = time === undefined;
-      // When a single key is set, the weights of the targets that a bake has added are 0.
+      // In the base and at a single key, the weights of correction targets are 0.
       const alone = file.meshes[0].weights.map((_, k) => weights[k] ?? 0);
       const normals = shownNormals(primitive, still ? alone : nodeWeights(file, 0, file.animations[0], time));
       const kind = still ? result.stills : result.times;

@@ -77,7 +77,7 @@ def cut_in_rows(editable, cuts):
 
 
 def apply(o, kind, **settings):
-    """Applies a modifier of a kind, with these settings, to an object."""
+    """Adds a modifier of a type, such as BEVEL, with these settings to an object, and applies the modifier."""
     modifier = o.modifiers.new(kind, kind)
     for name, value in settings.items():
         setattr(modifier, name, value)
@@ -242,8 +242,8 @@ def triangles(draw):
 
 
 def sheet(draw):
-    """Makes a planar grid of quads. In the base, its normals are the same by every weighting; in the keys, they
-    differ."""
+    """Makes a planar grid of quads. In the base, all weightings give the same normals; in the keys, they give different
+    normals."""
     return grid(draw, 0)
 
 
@@ -264,7 +264,8 @@ def authored(draw):
     return o
 
 
-# The models: the name, the function that makes the model, its keys, and the interpolation of its animation.
+# The models: the name, the function that makes the model, the functions that deform its keys, and the interpolation of
+# its animation.
 LINEAR, CUBIC, SAMPLED = "LINEAR", "BEZIER", "every frame"
 MODELS = {
     "head": (head, (bend, bulge), LINEAR),

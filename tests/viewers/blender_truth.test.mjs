@@ -80,8 +80,8 @@ describe("Blender's own normals", () => {
       assertSameBetween(audited, errors(model.exported, model));
     }));
 
-  // In deformed poses, some edges of `facets` become hard because of their angle. But the exporter decides in the base
-  // pose which corners share a vertex.
+  // In deformed poses, some edges of `facets` become hard because of their angle. The exporter decides in the base pose
+  // which corners share a vertex, so no file can show these edges, and the test skips the times of `facets`.
   test('are shown at every time after a bake for a viewer that adds up deltas', (context) =>
     eachModel(context, async (model, own) => {
       const baked = `${model.path}.closest.glb`;

@@ -67,8 +67,8 @@ describe('a captured face', { skip: NO_DATA }, () => {
     const { openFolder } = await import('./browser.mjs');
     const { page, close } = await openFolder({ chronormal: installed, 'face.glb': face, 'page.html': '<!doctype html><title>page</title>' });
     try {
-      // The test starts the bake in the page and then asks for its state again and again, since no single call to the
-      // browser may take minutes.
+      // The test starts the bake in the page and then asks for the state of the bake again and again, since no single
+      // call to the browser may take minutes.
       await page.evaluate((options) => {
         window.state = { ticks: 0, heard: 0 };
         const start = performance.now(), clock = setInterval(() => ++state.ticks, 100);

@@ -3,7 +3,7 @@
 //
 //   CHRONORMAL_PROGRAM  the program
 //   CHRONORMAL_DATA     the folder of the real data, for a head by Blender and for MorphStressTest, if set
-//   CHRONORMAL_FULL=1   every file in every viewer; otherwise one file in the viewers that viewers.test.mjs leaves out
+//   CHRONORMAL_FULL=1   tests every file in every viewer, and not only one file in PlayCanvas and Filament
 //   CHRONORMAL_UPDATE_DOCS=1  with CHRONORMAL_DATA, writes docs/pictures/head.png
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -76,7 +76,7 @@ export class ExactNormals {
 
   // Returns for each primitive null if the primitive is flat, and otherwise {directions, lengths}. `directions` has the
   // true normal of each vertex, not scaled to length 1. `lengths` has the length of the sum of cross products at the
-  // vertex. If no triangle of the primitive uses a vertex, both are zero.
+  // vertex. If no triangle of the primitive uses a vertex, its direction and its length are zero.
   at(weights) {
     const sums = this.sums(weights);
     return this.primitives.map((primitive, p) => {

@@ -7,7 +7,8 @@ import { join } from 'node:path';
 import { angle } from './exact.mjs';
 import { chronormal } from './program.mjs';
 
-/** Returns the figure by `chronormal compare --face` of a face whose corners move from `from` to `to`. */
+/** Returns the figure that `chronormal compare --face` computes for a face: the paths of its normals by each scheme.
+ * The corners of the face move from `from` to `to`. */
 export function figureByProgram({ from, to }, schemes, samples) {
   const folder = mkdtempSync(join(tmpdir(), 'chronormal-figure-')), names = ['from.obj', 'to.obj'].map((name) => join(folder, name));
   [from, to].forEach((corners, end) => writeFileSync(names[end], `${corners.map((p) => `v ${p.join(' ')}`).join('\n')}\nf ${corners.map((_, i) => i + 1).join(' ')}\n`));
@@ -21,7 +22,8 @@ export function figureByProgram({ from, to }, schemes, samples) {
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const vector = (flat, i) => flat.slice(3 * i, 3 * i + 3);
 
-/** Fails unless two figures have the same numbers. If paths were rounded to float32, the last digits may differ. */
+/** Fails unless two figures have the same numbers. Small differences are allowed, since the paths of one figure may
+ * have been rounded to float32. */
 export function assertSameFigure(found, expected) {
   assert.deepEqual(found.t, expected.t);
   found.schemes.forEach((one, k) => {
@@ -39,8 +41,9 @@ export function assertSameFigure(found, expected) {
 }
 
 /**
- * Compares a panel with a figure: the sum of angles q of each scheme in its table, in degrees; the places of the marks
- * of normals; and the colour of the pixel at the mark of the exact normal in the saved file.
+ * Compares the panel of a page with a figure: the sum q of the angles, in degrees, of each scheme in the table of the
+ * panel; the places of the marks of normals; and the colour of the pixel at the mark of the exact normal in the saved
+ * file.
  * @param page a page of puppeteer whose viewer has a figure
  */
 export async function assertShown(page, expected) {

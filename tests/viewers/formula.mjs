@@ -1,6 +1,7 @@
-// Bakes by the formula in a few lines of JavaScript, as an oracle for bakes with one target, whose weight is w. Let
-// n(w) = c0 + w c1 + w^2 c2. A viewer that renders N + w D + w (1 - w) E shows the direction of n(w) if N = c0 / |c0|,
-// D = (c1 + c2) / |c0| and E = -c2 / |c0|, where E is the delta of a correction target.
+// Bakes by the formula in a few lines of JavaScript, as an oracle for bakes with one target, whose weight is w. The
+// normal of a surface is n(w) = c0 + w c1 + w^2 c2, with three vectors c0, c1 and c2. A viewer that renders N + w D + w
+// (1 - w) E shows the direction of n(w) if N = c0 / |c0|, D = (c1 + c2) / |c0| and E = -c2 / |c0|, where E is the delta
+// of a correction target.
 import { Accessor } from '@gltf-transform/core';
 import { ExactNormals } from './exact.mjs';
 import { describe, newIO } from './reader.mjs';

@@ -123,7 +123,7 @@ function compareUndriven(source, shown) {
 }
 
 // Returns a result for each animation with weights, and one result for the meshes that no animation moves. If the
-// weights of an animation are constant, takes only one sample.
+// weights of an animation are constant, compares normals at only one time.
 export function compareFiles(source, shown, count = 101) {
   const results = source.animations.flatMap((animation, a) => {
     if (animation.tracks.length === 0) return [];

@@ -53,7 +53,8 @@ let folder;
 before(() => (folder = makeWorkshop(mkdtempSync(join(tmpdir(), 'chronormal_pipelines_')))));
 after(() => rmSync(folder, { recursive: true, force: true }));
 
-// Makes the variants of a file that the tools process. Returns their paths by name.
+// Makes three variants of a file for the tools: as exported, with plain end-point deltas, and baked. Returns their
+// paths by name.
 const inputs = new Map();
 async function inputsOf(name) {
   if (!inputs.has(name)) {

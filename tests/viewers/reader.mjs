@@ -88,8 +88,8 @@ export function weightsAt(track, time) {
   const spline = interpolation === 'CUBICSPLINE';
   const last = times.length - 1;
   const count = values.length / times.length / (spline ? 3 : 1);
-  // Returns number i of a key. For the key of a spline, parts 0, 1 and 2 are its in-tangents, its values and its
-  // out-tangents. Other keys have only values.
+  // Returns number i of keyframe k. For a keyframe of a spline, parts 0, 1 and 2 are its in-tangents, its values and
+  // its out-tangents. Other keyframes have only values.
   const at = (k, part, i) => values[spline ? (3 * k + part) * count + i : k * count + i];
   const weights = (weight) => Float32Array.from({ length: count }, (_, i) => weight(i));
   if (time <= times[0]) return weights((i) => at(0, 1, i));
@@ -109,8 +109,8 @@ export function weightsAt(track, time) {
   );
 }
 
-// Returns the weights of a node at a time of an animation: those of its track or, without a track, those of the node
-// or, without them, those of its mesh.
+// Returns the weights of a node at a time of an animation. If the animation has no track for the node, returns the
+// weights of the node itself or, if the node has none, the weights of its mesh.
 export function nodeWeights(file, node, animation, time) {
   const track = animation?.tracks.find((candidate) => candidate.node === node);
   if (track) return weightsAt(track, time);

@@ -62,8 +62,9 @@ const boards = {
     weights: anyWeights,
     free: 90,
   },
-  // The first target has a unit normal. The second and third together give any vector D of length up to 1.95. Their
-  // unit normals are h + D/2 and h - D/2, where h is perpendicular to D, and their weights are s and -s.
+  // The first target has a unit normal. The second and the third target have the weights s and -s, and the unit normals
+  // h + D/2 and h - D/2, where h is perpendicular to D. Together they add s D to the normal, for any vector D of length
+  // up to 1.95.
   'a pair of targets for any delta': {
     deltas: (normal, random) => {
       const any = scaled(randomDirection(random), 1.95 * random());
@@ -81,7 +82,8 @@ const boards = {
 const TIMES = [0.25, 0.8, 1.5, 2.3, 2.9];
 
 // Returns {rows, weights, patches}. `rows` has the weights at the keys 0, 1, 2 and 3, and `weights` has the weights at
-// TIMES. `patches` leaves out squares whose computed normal is short by some rule at some time.
+// TIMES. `patches` has only squares whose normal is longer than 0.4 by every rule at each of the TIMES, since rounding
+// turns a shorter normal by a larger angle.
 function boardOf({ deltas, weights: weightsOf }) {
   const random = randomNumbers(SEED);
   const rows = Array.from({ length: 4 }, () => weightsOf(random));

@@ -64,7 +64,8 @@ TEST(Audit, hinge_without_target_normals_has_the_angles_of_a_drawing) {
   EXPECT_EQ(subject.error.worst_at.vertex, 3U);
   EXPECT_EQ(subject.error.worst_at.at, 1);
   EXPECT_EQ(subject.error.histogram[0], 3U);
-  // An error of 45 degrees is at the boundary between two bins, so rounding decides its bin.
+  // An error of 45 degrees is at the boundary between two bins of the histogram, so rounding decides which bin counts
+  // it.
   EXPECT_EQ(subject.error.histogram[8] + subject.error.histogram[7], 2U);
   EXPECT_EQ(subject.error.histogram[9] + subject.error.histogram[8], 3U - subject.error.histogram[7]);
   EXPECT_EQ(result.worst, 0U);
@@ -130,12 +131,12 @@ TEST(Audit, an_expression_of_an_avatar_is_a_pose_that_is_judged_at_its_full_stre
 }
 
 TEST(Audit, an_expression_is_a_fault_where_it_is_farther_off_than_its_targets_alone) {
-  // The target alone is judged up to weight 1. The expression sets a larger weight.
+  // The target alone is judged up to weight 1. The expression sets its weight to 3.
   const Audit result = audit_of(with_expression(hinge().file(), 3, false), {.samples = 2});
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kMissingNormals, Kind::kWrongTogether}));
   EXPECT_EQ(result.findings[1].expression, 0U);
   EXPECT_FALSE(result.findings[1].target || result.findings[1].animation);
-  // The corner of the folding face is then at (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
+  // At weight 3, the corner of the folding face is at (1 - 3, 0, 3), so the face has turned by pi - atan(3 / 2).
   EXPECT_NEAR(result.findings[1].degrees, 180 - std::atan(1.5) * 180 / std::numbers::pi, 1e-12);
   EXPECT_EQ(result.worst, 1U);
 }
@@ -452,7 +453,7 @@ TEST(Audit, vanishing_normals_are_counted_and_not_judged) {
   ShadedMesh mesh = hinge();
   mesh.targets[0].positions = {0, 0, 0, 0, 0, 0, 0, 0, 0, -4, 0, 0};
   const Audit result = audit_of(mesh.file(), {.samples = 3});
-  // At weight 1, the normals of the two faces cancel at the edge, so vertices 1 and 2 have no normal either.
+  // At weight 1, the normals of the two faces cancel at the edge, so vertices 1 and 2 have no normal.
   EXPECT_EQ(result.error.no_normal, 3U);
   EXPECT_EQ(result.error.judged, 6U);
   EXPECT_NEAR(result.error.sum, 180, 1e-9);
@@ -675,9 +676,9 @@ TEST(Audit, ends_that_are_right_with_a_chord_between_are_told_from_wrong_ends) {
   ASSERT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-4);
   EXPECT_GT(result.error.worst, 1);
-  // At weight 1, the rendered normal of vertex 3 is now parallel to (-1, 0, 1), and so wrong.
+  // Without this component of its delta, vertex 3 renders a normal parallel to (-1, 0, 1) at weight 1, which is wrong.
   mesh.targets[0].normals[11] = 0;
-  // The weighting is requested here, so it is not found from the stored normals.
+  // Requests a weighting, so that the audit need not find the weighting from the stored normals.
   const Audit wrong = audit_of(mesh.file(), {.weighting = Weighting::kArea});
   ASSERT_EQ(kinds_of(wrong), (std::vector<Kind>{Kind::kWrongAtKeys}));
   EXPECT_NEAR(wrong.findings[0].degrees, 45, 1e-4);
