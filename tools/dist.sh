@@ -186,7 +186,7 @@ dist_blender() {
   /usr/bin/python3 "$root/tools/dist/blender_addon.py" "$dist/chronormal-blender-$version.zip" "${programs[@]}"
 }
 
-# dist_sbom: lists the authors of the code in the files of the release.
+# dist_sbom: writes an SPDX list of the files of the release and of the components of other projects in them.
 dist_sbom() {
   dist_packages
   local list=$dist/chronormal-$version.spdx.json

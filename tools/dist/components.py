@@ -43,7 +43,7 @@ ARTEFACTS = {
     "site": ("chronormal-*-site.tar.gz", None, [], "ARCHIVE"),
     "source": ("chronormal-*.tar.gz", None, [], "SOURCE"),
 }
-# artefacts that contain the components of the pages of web/
+# The artefacts that contain the components of the pages of web/.
 WITH_PAGE = ("program", "arm64", "windows", "deb", "npm", "page")
 
 # The artefacts whose programs the add-on for Blender contains. The keys are folders in the add-on; programs in all

@@ -12,7 +12,7 @@ const data = (name) => join(process.env.CHRONORMAL_DATA, name);
 
 // The meshes and their cameras. `from` is the direction of the camera, and `near` its distance as a share of the
 // distance at which the whole mesh is seen. `at` is the point at which the camera looks, in shares of the box of the
-// mesh. The picture shows the moment with the largest mean error.
+// mesh. The picture shows the moment with the largest average error.
 const SUBJECTS = [
   { name: 'face', input: [data('rigs/ict_capture.glb')], from: [0.4, 0.02, 1], near: 0.46, at: [0.5, 0.53, 0.65], scale: 20 },
   { name: 'suzanne', input: [data('rigs/blender_suzanne_two_keys.glb')], from: [0.45, 0.2, 1], near: 0.72, at: [0.5, 0.5, 0.5], scale: 45 },

@@ -341,7 +341,8 @@ def draw_lens(page, at, grows):
 
 
 def draw_oscillation(page, soup, at, found):
-    """Draws the face whose zero is nearest to 0.5 + 0.1i, and the mean error of all morphs over the degree."""
+    """Draws the errors of the face whose zero of n(t).n(t) is nearest to 0.5 + 0.1i, and the average error of all
+    morphs for each degree."""
     shown = np.abs(at.real + 1j * np.abs(at.imag) - (0.5 + 0.1j)).argmin()
     face, t = soup.face(shown), np.linspace(0, 1, 401)
     exact = np.array([face.exact(x)[0] for x in t])
@@ -412,8 +413,8 @@ def measure_frames(page):
 
 
 def draw_angle(page):
-    """Draws the mean error over the angle phi (eq. 6 and 7 of docs/theory.md), for one face of each morph: the face
-    whose linear error is the median."""
+    """Draws the average error as a function of the angle phi (eq. 6 and 7 of docs/theory.md), for one face of each
+    morph: the face whose linear error is the median."""
     (figure, axes), t, disagreement = plt.subplots(1, 3, figsize=(9, 3.6), layout="constrained"), np.linspace(0, 1, 201), 0
     for name, ax in zip(("cloth", "twist", "eversion"), axes):
         part = some(name, 2000)
@@ -537,8 +538,8 @@ def measure_slips(page):
 # The next functions make section 7 of docs/paper.md.
 
 def view_against(towards, along):
-    """Returns two directions of the picture for an observer who looks against `towards`. The direction `along` points
-    to the right."""
+    """Returns the directions to the right and upwards in the picture of an observer who looks against `towards`. The
+    direction `along` points to the right."""
     right = unit(along - dot(along, towards) * towards)
     return np.stack([right, np.cross(towards, right)], axis=1)
 

@@ -187,7 +187,8 @@ TEST(SkinnedAudit, viewers_see_the_same_normals_through_a_skin_in_ways_of_their_
   EXPECT_GT(std::fabs(result.viewers[2].error.mean() - result.viewers[1].error.mean()), 0.1);
 }
 
-// Returns the value of a track at a time, by the formulas of the glTF specification, with its own search for the key.
+// Returns the value of a track at a time, by the formulas of the glTF specification. If `just_before` is true and the
+// time is that of a keyframe, uses the interval before the keyframe.
 template <std::size_t N>
 std::array<Real, N> value_at(const std::string& interpolation, const std::vector<float>& times,
                              const std::vector<float>& values, double time, bool just_before) {
@@ -363,7 +364,7 @@ TEST(SkinnedAudit, hinge_under_a_joint_that_flattens_has_the_angles_of_a_drawing
   // At the edge, n is (-1, 0, 1), and its z is halved on the screen.
   const double edge = std::atan2(1, 0.5) * 180 / std::numbers::pi;
   EXPECT_NEAR(error.mean(), (edge + edge + 90) / 6, 1e-12);
-  // The normal of the skinned surface is turned the other way: it is (-0.5, 0, 1).
+  // The normal of the skinned surface is turned in the opposite direction: at the edge, it is (-0.5, 0, 1).
   const double skinned = std::atan2(0.5, 1) * 180 / std::numbers::pi;
   EXPECT_NEAR(result.subjects[0].skinning->worst, edge - skinned, 1e-12);
   EXPECT_EQ(result.subjects[0].skinning->judged, 6U);

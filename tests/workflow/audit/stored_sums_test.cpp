@@ -19,8 +19,9 @@ struct Fixture {
   std::vector<JudgedOutput> outputs;
 };
 
-// Makes stored normals. Every third vertex has a zero normal. Target 0 turns all vertices, target 1 none, target 2 the
-// last vertex, target 3 some in the middle, and target 5 every second vertex. Target 4 has no normals.
+// Makes stored normals. Every third vertex has a zero normal. Target 0 turns the normals of all vertices, target 1 of
+// no vertex, target 2 of the last vertex, target 3 of some vertices in the middle, and target 5 of every second vertex.
+// Target 4 has no normals.
 Fixture make_fixture(std::size_t vertices, std::mt19937& random) {
   std::uniform_real_distribution<float> number(-1, 1);
   Fixture result;

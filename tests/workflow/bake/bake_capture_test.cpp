@@ -1,4 +1,4 @@
-// Checks the errors that the smallest candidate of a bake has on the captured face. The test uses instants between keys
+// Checks the errors of a bake of the captured face with the encoding `smallest`. The test uses instants between keys
 // that the bake used neither for fitting nor for judging. The test is skipped unless the environment variable
 // CHRONORMAL_DATA names the folder of the face. If CHRONORMAL_FULL is set, all keys of the face are tested instead of
 // the first few.

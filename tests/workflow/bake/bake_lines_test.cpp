@@ -237,7 +237,7 @@ TEST(BakeLines, weights_that_tell_nothing_leave_each_target_for_itself) {
 }
 
 TEST(BakeLines, long_animations_are_judged_where_they_were_not_fitted) {
-  // The animation has more samples than the fit uses: 16 for each of 300 pieces.
+  // The animation has 16 samples for each of its 300 intervals between keys, which are more samples than the fit uses.
   GltfBuilder builder = test::hills_document(3, 8);
   test::Hills random(9);
   std::vector<float> times, values;

@@ -343,7 +343,7 @@ TEST(BakeSequence, time_reversal_shows_the_same_normals_at_mirrored_times) {
 
 TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   // A roof of two quads with separate vertices at the ridge: vertex 4 is at the position of vertex 3, and vertex 5 at
-  // that of vertex 2.
+  // the position of vertex 2.
   Motion motion;
   motion.topology = fixtures::make_polygons(8, {0, 4, 8}, {0, 1, 2, 3, 4, 5, 6, 7});
   Random random(6);
@@ -360,8 +360,8 @@ TEST(BakeSequence, coinciding_vertices_show_one_normal) {
   const Surface surface = smooth_surface(motion);
   EXPECT_EQ(surface.group[3], surface.group[4]);
   expect_exact(glb, surface);
-  // If the edge at the ridge is hard, the two halves have separate normals. No vertices are added, since each half
-  // already has its own vertices.
+  // If the edge at the ridge is hard, the two quads of the roof have separate normals. No vertices are added, since
+  // each quad has its own vertices.
   const std::string hard_file = bake(motion, {.crease_angle = 20});
   const ShownGlb hard(hard_file);
   EXPECT_EQ(hard.vertices(), 8U);

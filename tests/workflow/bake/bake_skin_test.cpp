@@ -1,6 +1,6 @@
-// Checks that the smallest candidate of a bake is judged by the normals after skinning. The tolerance must be kept with
-// joints that squash the mesh, and in viewers with different rules for skinned normals. Joints that only rotate and
-// scale uniformly must change nothing.
+// Checks that a bake with the encoding `smallest` judges its candidates by the normals after skinning. The tolerance
+// must be kept with joints that squash the mesh, and in viewers with different rules for skinned normals. Joints that
+// only rotate and scale uniformly must change nothing.
 
 #include <gtest/gtest.h>
 
@@ -267,8 +267,8 @@ TEST(BakeSkin, figures_behind_joints_that_move_are_those_of_the_oracle_by_every_
 }
 
 TEST(BakeSkin, tolerance_holds_in_each_viewer_in_its_own_way) {
-  // The joint scales z by 4. It stretches the z of normals in three.js, which applies the blended matrix. It shrinks
-  // the z of normals in Bevy, which applies the inverse transpose.
+  // The joint scales z by 4. Three.js applies the blended matrix to normals, which stretches their z. Bevy applies the
+  // inverse transpose of the blended matrix, which shrinks the z of normals.
   const Trs high = scaled(1, 1, 4);
   GltfBuilder builder = played_hills(2, {0, 0.2F});
   add_skin(builder, skin_of(false), high);

@@ -1,6 +1,6 @@
-// Tests the smallest candidate of a bake, whose correction targets only the animations of the file drive. The candidate
-// must keep a tolerance and a limit of bytes. Also tests guarantees for long files, for files that were baked before,
-// and for primitives that share arrays.
+// Tests bakes with the encoding `smallest`, for correction targets that only the animations of the file drive. The
+// result must keep a tolerance and a limit of bytes. Also tests guarantees for long files, for files that were baked
+// before, and for primitives that share arrays.
 
 #include <gtest/gtest.h>
 
@@ -124,7 +124,7 @@ TEST(BakeSmallest, leaves_a_file_alone_that_is_within_the_tolerance) {
   EXPECT_EQ(chosen(baked).name, "as it is");
 }
 
-// Returns weights of two targets at very many keys. The targets are active only at the key `at`.
+// Returns the weights of two targets at each of `keys` keys. The targets are active only at the key `at`.
 std::vector<float> wink(std::size_t keys, std::size_t at) {
   std::vector<float> weights(2 * keys, 0.0F);
   weights[2 * at] = weights[2 * at + 1] = 1;

@@ -1,4 +1,5 @@
-// Compares the points at which a bake fits normals with a map of elements and stored normals, on random normals.
+// Compares the points at which a bake fits normals with the entries of a std::map, whose keys are pairs of an element
+// and a stored normal. The normals are random.
 #include "workflow/bake/fits/missing_normals.h"
 
 #include <gtest/gtest.h>

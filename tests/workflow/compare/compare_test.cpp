@@ -496,7 +496,7 @@ TEST(BuiltinMorphs, are_there_by_name_and_have_the_faces_that_they_say) {
 }
 
 TEST(BuiltinMorphs, eversion_turns_inside_out) {
-  // The volume, which the divergence theorem gives, changes its sign.
+  // The mesh turns inside out, so its volume, which the divergence theorem gives, changes its sign.
   const Motion motion = make_builtin_morph("eversion").value();
   const auto volume = [&motion](VectorView<const float> p) {
     double sum = 0;
@@ -529,8 +529,9 @@ Motion polygon(std::uint32_t corners) {
   return motion;
 }
 
-// A vertex with a single polygon must have the normal of the polygon. In small polygons, normals are computed at each
-// corner; larger polygons are treated differently.
+// A vertex with a single polygon must have the normal of the polygon. The normal of a polygon with more than 32 corners
+// (or samples / 16 corners, if these are more) is computed once for all vertices, and that of a smaller polygon anew
+// for each vertex.
 TEST(Compare, vertices_of_a_polygon_have_the_errors_of_its_face) {
   for (const std::uint32_t corners : {3U, 5U, 32U, 33U, 34U, 200U}) {
     for (const std::size_t samples : {std::size_t{2}, std::size_t{5}, std::size_t{1000}}) {

@@ -110,7 +110,8 @@ TEST(Inspect, sliver_may_be_as_long_as_the_mesh) {
 }
 
 TEST(Inspect, sliver_is_what_rounding_can_turn) {
-  // At coordinates of about 1000, neighbouring floats differ by 6e-5.
+  // At coordinates of about 1000, neighbouring floats differ by 6e-5, which is about the height of the first triangle
+  // (2^-14).
   Positions sliver = {1000, 0, 0, 1001, 0, 0, 1002, 0, 0}, narrow = sliver;
   sliver[7] = 0x1p-14F;
   narrow[7] = 0x1p-9F;

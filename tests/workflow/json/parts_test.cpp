@@ -524,7 +524,8 @@ TEST(Parts, of_a_keyframe_that_changed_between_the_shards_do_not_belong_together
       const std::size_t count = 2 + random() % 3, later = 1 + random() % (count - 1);
       const Motion before = bending();
       Motion after = before;
-      // If the streams keep nothing, changes the first keyframe of the later shard, keyframe 0, or the last keyframe.
+      // If the shards read streams, changes a keyframe that two shards read: the first keyframe of the later shard,
+      // keyframe 0, or the last keyframe.
       const std::size_t boundary = Shard{later, count}.of(8).first;
       const std::size_t changed = is_kept ? random() % 9 : std::vector<std::size_t>{0, boundary, 8}[random() % 3];
       std::vector<float>& positions = after.keyframes[changed].positions;

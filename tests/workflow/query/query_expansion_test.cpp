@@ -73,7 +73,8 @@ void expect_bounded(const Ask& ask) {
   EXPECT_GT(last, 0);
   EXPECT_LT(last, kSegments / 2);
 
-  // The results up to the segment before must be within the limit, so the query did not stop too early.
+  // The query ended after `last` segments. The results of these segments must be within the limit, and more than 9/10
+  // of it, so the query did not stop too early.
   span.to = static_cast<double>(last);
   const Result<QueryAnswer> within = ask(span, {});
   ASSERT_TRUE(within) << within.error().text();

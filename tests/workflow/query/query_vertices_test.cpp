@@ -332,7 +332,7 @@ TEST(QueryVertices, ends_and_cones_of_a_shutter_are_those_of_the_normals_that_it
         const auto at = [&](std::size_t k, long double time) {
           return normal_at(motion.segment(k), outputs[o], time - static_cast<long double>(k));
         };
-        // Simpson's rule is exact in each segment.
+        // Simpson's rule is exact in each segment, where n(t) is quadratic.
         Direction sum{};
         long double longest = 0;
         std::vector<Direction> seen;

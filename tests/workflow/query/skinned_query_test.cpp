@@ -1,6 +1,6 @@
 // Compares queries about meshes behind skins with an oracle that computes joints, skins and normals in long double from
-// the same keys. Joints bend the paths of vertices, so normals of the pieces may differ from the true ones by the
-// tolerance, and by the effect of rounding positions to float32.
+// the same keys. Joints bend the paths of vertices, which the library replaces by straight pieces. The normals of the
+// pieces may differ from the true normals by the tolerance, and by the effect of rounding positions to float32.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -208,8 +208,8 @@ void each_moment(const Rig& rig, const Motion& motion, const Body& body) {
   }
 }
 
-// Returns the largest angle, in radians, between the normals of pieces and the true normals, minus the angle that
-// rounding may cause.
+// Returns the largest angle, in radians, between the normals of the straight pieces of the motion and the true normals,
+// minus the angle that rounding may cause.
 Real worst_angle(const Rig& rig, const Motion& motion) {
   Real worst = 0;
   each_moment(rig, motion, [&](const Segment& segment, Real t, Real, const std::vector<Vector>& places) {
@@ -342,9 +342,9 @@ TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
   }
 }
 
-// The keys are equal, so a joint swings out and back between them. Where its path bends most, the edge to the tip bends
-// nearly as much as the bound of the rotation says. A bound that is four times too small would give half of the pieces,
-// and four times the error.
+// Both keys of the rotation are equal, so a joint swings out and back between the keys. Where its path bends most, the
+// edge to the tip bends nearly as much as the bound of the rotation says. A bound that is four times too small would
+// give half as many pieces, and four times the error.
 TEST(SkinnedQuery, a_cubic_rotation_that_swings_between_equal_keys_gets_the_pieces_that_it_needs) {
   constexpr std::uint64_t kSeed = 20261128;
   std::cout << "  from seed " << kSeed << '\n';

@@ -487,7 +487,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
   EXPECT_TRUE(whole.thinned.empty());
   ASSERT_EQ(whole.worst.size(), found.worst.size());
   for (std::size_t i = 0; i < found.worst.size(); ++i) EXPECT_EQ(whole.worst[i].label, found.worst[i].label);
-  // Every vertex that is still judged must have all of its triangles. In this sheet, each vertex is a separate element.
+  // Every vertex that the shortened report judges must have all of its triangles. In this sheet, each vertex is a
+  // separate element.
   const ReportFile all(whole.container);
   const std::vector<std::size_t> had = corners_of_vertices(all), has = corners_of_vertices(file);
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]);

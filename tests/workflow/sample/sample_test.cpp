@@ -239,7 +239,8 @@ TEST(NormalSampler, length_area_is_n_itself) {
   }
 }
 
-// Makes a base and two targets. The size of the faces is a thousandth of their distance from the origin.
+// Makes a base and two targets. Moves all of them by `offset` along x and z, and by -`offset` along y, so that the
+// faces are small compared with their distance from the origin.
 Motion star(double offset) {
   Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.2, 11);
   const Motion other = fixtures::shaken(fixtures::icosphere(1), 0.3, 12);

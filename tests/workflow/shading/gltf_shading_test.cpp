@@ -151,7 +151,7 @@ TEST(GltfShading, smooth_primitives_share_among_themselves_by_the_crease_angle) 
   shading = read(halves(first, second), {.smooth = true, .crease_angle = 30});
   EXPECT_NE(shading.element_of_vertex[1], shading.element_of_vertex[4]);
   EXPECT_NE(shading.element_of_vertex[4], kNone);
-  // If one half has stored normals and the other has none, the halves share no normals.
+  // If one half of the hinge has stored normals and the other half has none, the halves share no normals.
   shading = read(halves(half(0), second), {.smooth = true, .crease_angle = 180});
   EXPECT_NE(shading.element_of_vertex[1], shading.element_of_vertex[4]);
   EXPECT_EQ(shading.groups.faces(shading.element_of_vertex[1]).size(), 1U);
@@ -236,7 +236,8 @@ GltfBuilder marked(const Json& mark) {
   return builder;
 }
 
-// Returns a mark of version 1 that means the same as good_mark(), which has version 2.
+// Returns the mark that a bake leaves in the extras, in version 1. It means the same as good_mark(), which has version
+// 2.
 Json mark_of_factors() {
   return {{"version", 1},
           {"encode", "exact"},

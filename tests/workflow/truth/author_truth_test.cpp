@@ -444,8 +444,9 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
   }
 }
 
-// At corners of rectangles, weighting by angle is uniform, so a strip of rectangles follows both. On the hills beside
-// it, normals follow the author's weighting less exactly than on the strip, and the others are within a degree.
+// All angles of a rectangle are equal, so the normals of a strip of rectangles follow both the angle weighting and the
+// uniform weighting. On the hills beside the strip, normals follow the author's weighting less exactly than on the
+// strip, and the other weighting gives normals within a degree of them.
 TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_near_on_a_part) {
   std::cout << "  from seed " << kSeed + 30 << '\n';
   std::mt19937 random(kSeed + 30);
@@ -456,7 +457,7 @@ TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_n
     for (std::size_t i = 2; i < mesh.file.positions.size(); i += 3) mesh.file.positions[i] *= 0.1F;
     for (auto& target : mesh.file.targets)
       for (float& delta : target.positions) delta *= 0.1F;
-    // The strip is bent across its length, in another way at each key.
+    // The strip is bent across its length, differently in the base and in each key.
     constexpr std::size_t kColumns = 9, kRows = 9;
     std::array<std::vector<std::array<double, 2>>, 3> outlines;
     for (auto& outline : outlines) {
@@ -493,8 +494,8 @@ TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_n
   }
 }
 
-// A face of the front has vertices of its own, so normals may be sums over whole points. The front and the back add up
-// to nothing.
+// One face of the front has separate vertices, so normals could be sums over all faces at a point. Such sums would be
+// zero, since the front and the back cancel.
 TEST(AuthorTruth, the_rule_of_a_sheet_with_two_sides_is_found_on_each_side) {
   std::cout << "  from seed " << kSeed + 31 << '\n';
   std::mt19937 random(kSeed + 31);
@@ -601,7 +602,8 @@ TEST(AuthorTruth, an_edge_that_is_hard_in_a_key_alone_stays_hard) {
   mesh.positions = {-1, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
   mesh.corners = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
   for (int v = 0; v < 8; ++v) mesh.normals.insert(mesh.normals.end(), {0, 0, 1});
-  // In the target, the right half folds down by 90 degrees. Its vertices then have the normal of the folded half.
+  // In the target, the right half folds down by 90 degrees. The vertices of this half then have the normal of the
+  // folded half.
   mesh.targets.push_back({{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -1, 0, -1, -1, 0, -1, 0, 0, 0},
                           {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, -1, 1, 0, -1, 1, 0, -1, 1, 0, -1},
                           {}});
