@@ -99,8 +99,8 @@ dist_others() {
   /usr/bin/python3 "$root/tools/dist/zip_folder.py" "$folder" "$dist/$(basename "$folder").zip"
 }
 
-# dist_wheel: builds the Python package for Debian's Python. Its tag says that it needs this machine's version of the C
-# library or a newer one.
+# dist_wheel: builds the Python package for Debian's Python. The tag of the package says that the package needs this
+# machine's version of the C library or a newer version.
 dist_wheel() {
   dist_packages python
   build_dist _chronormal

@@ -1,5 +1,5 @@
-# Compiles the two files that tools/two_files.py writes by several compilers, and runs the programs for other systems in
-# emulators. The results must have the same bytes everywhere. ./test sources this file.
+# Compiles, with several compilers, the two files that tools/two_files.py writes, and runs the programs for other
+# systems in emulators. The results must have the same bytes everywhere. ./test sources this file.
 
 # compile_two_files NAME COMPILER FLAGS RUN: writes and compiles the two files of tools/two_files.py, and compares their
 # results with the results of the library of build/release.

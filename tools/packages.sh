@@ -12,8 +12,8 @@ listed_packages() {
   ' "$root/tools/packages.txt"
 }
 
-# update_lists APT-GET...: runs `apt-get update`, and waits while another program holds its lock. By itself, apt-get
-# waits only for the lock of an installation.
+# update_lists APT-GET...: runs `apt-get update`, and waits while another program holds the lock of the lists. By
+# itself, apt-get waits only for the lock of an installation.
 update_lists() {
   local deadline=$((SECONDS + 300)) said
   until said=$("$@" update 2>&1); do

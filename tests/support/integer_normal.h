@@ -5,8 +5,8 @@
 /// integers, and only the direction of the result is rounded to double. exact_normal.h computes the same normals in
 /// rational numbers, which takes a hundred times as long.
 ///
-/// If n(t) = 0, the result is the direction of n slightly earlier or, at t = 0, slightly later. The time differs by
-/// 2^-1500 of the segment, which is far less than any difference between two terms of n.
+/// If n(t) = 0, the result is the direction of n slightly earlier or, at t = 0, slightly later. The time is changed by
+/// at most 2^-1500 of the segment, so the first term of n that is not zero is far larger than all later terms.
 #ifndef CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 #define CHRONORMAL_TESTS_SUPPORT_INTEGER_NORMAL_H_
 

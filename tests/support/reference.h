@@ -13,8 +13,8 @@
 ///
 /// A triangle is given by six points, and t is in [0, 1]. Functions return std::nullopt if a scheme is not defined, or
 /// if t is so close to such a case that rounding decides the answer. A scheme is not defined for antipodal ends of a
-/// slerp, two coinciding points of a circle, a node (a time of an interpolated normal) at which the normal is zero, or a
-/// quaternion arc of exactly half a turn. Tests skip such cases.
+/// slerp, two coinciding points of a circle, a node (a time of an interpolated normal) at which the normal is zero, or
+/// a quaternion arc of exactly half a turn. Tests skip such cases.
 #ifndef CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 #define CHRONORMAL_TESTS_SUPPORT_REFERENCE_H_
 
@@ -322,8 +322,8 @@ template <std::size_t N>
   return Frame{tangent, cross(normal, tangent), normal};
 }
 
-/// Returns the matrix M of eqs. 7 and 8, which maps the corners (w = 1) and the normal (w = 0) at t = 0 to those at t =
-/// 1.
+/// Returns the matrix M of eqs. 7 and 8, which maps the corners (w = 1) and the normal (w = 0) at t = 0 to the corners
+/// and the normal at t = 1.
 [[nodiscard]] inline std::optional<Matrix<4>> triangle_map(const Triangle& triangle, const Vector& normal0,
                                                            const Vector& normal1) {
   const auto homogeneous = [](const std::array<Vector, 3>& corners, const Vector& normal) {
@@ -633,8 +633,8 @@ template <class Coarse, class Fine>
   return best;
 }
 
-/// Returns the average error, in radians, of one circle of eq. 6 of the paper through u0 and u1. The angle phi, in
-/// radians, selects the axis of the circle.
+/// Returns the average error, in radians, of the normals on one circle of eq. 6 of the paper through u0 and u1. The
+/// angle phi, in radians, selects the axis of the circle.
 [[nodiscard]] inline double circle_family_error(const ExactSamples& exact, const VectorD& u0, const VectorD& u1,
                                                 double phi, std::size_t stride = 1) {
   const VectorD axis =

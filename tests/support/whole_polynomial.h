@@ -66,7 +66,8 @@ using WholeVector = std::array<Whole, 3>;
 
 class WholePolynomial {
  public:
-  /// Returns six times the polynomial of degree 3 or less that has these values at t = -1, 0, 1 and 2.
+  /// Returns six times the polynomial of degree 3 or less that has these values at t = -1, 0, 1 and 2. The factor makes
+  /// all coefficients integers.
   [[nodiscard]] static WholePolynomial through(const Whole& at_minus_1, const Whole& at_0, const Whole& at_1,
                                                const Whole& at_2) {
     const Whole c3 = at_2 - 3 * at_1 + 3 * at_0 - at_minus_1, c2 = 3 * (at_1 - 2 * at_0 + at_minus_1);
@@ -126,7 +127,7 @@ class WholePolynomial {
     std::vector<Whole> moved;
     Whole power = 1;
     for (std::size_t k = a_.size(); k-- > 0;) {
-      // A step of Horner's scheme: multiplies `moved` by from + s step, and adds the coefficient a_k. The factor
+      // Does a step of Horner's scheme: multiplies `moved` by from + s step, and adds the coefficient a_k. The factor
       // `power` brings a_k to the common denominator.
       std::vector<Whole> next(moved.size() + 1);
       for (std::size_t i = 0; i < moved.size(); ++i) {

@@ -221,8 +221,8 @@ struct ExactCrossings {
     };
     return Line{seen(a.x, b.x, from.x, to.x), seen(a.y, b.y, from.y, to.y), seen(a.z, b.z, from.z, to.z)};
   };
-  // The position in the face is found from three areas along the normal n of the face, and not along a vertical line. A
-  // point is inside the face if all three areas have the direction of n.
+  // The moving point and each edge of a face form a triangle. The point crosses the inside of the face if the vector
+  // areas of all three triangles have the direction of the normal n of the face.
   const auto cross = [](const Line& a, const Line& b) {
     Line result;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -36,8 +36,8 @@ function toBase64(bytes) {
   return btoa(text);
 }
 
-// Moves all objects to their places at a time of an animation, by the animation group that the loader made of the
-// animation.
+// Moves all objects to their places at a time, in seconds, of an animation, by the animation group that the loader made
+// of the animation.
 export function play(model, animation, time) {
   model.scene.animationGroups.forEach((group) => group.stop());
   if (animation === null) return;

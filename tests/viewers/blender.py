@@ -11,7 +11,8 @@ import sys
 
 import numpy
 
-# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of both.
+# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of Blender and
+# NumPy.
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 

@@ -197,8 +197,8 @@ def by_hand(path, program):
 
 
 def imports(folder, program, *names):
-    """Imports each file NAME.glb and exports it again: as NAME.again.glb, and with the add-on switched off as
-    NAME.again_off.glb."""
+    """Imports each file NAME.glb and exports it again: with the add-on switched off as NAME.again_off.glb, and with the
+    add-on switched on as NAME.again.glb."""
     result = {}
     for name in names:
         path = os.path.join(folder, name)

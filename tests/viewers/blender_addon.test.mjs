@@ -24,8 +24,8 @@ const AT_KEYS = 0.02;
 const MEAN = 0.02;
 const WORST = 1;
 
-// The largest permitted difference, in degrees, between two measurements of the same pose. The panel and this test
-// match corners with vertices in different ways.
+// The largest permitted difference, in degrees, between the measurements of a pose by the panel and by this test. They
+// differ because the panel and the test match corners with vertices in different ways.
 const AGREE = 0.02;
 
 // Models with edges that become hard by their angle, but only in deformed poses. Morph targets cannot represent such
@@ -38,7 +38,8 @@ let folder, program;
 const at = (name) => join(folder, name);
 const bytes = (name) => readFileSync(at(name));
 
-// Runs a task of blender_addon.py and returns its results. Uses the add-on in blender/ unless `how` names another one.
+// Runs a task of blender_addon.py and returns its results. Uses the add-on in blender/ unless `how` names another
+// add-on.
 function run(how, task, ...args) {
   const env = { BLENDER_USER_SCRIPTS: at('user'), TMPDIR: folder, HOME: folder, ...how.env };
   runBlenderAs({ ...how, env }, at('scripts/blender_addon.py'), task, folder, ...args);

@@ -16,7 +16,8 @@ import sys
 
 import numpy
 
-# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of both.
+# Blender 3.4's glTF add-on uses numpy.bool, which NumPy 1.24 does not have. Debian 12 has these versions of Blender and
+# NumPy.
 if not hasattr(numpy, "bool"):
     numpy.bool = bool
 
@@ -297,7 +298,8 @@ def add_keys(o, draw, deformations):
 
 
 def animate(o, keys, draw, how):
-    """Adds keyframes that go from the base to each key, one after the other. The other keys get smaller weights."""
+    """Adds keyframes. The first is the base. At each later keyframe, the next key has weight 1, and all other keys have
+    random weights up to 0.7."""
     for n, frame in enumerate(KEYFRAMES):
         for i, key in enumerate(keys):
             key.value = 0 if n == 0 else 1 if (n - 1) % len(keys) == i else draw.uniform(0, 0.7)

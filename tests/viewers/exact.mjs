@@ -14,8 +14,8 @@ export function angle(a, b) {
   return (Math.atan2(length(cross(a, b)), dot(a, b)) * 180) / Math.PI;
 }
 
-// Turns v by the smallest rotation from the direction of `from` to the direction of `to`. Returns v if one of the two
-// is zero, or if the two are opposite, since no rotation is then the smallest.
+// Turns v by the smallest rotation from the direction of `from` to the direction of `to`. Returns v if `from` or `to`
+// is zero, or if `from` and `to` are opposite, since no rotation is then the smallest.
 function turned(v, from, to) {
   if (length(from) === 0 || length(to) === 0) return v;
   const a = scaled(from, 1 / length(from));
@@ -30,7 +30,7 @@ function turned(v, from, to) {
 
 export class ExactNormals {
   // Takes a mesh in the form of reader.mjs. Vertices that are at the same place in the base and in every target are one
-  // point, even in different primitives. Vertices of a point share a normal if their stored normals agree. Primitives
+  // point, even in different primitives. Vertices at one point share a normal if their stored normals agree. Primitives
   // without normals are flat: viewers compute their normals.
   constructor(mesh) {
     this.primitives = mesh.primitives.filter((primitive) => primitive.triangles);

@@ -73,8 +73,8 @@ function withMaterial(bytes, pbrMetallicRoughness) {
   return result;
 }
 
-// Moves all objects to their places at a time of an animation, by the animator. At the end of an animation, the
-// animator starts again from the beginning.
+// Moves all objects to their places at a time, in seconds, of an animation, by the animator. At the end of an
+// animation, the animator starts again from the beginning.
 export function play({ animator }, animation, time) {
   if (animation !== null) animator.applyAnimation(animation, time);
 }

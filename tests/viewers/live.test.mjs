@@ -46,7 +46,7 @@ test('extra weights are the sums of their terms, and other versions are left alo
 
 describe('three.js', () => {
   // Makes a mesh as the loader of three.js does: `userData` has the extras of the mesh in the file. If `userData` has
-  // no data of a bake, the parent object may have them.
+  // no data of a bake, the parent object may have these data.
   function meshOf(userData) {
     const geometry = new THREE.BoxGeometry();
     geometry.morphTargetsRelative = true;

@@ -21,7 +21,8 @@ after(remove);
 const { bake, audit, inspect, compare, sample, ChronormalError } = await load('index.node.js');
 const readme = readFileSync(join(installed, 'README.md'), 'utf8');
 
-// The face is the built-in sample bumps, which has 12 targets and an animation. `convert` writes it without a bake.
+// The face is the built-in sample bumps, which has 12 targets and an animation. `convert` writes the face without a
+// bake.
 const made = native(['convert', '--sample', 'bumps', '-o', 'bumps.glb']);
 assert.equal(made.status, 0, made.stderr);
 const face = new Uint8Array(readFileSync(join(folder, 'bumps.glb')));

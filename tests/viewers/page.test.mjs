@@ -109,8 +109,8 @@ const setSliders = (weights) => page.evaluate((values) => {
   });
 }, weights);
 
-// Draws the left or the right half of the picture with normals as colours, from the given camera or, without it, from
-// the camera of the page. Returns {camera, pixels}.
+// Draws the left or the right half of the picture with normals as colours, from the given camera or, if no camera is
+// given, from the camera of the page. Returns {camera, pixels}.
 const half = (side, camera) => page.evaluate((right, given) => {
   const { view, setMode } = globalThis.chronormal, { canvas } = view;
   setMode('normals');

@@ -3,8 +3,8 @@
 //
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_DATA           a folder of moving files from other projects, if set
-//   CHRONORMAL_FULL=1         every tool on every file; otherwise one file, with the tools that change the most
-//   CHRONORMAL_UPDATE_DOCS=1  with the two above, writes the figures of docs/web.md
+//   CHRONORMAL_FULL=1         tests every tool on every file, and not only one file with the tools that change the most
+//   CHRONORMAL_UPDATE_DOCS=1  with CHRONORMAL_DATA and CHRONORMAL_FULL, writes the figures of docs/web.md
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -84,7 +84,7 @@ async function assertKept(context, name, lines) {
   const { exported, baked } = await inputsOf(name);
   const faults = [];
   // Tools limit components of deltas to 1. A bake may therefore write a larger component only if the author's own
-  // deltas have one as large.
+  // deltas have a component that is as large.
   const [authored, largest] = [largestDelta(await read(exported)), largestDelta(await read(baked))];
   if (!(largest <= Math.max(1, authored))) faults.push(`a component of ${largest}, where ${authored} was the largest`);
   for (const [line, allowed] of lines) {

@@ -25,9 +25,9 @@ export function middleOf(picture, { width, height }) {
   return count > 0 ? sum.map((c) => c / count) : null;
 }
 
-// Draws a picture of normals as a glossy surface under one lamp, and returns the pixels for a canvas. Torn edges are
-// then visible as in a viewer, but with the same light for all viewers. Normals are in world space if `view` is given,
-// and otherwise in the space of the camera.
+// Draws a picture of normals as a glossy surface under one lamp, and returns the pixels for a canvas. Torn edges,
+// across which errors jump, are then visible as in a viewer, but with the same light for all viewers. Normals are in
+// world space if `view` is given, and otherwise in the space of the camera.
 export function lit(picture, view, { width, height }) {
   const LAMP = unit([-0.45, 0.6, 0.66]), HALF = unit([LAMP[0], LAMP[1], LAMP[2] + 1]), BASE = [47, 127, 181], BACK = [248, 250, 252];
   const axes = view ? cameraAxes(view) : null, image = new ImageData(width, height);

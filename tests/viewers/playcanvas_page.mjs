@@ -39,7 +39,7 @@ export async function load(bytes) {
   return { asset, entity };
 }
 
-// Moves all objects to their places at a time of an animation, by the animation component.
+// Moves all objects to their places at a time, in seconds, of an animation, by the animation component.
 export function play({ asset, entity }, animation, time) {
   if (animation === null) return;
   entity.removeComponent('anim');

@@ -1,7 +1,7 @@
 // Tests how real viewers compute a normal from stored numbers, and a weight from a track. Compares their pictures with
 // rules that are computed in double. docs/viewers.md states the results. ctest runs this file as `in_viewers`.
 //
-//   CHRONORMAL_FULL=1  all viewers and rules; otherwise only the normals of Filament and PlayCanvas
+//   CHRONORMAL_FULL=1  tests all viewers and rules, and not only the normals of Filament and PlayCanvas
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -34,8 +34,9 @@ const rules = {
     deltas.reduce((n, delta, k) => plus(n, minus(unit(plus(normal, delta)), normal), w[k]), normal),
 };
 
-// The rule of each viewer, and its largest permitted error in degrees. PlayCanvas has larger errors because it stores
-// deltas and their sum as 16-bit floats, and Filament because it stores directions as quaternions of 16-bit integers.
+// The rule by which each viewer computes normals, and the largest permitted error of the rule in degrees. PlayCanvas
+// has larger errors because it stores deltas and their sum as 16-bit floats, and Filament because it stores directions
+// as quaternions of 16-bit integers.
 const viewers = {
   three: { rule: 'sum', degrees: 0.001, splines: true },
   babylon: { rule: 'sum', degrees: 0.001, splines: true },
@@ -149,7 +150,8 @@ describe('a real viewer', () => {
   if (!FULL) return;
 
   // Viewers differ if some targets lack normals. Three.js replaces a missing normal delta by the base normal.
-  // Babylon.js renders only the base normal if the first target has none. PlayCanvas uses only targets with normals.
+  // Babylon.js renders only the base normal if the first target has no normals. PlayCanvas uses only targets with
+  // normals.
   for (const viewer of Object.keys(viewers)) {
     const right = viewer === 'filament';
     test(`shows ${right ? 'right' : 'wrong'} normals where a target has none and the next has: ${viewer}`, async () => {
@@ -198,7 +200,7 @@ describe('a real viewer', () => {
           assert.ok(farthest(shown, MOMENTS.map((time) => splineInFilament(tracks.CUBICSPLINE, time))) < NEAR);
         } else {
           // PlayCanvas makes separate tracks of the tangents of each key, and then looks for tangents in each of these
-          // tracks. After the first key it finds no tangents, so it no longer moves the target.
+          // tracks. After the first key, PlayCanvas finds no tangents, so the target no longer moves.
           const late = shown.filter((_, i) => MOMENTS[i] > tracks.CUBICSPLINE.times[1]);
           assert.ok(farthest(late, late.map(() => 0)) < NEAR);
         }

@@ -47,7 +47,7 @@ function normalMap() {
     chunk('IDAT', deflateSync(Buffer.from([0, ...pixel]))), chunk('IEND', Buffer.alloc(0))]);
 }
 
-// Returns the CRC-32 of a chunk of a PNG. Node.js 18 has no function for it.
+// Returns the CRC-32 of a chunk of a PNG. Node.js 18 has no function for this checksum.
 function checksum(bytes) {
   let rest = 0xffffffff;
   for (const byte of bytes) {

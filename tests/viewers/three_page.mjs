@@ -22,7 +22,7 @@ export async function load(bytes) {
   return { scene, mixer, clips: gltf.animations };
 }
 
-// Moves all objects to their places at a time of an animation, by the animation mixer.
+// Moves all objects to their places at a time, in seconds, of an animation, by the animation mixer.
 export function play(model, animation, time) {
   model.mixer.stopAllAction();
   if (animation === null) return;

@@ -4,7 +4,7 @@
 //   CHRONORMAL_PROGRAM        the program
 //   CHRONORMAL_CHROMIUM       the browser, if it is not in its usual place
 //   CHRONORMAL_DATA           a folder of moving files from other projects, if set
-//   CHRONORMAL_FULL=1         every file in every viewer
+//   CHRONORMAL_FULL=1         tests every file in every viewer
 //   CHRONORMAL_UPDATE_DOCS=1  writes docs/pictures/shading.png
 import assert from 'node:assert/strict';
 import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';

@@ -67,8 +67,8 @@ def machines(page):
 
 
 def frames(page, run):
-    """Writes a table of break-even points. For at least this number of frames per segment, preparing curves takes less
-    time than computing the normals anew in each frame."""
+    """Writes a table of break-even points. A break-even point is the smallest number of frames per segment for which
+    preparing curves takes less time than computing the normals anew in each frame."""
     def cell(group, size, curves, anew):
         saved = run.ns(group, anew, size) - run.ns(group, f"{curves} to float3", size)
         return "never" if saved <= 0 else str(math.ceil(run.ns(group, f"prepare {curves}", size) / saved))

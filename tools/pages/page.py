@@ -55,7 +55,7 @@ def table(heads, rows):
 
 
 def save(figure, path):
-    """Writes an SVG, or a PNG of 96 colours, which takes a third of the size of a PNG with all colours."""
+    """Writes an SVG, or a PNG of 96 colours, whose file has a third of the size of a PNG with all colours."""
     if path.suffix == ".svg":
         return figure.savefig(path, metadata={"Date": None, "Creator": None})
     from PIL import Image

@@ -454,8 +454,9 @@ def draw_angle(page):
 # The next functions make section 6 of docs/paper.md.
 
 def quaternions_of(tangent, binormal, normal):
-    """Returns the quaternions of matrices. Computes the component with the largest square first, and the others from
-    it. For a matrix that is not a rotation, the result is the one that common implementations give."""
+    """Returns the quaternions of matrices. Computes the component with the largest square first, and the other
+    components from it. For a matrix that is not a rotation, the result is the quaternion that common implementations
+    give."""
     a, b, c = tangent.T, binormal.T, normal.T
     squares = np.stack([1 + a[0] + b[1] + c[2], 1 + a[0] - b[1] - c[2], 1 - a[0] + b[1] - c[2], 1 - a[0] - b[1] + c[2]])
     x, y, z, xy, xz, yz = b[2] - c[1], c[0] - a[2], a[1] - b[0], b[0] + a[1], c[0] + a[2], c[1] + b[2]

@@ -135,7 +135,8 @@ vtkTypeBool vtkChronormalInterpolator::ProcessRequest(vtkInformation* request, v
     this->KeptPiece = piece;
   }
 
-  // Each step is requested with one more ghost level, since normals along a seam need the faces on its other side.
+  // Each step is requested with one more ghost level, since the normals along a seam need the faces on the other side
+  // of the seam.
   const vtkTypeBool result = this->Superclass::ProcessRequest(request, inputs, outputs);
   if (pieces > 1) in->Set(Pipeline::UPDATE_NUMBER_OF_GHOST_LEVELS(), ghosts + 1);
   return result;

@@ -15,7 +15,7 @@ const ENDS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 /** Returns a round number of degrees, not below `degrees`, at which the colour scale ends. */
 export const scaleEnd = (degrees) => ENDS.find((end) => end >= degrees) ?? 180;
 
-/** Formats degrees for people: about three digits, "0°" for a negligible error, and "–" if there is no error. */
+/** Formats degrees for people: about three digits, "0°" for a negligible error, and "–" if no error is known. */
 export function degreesText(degrees) {
   if (!(degrees >= 0)) return '–';
   if (degrees < 0.0005) return '0°';

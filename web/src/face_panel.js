@@ -246,7 +246,7 @@ export function makeFacePanel(report, player, view, compute) {
     ask(way, false);
   }
 
-  // Dragging one of the two pictures turns both.
+  // If the user drags the picture of the triangle or of the sphere, both pictures turn.
   for (const picture of [triangle, sphere]) {
     let last;
     picture.addEventListener('pointerdown', (event) => {

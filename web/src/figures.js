@@ -94,7 +94,7 @@ export const TRIANGLE = { width: 340, height: 300, x: 170, y: 170, reach: 130, n
 export const SPHERE = { width: 340, height: 320, x: 170, y: 160, radius: 135 };
 export const GRAPH = { width: 340, height: 130, left: 38, right: 332, top: 20, bottom: 110 };
 
-/** Returns the places [x, y] of all corners in the picture: first those at t = 0, then those at t = 1. */
+/** Returns the places [x, y] of all corners in the picture: first the corners at t = 0, then the corners at t = 1. */
 export function cornersInPicture({ from, to }, { centres, size }, view) {
   const { x, y, reach } = TRIANGLE;
   return [from, to].flatMap((corners, end) => corners.map((p) => {

@@ -2,7 +2,8 @@
 // normal (docs/theory.md, sections 1, 8 and 9), with the offsets and polygons of a file's author (docs/formats.md). All
 // arithmetic is in double, and a step allocates no memory.
 
-/** The number in place of an element for a vertex that has none: a vertex of a flat primitive, or without a face. */
+/** The number in place of an element for a vertex that has no element: a vertex of a flat primitive, or a vertex
+ * without a face. */
 export const NONE = 0xffffffff;
 
 // A sum is treated as zero if its length is below this share of the sum of the lengths of its terms. Terms that cancel
@@ -37,8 +38,8 @@ function cornersOfFaces(triangles, faces) {
   return { offsets: Uint32Array.from(offsets), corners: Uint32Array.from(corners) };
 }
 
-// Adds the area-weighted terms of all triangles to `normals`, and their sizes to `sizes`. Most of the time of a step is
-// spent here.
+// Adds the area-weighted terms of all triangles to `normals`, and the largest absolute component of each term to
+// `sizes`. Most of the time of a step is spent here.
 function addAreas({ triangles }, slots, p, normals, sizes) {
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
@@ -162,7 +163,7 @@ function offsetsOf({ elements, sides, first, edges, references, turned, base, ta
       const size = Math.sqrt(normals[at] ** 2 + normals[at + 1] ** 2 + normals[at + 2] ** 2), scale = sides[f] / size;
       if (size === 0) continue;
       const zx = scale * normals[at], zy = scale * normals[at + 1], zz = scale * normals[at + 2];
-      // The next lines compute the mean angle between the edges and the normal z, and the direction in which the
+      // The next lines compute the average angle between the edges and the normal z, and the direction in which the
       // reference edge leaves the vertex.
       let angles = 0, count = 0, xx = 0, xy = 0, xz = 0;
       for (let i = first[f]; i < first[f + 1]; ++i) {

@@ -1,13 +1,13 @@
 // Finds places in a motion. A place `at` is the index of a sample, or a fraction for a place between two samples.
 
-/** Returns the time in seconds, or the weight, at a place. */
+/** Returns the time in seconds, or the weight of the target or expression, at the place `at` of a motion. */
 export function valueAt({ at: values }, at) {
   const from = Math.min(Math.floor(at), values.length - 1), to = Math.min(from + 1, values.length - 1);
   return values[from] + (at - from) * (values[to] - values[from]);
 }
 
-/** Returns the place at which the time or the weight has a value. If two samples have this value, the result is the
- * later sample. */
+/** Returns the place in a motion at which the time in seconds, or the weight of the target or expression, is `value`.
+ * If two samples have this value, the result is the later sample. */
 export function placeOf({ at: values }, value) {
   let low = 0, high = values.length - 1;
   while (low < high) {
@@ -19,7 +19,8 @@ export function placeOf({ at: values }, value) {
   return low + Math.min(Math.max((value - values[low]) / (values[low + 1] - values[low]), 0), 1);
 }
 
-/** Returns the nearest sample before a place (step -1) or after it (step 1) that has another time. */
+/** Returns the nearest sample before a place (step -1) or after the place (step 1) whose time or weight differs from
+ * that of the place. */
 export function neighbour({ at: values }, at, step) {
   const last = values.length - 1, start = valueAt({ at: values }, at);
   let next = step > 0 ? Math.floor(at) + 1 : Math.ceil(at) - 1;

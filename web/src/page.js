@@ -13,7 +13,7 @@ import { makeViewer } from './viewer.js';
 const run = makeEngine(document.getElementById('engine'), ENGINE_WORKER);
 const root = document.getElementById('report'), top = document.querySelector('.top'), work = document.getElementById('work');
 // The open inputs. Each is {name, args, bytes: {name: Uint8Array}, came, options, plan, baked: {report, name, files,
-// warnings, within}}. `came` is the report of the input as it came, and `baked` is the result of a bake.
+// warnings, within}}. `came` is the report of the unchanged input, and `baked` is the result of a bake.
 const inputs = [];
 const DOCUMENT = /\.(glb|gltf|vrm)$/i;
 let viewer, current, abort;
@@ -128,7 +128,8 @@ async function open(input) {
   show(inputs.at(-1), 'came');
 }
 
-// Computes the figures of a face on its path. They have twice as many samples as a table of the paper.
+// Computes the figures of a face on its path, with samples at 41 times. The tables of the paper have samples at 21
+// times.
 async function figureOf(way) {
   const { args, files } = commandOf(way, FIGURE_SCHEMES, 41), { stdout } = await run(args, files, { signal: new AbortController().signal, onProgress() {} });
   return JSON.parse(stdout).figure;

@@ -1,7 +1,8 @@
 // Interpolates the unit normals of elements between two keyframes (docs/theory.md, section 4). Each scheme gets exact
 // unit normals at equidistant t, and writes unit normals. Arrays have three numbers for each element.
 
-// Returns a scheme that applies a rule for one vector, rule(units, at, result), to all elements.
+// Returns a scheme that computes the vector of each element by itself. rule(t, exact) returns a function (units, at,
+// result), which writes the vector that begins at index `at` of `result`.
 const each = (rule) => (units, t, result, exact) => {
   const make = rule(t, exact);
   for (let at = 0; at < result.length; at += 3) {
@@ -31,8 +32,8 @@ function lagrange(intervals) {
   return { intervals, evaluate: each(rule) };
 }
 
-// Interpolates along the great circle (section 4.4 of docs/theory.md). If the ends are equal, the result is their
-// vector. If the ends are opposite, many great circles lead from one to the other, and the result has no meaning.
+// Interpolates along the great circle (section 4.4 of docs/theory.md). If both ends are the same vector, the result is
+// this vector. If the ends are opposite, many great circles lead from one to the other, and the result has no meaning.
 function alongArc(a, i, b, j, t, result, at) {
   const d = a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2];
   const x = a[i + 1] * b[j + 2] - a[i + 2] * b[j + 1], y = a[i + 2] * b[j] - a[i] * b[j + 2], z = a[i] * b[j + 1] - a[i + 1] * b[j];

@@ -129,7 +129,7 @@ export function makeSurface(part) {
   const judged = judgedVertices(part, moved, shownBy);
   const computeNormals = normalsOf(part), computeTruth = part.truth ? truthOf(part) : undefined;
   const p = new Float64Array(3 * V), sums = new Float64Array(3 * V), kept = new Float64Array(part.targets.length);
-  // The sums over triangles show if an element has a normal. Its direction comes from `truth`.
+  // The sums over triangles show if an element has a normal. The direction of the normal comes from `truth`.
   const n = new Float64Array(3 * E + 3), r = computeTruth ? new Float64Array(3 * E + 3) : n, sizes = new Float64Array(E + 1);
   p.set(part.positions);
   computeNormals(p, n, sizes);

@@ -15,7 +15,7 @@ const KEYS = [
 
 const SCALES = [0.1, 0.5, 1, 2, 5, 10, 20, 45, 90, 180];
 
-/** Returns a label for a vertex with the numbers that it has in the file. */
+/** Returns a label for a vertex, with the numbers of its mesh, its primitive and the vertex in the file. */
 function labelOf(part, vertex) {
   const found = part.primitives.findIndex(({ first, count }) => vertex >= first && vertex < first + count);
   const primitive = part.primitives[found], number = part.labels ? part.labels[vertex] : vertex - (primitive?.first ?? 0);

@@ -59,7 +59,8 @@ TEST(AuditPoses, the_weights_of_every_node_are_a_subject_each_and_shut_the_gate)
   ASSERT_EQ(opening.size(), 2U);
   EXPECT_EQ(opening[0].node, std::size_t{0});
   EXPECT_EQ(opening[1].node, std::size_t{1});
-  // An audit of a requested pose with the weights of a node must give the same errors as the audit of the node above.
+  // An audit of a requested pose with the weights of a node must give the same errors as the audit above gives for the
+  // node.
   for (std::size_t n = 0; n < 2; ++n) {
     AuditOptions options;
     options.is_posed = true;

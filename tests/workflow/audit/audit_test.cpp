@@ -891,7 +891,8 @@ TEST(Audit, player_that_computes_normals_at_keyframes_errs_between_them) {
   EXPECT_LT(result.subjects[0].at_keys.worst, 1e-5);
   EXPECT_EQ(kinds_of(result), (std::vector<Kind>{Kind::kWrongBetween}));
   EXPECT_TRUE(result.offsets.empty());
-  // In this motion, linear interpolation of unit normals is exact.
+  // In each segment of this motion, n(t) moves straight from one unit normal to the next, so linear interpolation of
+  // unit normals is exact.
   EXPECT_LT(audit_of(turning(), {}).error.worst, 1e-4);
 }
 

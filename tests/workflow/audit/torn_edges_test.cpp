@@ -1,5 +1,5 @@
-// Tests which edges count as torn. At a torn edge, the errors of its two vertices differ much. Compares the audit with
-// a count edge by edge, in which angles are computed in long double.
+// Tests which edges count as torn. At a torn edge, the errors of its two vertices differ by more than a limit in
+// degrees. Compares the audit with a count edge by edge, in which angles are computed in long double.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Compares sums of areas with plain loops over faces and elements, on every instruction set and for every number of
-// threads.
+// Compares the sums of vector areas that a bake of a sequence computes with plain loops over faces and elements, on
+// every instruction set and for every number of threads.
 
 #include "workflow/bake/sequence/area_sums.h"
 
@@ -32,8 +32,8 @@ PointRows rows_of(const Motion::Keyframe& keyframe) {
   return rows;
 }
 
-// A sum of terms, together with the sum of their absolute values. A sum below the rounding error of so many terms
-// counts as 0.
+// A sum of terms, together with the sum of their absolute values. settled() replaces a component by 0 if its absolute
+// value is below the rounding error of so many terms.
 struct Sum {
   Vector value{}, magnitude{};
   double terms = 0;

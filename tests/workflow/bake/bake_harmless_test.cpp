@@ -70,7 +70,8 @@ std::vector<Weights> on_track(const Baked& baked, std::size_t instants = 137) {
   return result;
 }
 
-// Returns the weights for each target alone. The weights of correction targets follow from the rule of docs/formats.md.
+// Returns the weights for each target alone. The weights of correction targets follow from the formulas in the file
+// (docs/formats.md).
 std::vector<Weights> alone(const Baked& baked) {
   std::vector<Weights> result;
   const Json& mesh = baked.mesh();

@@ -302,8 +302,8 @@ TEST(BakeLines, a_wink_in_a_long_animation_counts) {
 
 TEST(BakeLines, a_target_that_is_never_active_keeps_what_it_has_alone_and_its_error_is_stated) {
   GltfBuilder builder = test::hills_document(3, 5);
-  // The third target is never active in the animation, so its deltas are those for the target alone. The error of the
-  // third target alone may be the largest error.
+  // The third target is never active in the animation, so its deltas are the same as in a file without an animation.
+  // The error of the third target alone may be the largest error.
   builder.add_track(0, 0, std::vector<float>{0, 1}, std::vector<float>{0, 0, 0, 0.01F, 0.01F, 0});
   const Baked baked = bake_misled(builder, endpoint());
   const Baked alone = bake_misled(test::still_hills_document(3, 5), endpoint());

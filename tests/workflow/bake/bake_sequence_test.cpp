@@ -434,7 +434,7 @@ TEST(BakeSequence, elements_that_shrink_a_million_times_keep_their_directions) {
   expect_exact(glb, smooth_surface(motion));
 }
 
-// In the last segment, elements shrink or appear, of which the first segment gives no hint.
+// Elements shrink or appear only near the end of the motion, which the first segments do not show.
 TEST(BakeSequence, elements_that_shrink_or_appear_at_the_end_are_right_from_the_start) {
   const test::TemporaryFolder folder;
   for (const bool appears : {false, true}) {
@@ -513,7 +513,7 @@ TEST(BakeSequence, endpoint_states_its_true_error_and_is_right_at_the_keys) {
     for (std::size_t v = 0; v < glb.vertices(); ++v)
       EXPECT_LT(reference::angle(glb.normal(v, glb.weights(time)), exact[surface.group[v]]) / kDegree, 0.01);
   }
-  // The correction targets must make the error smaller than unit normals at the keys alone do.
+  // The error with correction targets must be smaller than the error with only unit normals at the keys.
   ShownGlb plain = glb;
   for (std::size_t k = 1; k < glb.times.size(); ++k) {
     const auto exact = exact_normals(glb, surface, glb.times[k]);

@@ -175,7 +175,8 @@ TEST(Bake, extras_of_a_node_stay_and_those_that_are_no_object_are_told_of) {
     return warning.find("extras of node 1 are not a JSON object") != std::string::npos;
   };
   EXPECT_TRUE(std::any_of(baked.report.warnings.begin(), baked.report.warnings.end(), tells));
-  // The encoding endpoint writes one delta for each target, so the file needs no drivers.
+  // The encoding endpoint writes one delta for each target, so the extras of the file need no formulas for correction
+  // targets.
   const Baked endpoint = test::bake_document(builder, with(BakeEncoding::kEndpoint));
   EXPECT_FALSE(endpoint.json()["nodes"][0]["extras"].contains("chronormal"));
 }
@@ -342,7 +343,7 @@ TEST(Bake, smooth_gives_normals_to_flat_primitives) {
   EXPECT_EQ(flat.bytes, builder.glb());
   Baked smooth = test::bake_document(builder, {.encoding = BakeEncoding::kExact, .smooth = true});
   ASSERT_EQ(smooth.error, "");
-  // The oracle takes base normals from the file. The source has none, so the oracle reads the baked file.
+  // The oracle takes base normals from the file. The source file has no normals, so the oracle reads the baked file.
   smooth.before = std::make_unique<test::GltfPlayer>(smooth.bytes);
   const test::GltfTruth truth(*smooth.before, 0);
   std::vector<Pose> poses;
@@ -392,8 +393,8 @@ TEST(Bake, pairs_below_the_tolerance_are_left_out_and_stated) {
 }
 
 TEST(Bake, pairs_of_a_long_animation_are_left_out_until_their_sum_is_the_tolerance) {
-  // The animation has more keys than the bake measures poses. The bake therefore bounds the error of all omitted terms
-  // by a sum.
+  // The animation has more keys than the bake measures poses. The bake therefore bounds the error of all omitted pairs
+  // of targets by the sum of their errors.
   GltfBuilder builder;
   test::Hills hills(9);
   std::vector<std::vector<float>> deltas;

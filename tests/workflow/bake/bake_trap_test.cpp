@@ -34,7 +34,7 @@ GltfBuilder moving_hills(const char* interpolation = "LINEAR") {
   return builder;
 }
 
-// Bakes a document and fails if the bake fails. The encoding is exact unless the options have another.
+// Bakes a document and fails if the bake fails. The encoding is exact unless the options have another encoding.
 Baked baked(const GltfBuilder& builder, BakeOptions options = {}) {
   if (!options.encoding) options.encoding = BakeEncoding::kExact;
   Baked result = test::bake_document(builder, options);

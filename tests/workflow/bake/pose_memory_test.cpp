@@ -75,7 +75,7 @@ TEST(PoseMemory, leaves_the_normals_of_poses_as_they_are) {
   std::vector<Pose> poses = {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.25, 1}, {1, 0.25, 0.5}};
   for (int round = 0; round < 3; ++round) {
     for (const Pose& pose : poses) {
-      // Computes the expected normals by an object that has computed nothing before.
+      // Computes the expected normals by a new object, which has computed no pose before.
       const std::vector<Vec3d> right = NormalTerms(shading, truth).weighted_at(pose, all);
       EXPECT_EQ(terms.weighted_at(pose, few), (std::vector<Vec3d>{right[3], right[4]}));
       EXPECT_EQ(terms.weighted_at(pose, all), right);

@@ -1,4 +1,5 @@
-// Compares the normals from which a bake of a sequence computes keys and correction targets with integers of any size.
+// Compares the normals from which a bake of a sequence computes keys and correction targets with normals that are
+// computed in integers of any size.
 
 #include "workflow/bake/sequence/sequence_normals.h"
 

@@ -143,7 +143,8 @@ TEST(BlendCompare, errors_of_a_file_are_those_of_an_oracle) {
       EXPECT_NEAR(degrees(file.max), expected.max, 1e-4);
       EXPECT_GT(expected.max, 1);
       EXPECT_LT(quality(errors, BlendDeltas::kExact).max, kExactLimit);
-      // At the stated place, the oracle must find the same error.
+      // At the weights and the vertex that the comparison states for the largest error, the oracle must find the same
+      // error.
       const BlendError& worst = errors.deltas[0];
       std::vector<double> weights(3);
       for (const BlendError::Weight& w : worst.worst_weights) weights[w.target] = w.weight;

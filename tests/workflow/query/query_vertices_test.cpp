@@ -1,4 +1,5 @@
-// Compares queries about the normals of vertices and corners with integers of any size, and with sums over many times.
+// Compares queries about the normals of vertices and corners with results that are computed in integers of any size,
+// and with sums over many times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -111,8 +112,8 @@ std::vector<Output> outputs_of(const Motion& motion, ElementKind kind) {
   return outputs;
 }
 
-// Returns n . w of a vertex or corner in a segment as a polynomial, times a positive number. The eye is at integer
-// positions and moves over both segments.
+// Returns n . w of a vertex or corner in a segment as a polynomial that is multiplied by a positive number. The eye is
+// at integer positions and moves over both segments.
 WholePolynomial facing_polynomial(const Segment& segment, const Output& output, const View& view) {
   std::array<Whole, 4> values;
   for (long t = -1; t <= 2; ++t) {
@@ -302,8 +303,8 @@ long double degrees_between(const Direction& a, const Direction& b) {
   return 2 * std::atan2(std::sqrt(difference), std::sqrt(sum)) * 57.295779513082320877L;
 }
 
-// A shutter that is open from a time in the first segment to a time in the second. Tests the bisector of the normals at
-// the ends, and the cones, for each part and for the whole time.
+// Tests a shutter that is open from a time in the first segment to a time in the second segment: the bisector of the
+// normals at the ends, and the cones, for the part in each segment and for the whole time.
 TEST(QueryVertices, ends_and_cones_of_a_shutter_are_those_of_the_normals_that_it_sees) {
   std::cout << "  from seed " << kSeed + 3 << '\n';
   fixtures::Random random(kSeed + 3);
@@ -321,7 +322,7 @@ TEST(QueryVertices, ends_and_cones_of_a_shutter_are_those_of_the_normals_that_it
     const QueryAnswer answer = query_shutter(motion, span, {}, options_of(kind)).value();
     const std::vector<Output> outputs = outputs_of(motion, kind);
     ASSERT_EQ(answer.tables.size(), 2U);
-    // Tests the rows after the first `skipped` ones, which are the outputs in their order.
+    // Tests the rows of a table after the first `skipped` rows. The tested rows are the outputs in their order.
     const auto test_rows = [&](const QueryTable& table, std::size_t skipped, double from, double to) {
       const auto mean = numbers(table, "mean"), mean_unit = numbers(table, "mean_unit"), ends = numbers(table, "ends"),
                  off = numbers(table, "ends_off"), half_angle = numbers(table, "half_angle");

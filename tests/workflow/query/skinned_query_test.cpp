@@ -35,7 +35,8 @@ using test::Vector;
 
 constexpr Real kTolerance = 0.01L / 57.295779513082320876798154814105L;
 
-// The keys of one property of a node, on the given times. A cubic spline has in-tangent, value and out-tangent.
+// The keys of one property of a node, at the given times. A key of a cubic spline has an in-tangent, a value and an
+// out-tangent.
 struct Channel {
   std::size_t node = 0;
   std::string path, interpolation = "LINEAR";
@@ -254,7 +255,7 @@ Channel turn(std::size_t node, double angle) {
   return {node, "rotation", "LINEAR", {0, 1}, {-s, 0, 0, c, s, 0, 0, c}};
 }
 
-// A tube around the y axis with rings of eight vertices, which follow a chain of joints one after the other.
+// A tube around the y axis with rings of eight vertices. Each ring follows two neighbouring joints of a chain.
 Rig tube(fixtures::Random& random, std::size_t joints, bool is_cubic) {
   constexpr std::uint32_t kSides = 8;
   constexpr std::size_t kRings = 7;
@@ -326,7 +327,7 @@ TEST(SkinnedQuery, as_many_pieces_as_a_bent_edge_needs) {
   turned.positions[1] = turned.positions[4] = -1;
   const double angle = wanted * std::sqrt(8 * tolerance / 0.1);
   turned.channels = {turn(2, angle)};
-  // Two joints share the turn, which is around one axis.
+  // Two joints share the rotation, and both rotate about the same axis.
   Rig shared = turned;
   shared.skin.joints[0][8] = 2;
   shared.nodes.resize(3);

@@ -295,7 +295,7 @@ TEST(Report, numbers_of_targets_over_a_base_follow_from_the_report_alone) {
   ASSERT_EQ(file.part(0)["motions"].size(), 2U);
   EXPECT_EQ(file.part(0)["motions"][1]["target"], 1);
   EXPECT_EQ(file.part(0)["motions"][1]["seconds"], false);
-  // Half of the vertices do not move, so the container stores only the others.
+  // Half of the vertices do not move, so the container stores only the vertices that move.
   EXPECT_EQ(file.part(0)["keyframes"]["positions"][1]["indices"]["count"], 12);
 }
 
@@ -312,7 +312,7 @@ TEST(Report, what_viewers_show_is_what_they_keep) {
   EXPECT_EQ(shown[1]["viewers"], nlohmann::json({"godot"}));
   EXPECT_EQ(shown[1]["least_weight"], 1e-4);
   EXPECT_EQ(shown[2]["viewers"], nlohmann::json({"gltfpack"}));
-  // gltfpack rounds to 8 bits, so every component is an integer multiple of 1/127.
+  // gltfpack rounds to 8 bits, so every component of a delta is an integer multiple of 1/127.
   for (const float component : file.numbers<float>(shown[2]["targets"][0]["deltas"]))
     EXPECT_NEAR(component * 127, std::round(component * 127), 1e-4);
   ASSERT_EQ(weights.size(), 2U);
@@ -381,7 +381,7 @@ TEST(Report, plan_is_that_of_bake_or_says_why_there_is_none) {
   EXPECT_EQ(file.json["plan"]["command"], "bake");
   EXPECT_TRUE(file.json["plan_message"].is_null());
 
-  // If the extras of a mesh are not an object, a bake cannot leave its mark there.
+  // If the extras of a mesh are not an object, a bake cannot store its data there.
   test::GltfBuilder builder = sheet_file(15, 0);
   builder.json["meshes"][0]["extras"] = "mine";
   const Result<Report> refused = report_of_glb(builder.glb());
@@ -503,7 +503,8 @@ TEST(Report, worst_places_of_a_large_mesh_stay_whole) {
 }
 
 // Returns, for each judged vertex of part 0, the vertices on which its true normal depends: the vertices of the
-// polygons around it, and the ends of its edges. All are numbered as in the file. Throws if one of them is missing.
+// polygons around it, and the ends of its edges. All vertices are numbered as in the file. Throws if one of these
+// vertices is missing.
 std::map<std::size_t, std::vector<std::size_t>> seen_by_truths(const ReportFile& file) {
   const nlohmann::json &part = file.part(0), &truth = part["truth"], &offsets = truth["offsets"];
   const std::vector<std::uint32_t> elements = file.numbers<std::uint32_t>(part["element"]),

@@ -48,7 +48,7 @@ std::string text_of(const Corners& corners, Kind kind) {
   return text + (kind == Kind::kObj ? "f 1 2 3\n" : "3 0 1 2\n");
 }
 
-// Returns the normal of one triangle: the sum of all triangles, each multiplied by its share.
+// Returns the normal of the triangle that is the sum of the given triangles, each multiplied by its share.
 exact::Vector normal_of(const std::vector<Corners>& triangles, const std::vector<exact::Rational>& shares) {
   std::array<exact::Vector, 3> sum;
   for (std::size_t k = 0; k < triangles.size(); ++k)
@@ -57,8 +57,8 @@ exact::Vector normal_of(const std::vector<Corners>& triangles, const std::vector
   return exact::cross(exact::subtract(sum[1], sum[0]), exact::subtract(sum[2], sum[0]));
 }
 
-// Draws a triangle whose coordinates are multiples of `step`. It has a size of at most 2^19 steps, at a distance of at
-// most 2^52 steps from the origin, so doubles hold its coordinates.
+// Draws a triangle whose coordinates are multiples of `step`. The triangle has a size of at most 2^19 steps, at a
+// distance of at most 2^52 steps from the origin, so doubles hold its coordinates.
 Corners triangle(fixtures::Random& random, double step) {
   const double far = random.below(3) == 0 ? 0 : std::ldexp(1.0, static_cast<int>(random.below(53)));
   const double size = std::ldexp(1.0, static_cast<int>(random.below(19)));

@@ -186,7 +186,7 @@ TEST(SchemeNormals, steps_lead_through_all_segments_and_drift_as_far_as_is_said)
         EXPECT_NEAR(stepped.drift().largest, largest, 3e-7) << name;
         EXPECT_GT(stepped.drift().largest, 0) << name;
         drifts[anchor_interval == 0 ? 0 : 1] = stepped.drift().largest;
-        // If the playback begins in the middle, the bits must be the same.
+        // A playback that begins in the middle must give the same bits at each time.
         NormalSampler later = NormalSampler::make(motion, by_scheme(name, kind, stepping)).value();
         for (const std::size_t i : {std::size_t{500}, std::size_t{17}, std::size_t{130}})
           EXPECT_EQ(normals_at(later, moments.times[i]), normals_at(stepped, moments.times[i])) << name << " " << i;

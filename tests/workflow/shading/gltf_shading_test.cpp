@@ -351,7 +351,7 @@ TEST(GltfShading, mark_that_makes_no_sense_is_an_error_with_its_place_and_nothin
   Json mark = good_mark();
   mark["extras"] = {{{"target", 1}, {"factors", {0, 0}}}};
   EXPECT_EQ(has(error_of(marked(mark)), at + "/extras/0/target"), "");
-  // Extras that are not a mark may have any content.
+  // Extras that are not from a bake may have any content.
   GltfBuilder builder = hinge().file();
   builder.json["meshes"][0]["extras"] = 17;
   EXPECT_EQ(error_of(builder), "");

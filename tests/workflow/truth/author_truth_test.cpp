@@ -342,7 +342,8 @@ TEST(AuthorTruth, what_the_author_bent_is_blended_from_base_and_keys_in_between_
   constexpr std::size_t kSide = 9;
   for (int draw = 0; draw < 4; ++draw) {
     // In the first five rows of the sheet, both targets only scale the mesh, so they do not change the directions of
-    // the sums. In this case, it makes no difference from which edge azimuths are measured.
+    // the sums. In this case, it makes no difference from which edge azimuths, the directions of offsets around the
+    // normals, are measured.
     Authored mesh = quads(random, kSide);
     for (auto& target : mesh.file.targets)
       for (std::size_t i = 0; i < 3 * 5 * kSide; ++i) target.positions[i] = mesh.file.positions[i];
@@ -381,8 +382,8 @@ TEST(AuthorTruth, azimuths_are_measured_from_the_edge_with_which_offsets_change_
   std::mt19937 random(kSeed + 13);
   constexpr std::size_t kSide = 9, kBent = 2 * kSide + 4;
   Authored mesh = quads(random, kSide);
-  // Five rows of the sheet are flat. Only one vertex of these rows moves, and it stays in the plane: the vertex
-  // after kBent, whose normal is edited.
+  // Five rows of the sheet are flat. Of these rows, only vertex kBent + 1 moves, and this vertex stays in the plane.
+  // The normal of its neighbour kBent is edited.
   for (std::size_t v = 0; v < 5 * kSide; ++v) {
     mesh.file.positions[3 * v] = static_cast<float>(v % kSide);
     mesh.file.positions[3 * v + 1] = static_cast<float>(v / kSide);
@@ -446,7 +447,7 @@ TEST(AuthorTruth, smooth_normals_beside_faces_that_are_shaded_flat_add_up_these_
 
 // All angles of a rectangle are equal, so the normals of a strip of rectangles follow both the angle weighting and the
 // uniform weighting. On the hills beside the strip, normals follow the author's weighting less exactly than on the
-// strip, and the other weighting gives normals within a degree of them.
+// strip, and the other weightings give normals within a degree of them.
 TEST(AuthorTruth, a_weighting_that_most_normals_follow_precedes_one_that_is_as_near_on_a_part) {
   std::cout << "  from seed " << kSeed + 30 << '\n';
   std::mt19937 random(kSeed + 30);
