@@ -82,8 +82,8 @@ std::vector<double> numbers(const QueryTable& table, const std::string& name) {
 }
 
 // A vertex, a corner or a face, together with the faces whose normals add up to its normal. The faces are found from
-// coordinates alone. A vertex has all faces with a vertex at the same point in all keyframes. A corner has only faces at
-// the same vertex, since fans of corners that touch in a point are separate.
+// coordinates alone. A vertex has all faces with a vertex at the same point in all keyframes. A corner has only the
+// faces at its vertex, since fans of corners that touch in a point are separate.
 struct Output {
   std::uint32_t vertex = 0;
   std::vector<std::uint32_t> faces;
