@@ -140,7 +140,8 @@ CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curve
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
 /* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact
- * normal at t: the error of an interpolation. The angle is 180 if only one of the two has a direction. */
+ * normal at t: the error of an interpolation. The angle is 180 if only the given normal or only the exact normal has a
+ * direction. */
 CHRONORMAL_API chronormal_status chronormal_curves_errors(chronormal_curves* curves, double t,
                                                           chronormal_vectors normals, float* degrees);
 CHRONORMAL_API void chronormal_curves_destroy(chronormal_curves* curves);

@@ -1,7 +1,7 @@
 #!/usr/bin/env node
-// Runs the program on any system with Node.js: the same commands, messages and exit codes, on the files of this
-// machine. An older version of Node.js must be able to parse this file and report the version that it needs, so import
-// and await occur only inside functions.
+// Runs the program on any system with Node.js, on the files of this machine. Commands, messages and exit codes are
+// those of the native program. An older version of Node.js must be able to parse this file and report the version that
+// it needs, so import and await occur only inside functions.
 const LEAST = 18; // the smallest version in "engines" of package.json
 
 if (parseInt(process.versions.node, 10) < LEAST) {

@@ -16,7 +16,8 @@ const bytesOf = (data) => {
   throw new TypeError('the input must be a Uint8Array, an ArrayBuffer or a view of one');
 };
 
-// Returns a name for an input without one. A GLB is recognised by its first bytes, and other bytes are taken for JSON.
+// Returns a name for an input that has no name. A GLB is recognised by its first bytes, and other bytes are taken for
+// JSON.
 const nameOf = (bytes) => (bytes[0] === 0x67 && bytes[1] === 0x6c && bytes[2] === 0x54 ? 'input.glb' : 'input.gltf');
 
 // Performs a task in a worker. The worker ends with the task, which frees its memory, and can be stopped at any time.

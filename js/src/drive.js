@@ -7,8 +7,8 @@ const VERSION = 2;
 /**
  * Returns the formulas of a mark (extras.chronormal of a mesh with `count` targets) in arrays that can be evaluated
  * without allocating. A correction target without a formula is driven only by the animations of the file, and is left
- * out. Correction targets are the last ones of a mesh. If the number of targets has changed since the bake, the result
- * is empty.
+ * out. Correction targets are the last targets of a mesh. If the number of targets has changed since the bake, the
+ * result is empty.
  */
 export function formulasOf(mark, count) {
   if (mark?.version !== VERSION || !Array.isArray(mark.extras) || mark.extras.at(-1)?.target !== count - 1) return [];

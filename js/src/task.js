@@ -31,7 +31,8 @@ function write(FS, name, bytes) {
  * Runs a command of the program on files in memory.
  * @param {typeof import('./platform.browser.js')} platform the platform on which this code runs
  * @param {{args: string[], files: Object<string, Uint8Array>, outputs: string, memoryLimit?: number}} task the
- *   command line; the files that it finds, by their names; the folder whose files are the result; the limit of memory in bytes
+ *   command line; the files that the program finds, by their names; the folder whose files are the result; the limit of
+ *   memory in bytes
  * @param {(progress: {label: string, percent: number}) => void} [onProgress]
  * @returns {Promise<{code: number, stdout: string, stderr: string, files: Object<string, Uint8Array>}>}
  */

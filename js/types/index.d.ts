@@ -80,7 +80,10 @@ export interface AuditOptions extends MotionOptions {
 }
 
 export interface BakeOptions extends ReadOptions {
-  /** The viewers that the result is made for. Default: all that add up deltas; no other viewer gets worse. */
+  /**
+   * The viewers that the result is made for. Default: all viewers that add up deltas; no other viewer gets
+   * worse.
+   */
   for?: Viewer | 'all' | Array<Viewer | 'all'>;
   encode?: 'smallest' | 'harmless' | 'exact' | 'endpoint' | 'keys';
   weighting?: Weighting;
@@ -130,7 +133,7 @@ export interface InspectOptions extends MotionOptions {
 
 export interface SampleOptions extends MotionOptions {
   world?: boolean;
-  /** The times in seconds: one or several numbers, `FIRST:STEP:LAST`, or `keys`. */
+  /** The times in seconds: one or several numbers, `FIRST:STEP:LAST`, or `keys` for the times of all keyframes. */
   times?: number | number[] | string;
   /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, with 0 for other targets. */
   weights?: number[] | number[][] | string;

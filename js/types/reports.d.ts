@@ -1,7 +1,7 @@
 /**
  * Declares the reports of the functions, which equal the output of the commands with `--json` (docs/cli.md). New keys
  * may be added, but the meaning of a key never changes. Angles are in degrees. Vertices, faces, targets, nodes and so
- * on are counted from 0, and null means that there is none.
+ * on are counted from 0, and null stands for a value that does not exist.
  */
 
 export type Weighting = 'area' | 'angle' | 'uniform' | 'area-angle' | 'max' | 'inverse-edges' | 'inverse-roots';

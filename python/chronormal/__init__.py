@@ -228,8 +228,8 @@ def blend(base: ArrayLike, deltas: ArrayLike | Sequence[ArrayLike | tuple[ArrayL
     """Prepare the unit normals of blend shapes, base + sum of weights times deltas; return Blend.
 
     base    (V, 3) positions
-    deltas  (K, V, 3), or a list with one for each target: (V, 3), or (vertices, deltas) of the vertices that move,
-            ascending
+    deltas  (K, V, 3), or a list with an entry for each target: (V, 3), or (vertices, deltas) of the vertices that
+            move, with the vertices ascending
     faces, elements, crease, weld  as for curves()
     """
     targets = []
@@ -278,7 +278,7 @@ def read(source: _Source = None, *, sample: str | None = None, base: _Path | Non
 
 
 def motion(positions: ArrayLike, faces: _Faces, times: ArrayLike | None = None) -> Motion:
-    """Make a Motion from arrays, which all functions that read files accept in place of them.
+    """Make a Motion from arrays, which all functions that read files accept in place of files.
 
     positions  (T, V, 3), two keyframes or more; between two of them vertices move on straight lines
     faces      as for curves()
@@ -352,7 +352,7 @@ def compare(source: _Source = None, *, schemes: Iterable[str] = (), samples: int
             world: bool = False, path: str = "linear", loop: bool = False, strict: bool = False) -> dict[str, Any]:
     """Compare ways to interpolate normals with the exact normals; return the dict of `chronormal compare --json`.
 
-    schemes    names; empty: the usual ones
+    schemes    names of schemes; empty: the default schemes of `chronormal compare`
     times      True: include measured times, which differ from run to run
     certify    True: bound the largest error of each scheme at any time
     tolerance  degrees: certify, and find the cheapest scheme whose error never exceeds the tolerance
@@ -381,7 +381,7 @@ def bake(source: _Source = None, *, encode: Literal["smallest", "harmless", "exa
          fps: float = 1.0, path: str = "linear", loop: bool = False, strict: bool = False) -> tuple[bytes, dict[str, Any]]:
     """Write true normals into a glTF file, or make a glTF file from a sequence; return (glb, report).
 
-    viewers   the viewers to bake for; None: all that add up deltas, and no other viewer becomes worse
+    viewers   the viewers to bake for; None: all viewers that add up deltas, and no other viewer becomes worse
     source  as for read(), or a Motion that is a sequence; sample, fps, path, loop, strict: as for read()
     glb     bytes of a GLB
     report  the dict of `chronormal bake --json` without its audit, which audit(glb) returns

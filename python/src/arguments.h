@@ -28,7 +28,7 @@ inline ElementOptions element_options(const std::string& elements, std::optional
   return options;
 }
 
-// The numbers of a Python float or of an array. is_one is true if a single number was given.
+// The numbers that a caller gave as a Python float or as an array. `is_one` is true for a single number.
 struct Numbers {
   explicit Numbers(const py::object& given, const char* place) {
     if (PyFloat_Check(given.ptr()) || PyLong_Check(given.ptr())) {

@@ -123,8 +123,8 @@ void refuse_to_be_pickled(Class& made) {
   made.def("__reduce__", refuse).def("__reduce_ex__", refuse);
 }
 
-// The number of threads of a call while the object lives: 1 is the calling thread, 0 is all cores, and a larger number
-// is that many.
+// Sets the number of threads of calls while the object lives: 1 stands for the calling thread, 0 for all cores, and a
+// larger number for at most as many threads.
 class ChosenThreads {
  public:
   explicit ChosenThreads(int count) : threads_(count == 1 ? Threads::kOne : Threads::kAll) {

@@ -128,7 +128,8 @@ class MotionTest(unittest.TestCase):
                 broken = cn.Motion.__new__(cn.Motion)
                 with self.assertRaises((ValueError, TypeError, RuntimeError)):
                     broken.__setstate__((*state[:i], wrong, *state[i + 1:]))
-                    # Some members of the state accept every value of their type. The test then raises the error itself.
+                    # Some members of the state accept every value of their type, so the test raises the expected error
+                    # itself.
                     raise ValueError
 
 

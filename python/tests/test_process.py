@@ -108,7 +108,8 @@ class SignalTest(unittest.TestCase):
 
     def test_ctrl_c_ends_a_program(self):
         code = "import chronormal as cn; print('begun', flush=True); cn.compare(sample='eversion', samples=10**6)"
-        # A shell that runs the tests in the background makes all programs ignore Ctrl+C, so this one stops ignoring it.
+        # A shell that runs the tests in the background makes all programs ignore Ctrl+C, so this program stops ignoring
+        # it.
         program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                    preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         self.assertEqual(program.stdout.readline(), b"begun\n")

@@ -13,8 +13,8 @@ namespace chronormal::inline internal {
 /// The smallest number of bytes, read and written in one pass, for which results are written to memory past the caches.
 /// All arrays of results must then be aligned to 64 bytes (and be packed, for recompute and the schemes). In a shared
 /// cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody reads them.
-/// Measurements on a machine with such a cache, with and without a reader afterwards, show that this is faster from 20
-/// to 30 MiB on.
+/// Measurements on a machine with such a cache, with and without a reader afterwards, show that writing past the caches
+/// is faster from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
 /// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees them with free_aligned(). Throws

@@ -249,7 +249,8 @@ class Pool {
         changed_.wait(lock);
       }
       --waiting_;
-      // The interruption may belong to this thread. Its callback may only be called on the thread to which it belongs.
+      // An interruption's callback may only be called on the thread to which the interruption belongs. This thread,
+      // which waits for the job, may be that thread.
       if (job.asked != nullptr) {
         lock.unlock();
         try {

@@ -17,7 +17,7 @@ namespace chronormal::inline internal::portable {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The arguments above and below which exp() is infinite or 0.
+// The argument above which exp() is infinite, and the argument below which exp() is 0.
 constexpr double kLargestExponent = 709.8, kSmallestExponent = -746;
 // The largest |x| for which the argument reduction of exp() is valid.
 constexpr double kFarExponent = 700;

@@ -6,10 +6,11 @@
 ///                be negative or more than 1, which extrapolates
 ///     neither    for a mesh at rest: one keyframe and no segment
 ///
-/// Area-weighted normals are within 1e-6 rad of exact arithmetic, also for thin and small faces and faces of mixed
-/// sizes. At a time they are computed by curves of the segment, so they have the same bits whatever other times are
-/// asked for. At weights they are computed from positions. The guarantee is then for the blended positions before they
-/// are rounded to float32. Other weightings, which are not polynomials, are computed in double at each moment.
+/// Area-weighted normals are within 1e-6 rad of the result of exact arithmetic, also for thin and small faces and for
+/// faces of mixed sizes. For a time, normals are computed by the curves of its segment, so they have the same bits
+/// whatever other times are asked for. For weights, normals are computed from blended positions, and the guarantee is
+/// for these positions before they are rounded to float32. Normals with other weightings are no polynomials, so they
+/// are computed in double at each moment.
 ///
 /// Elements   faces, or groups of corners (normals/normal_groups.h); outputs are faces, vertices or corners, and
 ///            outputs of the same element have the same bits.
@@ -75,7 +76,8 @@ struct SampleOptions {
   /// The name of a scheme (schemes/scheme.h) that interpolates between the exact normals at the ends of a segment. If
   /// the name is empty, all normals are exact. A scheme is allowed only for Weighting::kArea and NormalLength::kUnit.
   std::string scheme = {};
-  /// The steps by which the scheme is played. If they are given, only the times of step_moments() can be computed.
+  /// The steps in which the scheme computes normals, each from the previous one. If steps are given, the sampler can
+  /// only compute normals at the moments that step_moments() returns.
   std::optional<Stepping> stepping = {};
 };
 
@@ -143,7 +145,7 @@ class NormalSampler {
   /// Returns the normals of a pose as (outputs, 3): each output gets a copy of its element's normal.
   [[nodiscard]] std::vector<float> normals_of_outputs(const Pose& pose) const;
 
-  /// Returns the largest error of playback in all poses so far; zero without stepping.
+  /// Returns the largest error of playback in all poses so far. The error is zero if the options have no stepping.
   [[nodiscard]] const Drift& drift() const noexcept { return drift_; }
 
  private:
@@ -202,9 +204,9 @@ struct SampleOutput {
   bool force = false;
 };
 
-/// Returns the names of the files for `count` moments, and checks that they can be written, so that a caller can find
-/// out before a long computation. Errors: kUsage for normals of corners in PLY, and for several moments in one .ply or
-/// .obj; those of check_output().
+/// Returns the names of the files for `count` moments. Checks that these files can be written, so that a caller learns
+/// of an error before a long computation. Errors: kUsage for normals of corners in PLY, and for several moments in one
+/// .ply or .obj; those of check_output().
 [[nodiscard]] Result<std::vector<std::string>> sample_files(const SampleOutput& output, ElementKind kind,
                                                             std::size_t count);
 

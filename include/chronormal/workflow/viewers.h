@@ -33,20 +33,20 @@
 
 namespace chronormal {
 
-/// The rules by which viewers compute the rendered normal from stored normals and deltas: kSum adds them as stored,
-/// kUnit first makes a unit normal for each target, and kClamped rounds them to integers for [-1, 1]. The formulas are
-/// at the top of this file.
+/// The rules by which viewers compute the rendered normal from stored normals and deltas: kSum adds deltas to normals
+/// as stored, kUnit first makes a unit normal for each target, and kClamped first rounds normals and deltas to integers
+/// that stand for [-1, 1]. The formulas are at the top of this file.
 enum class NormalRule { kSum, kUnit, kClamped };
 
-/// The rules by which viewers play a track of weights. A resampled track has 30 samples per second and is linear in
-/// between (steps stay steps).
+/// The rules by which viewers play a track of weights. A resampled track has kViewerSampleRate values per second, with
+/// linear interpolation between them, or none if the track is a STEP track.
 enum class TrackRule {
   kSpecified,  ///< tracks are played as appendix C of the glTF specification demands
-  /// A CUBICSPLINE track is resampled from time 0 on, including its last key; other tracks as specified.
+  /// A CUBICSPLINE track is resampled from time 0 to its last key; other tracks are played as specified.
   kSplinesResampled,
   kAllResampled,  ///< every track is resampled, from the first key of the animation on
-  /// Tangents of a CUBICSPLINE track are multiplied by the elapsed share of the time between two keys, not by that
-  /// time.
+  /// Tangents of a CUBICSPLINE track are multiplied by the share of the time between two keys that has elapsed, instead
+  /// of by the whole time between these keys.
   kSplinesWithoutDuration,
   /// Only the in-tangents of a CUBICSPLINE track are taken, and read as the in-tangent, value and out-tangent of each
   /// key. The weights of later keys, for which no numbers are left, are zero.
@@ -66,13 +66,13 @@ struct Viewer {
   std::string_view name;   ///< the name on the command line
   std::string_view title;  ///< the name for users: "three.js", "after gltfpack"
   NormalRule normals = NormalRule::kSum;
-  /// The number of bits of a stored number. For kSum: of the float that stores a component of a delta. For kUnit: of
-  /// each of the two octahedral numbers that store a direction, or of each of the four numbers of a quaternion. For
-  /// kClamped: of the integer that stores a component, including its sign.
+  /// The number of bits of a stored number. For kSum, the number is the float that stores a component of a delta. For
+  /// kUnit, it is one of the two octahedral numbers that store a direction, or one of the four numbers of a quaternion.
+  /// For kClamped, it is the integer that stores a component, including its sign.
   int bits = 32;
   /// For kUnit, true if u is the third axis of the rotation of a stored quaternion. The quaternion stands for the frame
-  /// that Frisvad's rule makes from the vector N or N + D. The rule is for unit vectors, and is applied to a vector of
-  /// any length without change. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
+  /// that Frisvad's rule makes from the vector N or N + D. The rule is meant for unit vectors, but viewers apply it to
+  /// vectors of any length. (Building an Orthonormal Basis from a 3D Unit Vector Without Normalization, 2012.)
   bool by_frame = false;
   bool octahedral_base = false;  ///< for kClamped: N is first rounded to octahedral numbers with as many bits
   TrackRule tracks = TrackRule::kSpecified;
@@ -81,7 +81,7 @@ struct Viewer {
   double least_weight = 0;
   bool adds_tangents = true;     ///< true to add up tangents of targets; otherwise the tangents of the base are used
   std::size_t most_targets = 0;  ///< largest number of targets of a primitive; 0 if there is no known limit
-  /// A description of how the viewer treats a file with more than most_targets targets, if there is this limit.
+  /// A description of how the viewer treats a file with more than most_targets targets, if the viewer has such a limit.
   std::string_view beyond = {};
   std::string_view source = {};  ///< the place where this behaviour is documented
 
@@ -176,7 +176,7 @@ inline constexpr std::array<Viewer, 9> kViewers = {{
 [[nodiscard]] Vec3f kept_delta(const Viewer& viewer, const Vec3f& normal, const Vec3f& kept_normal,
                                const Vec3f& delta) noexcept;
 
-/// Sets those weights to zero that a viewer ignores. There is a weight for each target in `targets`, or for every
+/// Sets to zero the weights that a viewer ignores. `weights` has a weight for each target in `targets`, or for every
 /// target of the mesh if `targets` is empty.
 void drop_weights(const Viewer& viewer, std::span<double> weights, std::span<const std::size_t> targets = {}) noexcept;
 

@@ -1,15 +1,15 @@
 /// Bounds the largest angle between two curves on one piece of a segment, by Bernstein coefficients.
 ///
-/// On a piece, a scheme is a cubic p with a ball around it, and the normal is a quadratic n with a small error. Both S
-/// = p x n and D = p.n have degree 5, and tan(angle) = |S| / D. A quotient of polynomials lies between the quotients of
-/// their Bernstein coefficients if the coefficients of the denominator are positive, so
+/// On a piece, the vector of a scheme is in a ball around a cubic p, and the exact normal is a quadratic n with a small
+/// error. Both S = p x n and D = p.n have degree 5, and tan(angle) = |S| / D. A quotient of polynomials lies between
+/// the quotients of their Bernstein coefficients if the coefficients of the denominator are positive, so
 ///
 ///     D > 0:   angle <= atan sqrt(max_k (S.S)_k / (D^2)_k)
 ///     else     angle <= pi - atan sqrt(min_k (S.S)_k / (D^2)_k),   if all (S.S)_k > 0
 ///
-/// Both bounds converge with the square of the width of the piece. The Bernstein coefficients of S.S + D^2 = |p|^2
-/// |n|^2 are the sums of these coefficients. The smallest sum bounds the angles by which the ball and the error of n
-/// can turn p and n (docs/theory.md, section 19).
+/// Both bounds converge with the square of the width of the piece. The sums (S.S)_k + (D^2)_k are the Bernstein
+/// coefficients of S.S + D^2 = |p|^2 |n|^2. The smallest sum bounds the angles by which the ball and the error of n can
+/// turn p and n (docs/theory.md, section 19).
 ///
 /// Threads    pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_CERTIFICATES_ANGLE_BOUND_H_

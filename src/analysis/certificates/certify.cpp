@@ -133,7 +133,7 @@ struct Warp {
 
 constexpr ErrorBounds kUnknown{0, std::numbers::pi, 0, 0, 1};
 
-// The certifier of the elements of a block, with the data that all these elements share.
+// Finds the certificates of the elements of a block, and has the data that all these elements share.
 class Certifier {
  public:
   explicit Certifier(const Scheme& scheme)

@@ -20,12 +20,13 @@ constexpr std::size_t kAxisRefinements = 10;
 // culling test.
 constexpr double kWidest = 0.995;
 constexpr double kTestSlack = 0x1p-20;  // the error of the culling test in float32: some ten roundings of 2^-24
-// The factor that covers rounding a bound up to float, and the roundings before that.
+// The factor by which a bound is enlarged, so that rounding the bound up to float and the roundings before cannot make
+// it too small.
 constexpr double kRoundUp = 1 + 0x1p-22;
 constexpr double kSumRounding = 0x1p-46;  // relative rounding error of sums of products in double
 constexpr double kSteps = 127;            // number of steps of a component in 8 bits, from 0 to 1
 
-// The positions of a vertex at both ends of the interval, and a bound of their rounding error in units of length.
+// The positions of a vertex at both ends of the interval, and a bound of their rounding error in mesh units.
 struct Ends {
   Vec3d from, to;
   double error = 0;
@@ -172,8 +173,9 @@ class Cluster {
   std::vector<IntervalNormals> normals_;
 };
 
-// Rounds the axis and the cutoff of the culling test to 8 bits each. n.v >= 0 holds for all n of the cone if v.axis_s8
-// / 127 is at least the sine of the cone plus the error that rounding the axis can make in v.axis.
+// Rounds the axis and the cutoff of the culling test to 8 bits each. A unit vector v satisfies n.v >= 0 for all n of
+// the cone if v.axis_s8 / 127 is at least the sine of the cone plus the error that rounding the axis can make in
+// v.axis.
 void set_8_bits(const NormalCone& cone, ClusterBounds& bounds) {
   const Vec3d axis = unit(to_double(cone.axis));
   const auto rounded = [](double x) { return std::nearbyint(kSteps * x); };

@@ -60,8 +60,8 @@ EdgeFaults find_edge_faults(const Topology& topology, const Points& points) {
   return faults;
 }
 
-// The triangles of all faces. Vertices of one place are one point, which its first vertex represents. A triangle that
-// names a point twice has no area at any time, and is left out.
+// The triangles of all faces. Vertices at the same place are one point, and `corners` names this point by the first of
+// these vertices. A triangle that names a point twice has no area at any time, and is left out.
 struct Triangles {
   std::vector<std::uint32_t> corners;  // three vertices for each triangle
   std::vector<std::uint32_t> faces;
@@ -245,8 +245,8 @@ class Passage {
     return signs.volume_at(t);
   }
 
-  // Adds crossings of the open triangles within a moment. The number of crossings is the change of the winding number
-  // that the certain roots do not explain.
+  // Adds crossings of the open triangles within a cell of at most two ticks, which counts as one moment. Their number
+  // is the change of the winding number that the known roots do not explain.
   void sum_up(const Cell& moment, std::vector<std::uint32_t> open) {
     int change = winding_number(moment.to) - winding_number(moment.from);
     for (const Root& root : roots_) {

@@ -40,8 +40,8 @@ Bernstein<double, 3> volume_sums(const std::array<Triple, 3>& from, const std::a
           dot_of(from[0], after) + dot_of(to[0], between), dot_of(to[0], after)};
 }
 
-// The numbers of digits that wide integers need here. A coordinate has 24 + 253 bits, one more for a difference and 48
-// for the time. A volume is a sum of six products of three coordinates.
+// The numbers of digits, of 24 bits each, that wide integers need here. A coordinate has 24 + 253 bits, one more for a
+// difference and 48 for the time. A volume is a sum of six products of three coordinates.
 constexpr std::size_t kCoordinateDigits = 15, kProductDigits = 31, kVolumeDigits = 46;
 using Coordinate = WideInteger<kCoordinateDigits>;
 using Product = WideInteger<kProductDigits>;
@@ -239,7 +239,7 @@ class ExactCell {
   std::array<std::array<std::array<bool, 3>, 3>, 2> is_made_{};
 };
 
-// An ExactCell, and the arguments from which it is made when double cannot decide for the first time.
+// An ExactCell, which is only made when double cannot decide a sign, and the arguments from which it is made.
 struct Integers {
   const std::array<MovingPoint, 3>& corners;
   const MovingPoint& point;

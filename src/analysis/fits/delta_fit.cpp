@@ -12,8 +12,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// The weight of the penalty that keeps deltas near the start deltas if the rows do not determine them. The weight is
-// relative to the mean of the matrix's diagonal.
+// The weight of the penalty that keeps deltas near the start deltas if the rows of the fit do not determine the deltas.
+// The weight is relative to the mean of the matrix's diagonal.
 constexpr double kRidge = 1e-9;
 
 Vec3d at(const std::vector<float>& values, std::size_t i) {

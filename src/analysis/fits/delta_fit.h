@@ -1,8 +1,8 @@
 /// Fits the normal deltas that a viewer should add up, by least squares.
 ///
 /// A viewer renders normalize(N + sum_i w_i D_i) for the weights w. DeltaFit starts from given deltas D. For some
-/// weight vectors it is told by how much the rendered normals miss the wanted ones. It then changes every D so that
-/// these differences become as small as possible:
+/// weight vectors, the caller gives the difference between the wanted and the rendered normals. DeltaFit then changes
+/// every D so that these differences become as small as possible:
 ///
 ///     DeltaFit fit(start);
 ///     for (each weight vector w) {
@@ -10,7 +10,7 @@
 ///       ... missing[e] = wanted normal of e at w - shown[e]
 ///       fit.add(w, missing);
 ///     }
-///     fit.solve();                       // fit.deltas() are the new ones
+///     fit.solve();                       // fit.deltas() are the new deltas
 ///
 /// Threads    one call at a time on each object.
 #ifndef CHRONORMAL_ANALYSIS_FITS_DELTA_FIT_H_

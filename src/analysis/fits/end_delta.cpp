@@ -153,7 +153,7 @@ Peak highest_peak(const Samples& samples, const Vec3d& from, const Vec3d& to) no
   return best;
 }
 
-// The angles at all samples as functions of s, the factor of u1, and the search for the s whose largest angle is
+// Has the angles at all samples as functions of s, the factor of u1, and searches for the s whose largest angle is
 // smallest.
 class ScaleSearch {
  public:

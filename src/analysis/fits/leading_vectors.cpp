@@ -1,7 +1,8 @@
 // Finds eigenvectors by subspace iteration (Halko, Martinsson and Tropp, Finding Structure with Randomness, 2011,
 // algorithm 4.4). A block of random columns is repeatedly multiplied by the matrix and made orthonormal. In the space
-// that the columns of this block span, the matrix is a small one. Jacobi rotations find the eigenvectors of this small
-// matrix, which combine the columns of the block to eigenvectors of the large matrix.
+// that the columns of this block span, the matrix acts like a small matrix. Jacobi rotations find the eigenvectors of
+// the small matrix. Their components are the factors that combine the columns of the block to eigenvectors of the large
+// matrix.
 #include "analysis/fits/leading_vectors.h"
 
 #include <algorithm>

@@ -86,8 +86,9 @@ class CertainRoots {
     return {t, std::fabs(2 * ((1 - t) * (p[1] - p[0]) + t * (p[2] - p[1])))};
   }
 
-  // Finds the only root by Newton's method, from the root of a quadratic that agrees with p at the ends and in the
-  // middle. Bisection keeps the root between values of different signs. Rounding limits the accuracy of the result.
+  // Finds the only root by Newton's method, which starts from the root of a quadratic that agrees with p at the ends
+  // and in the middle. Bisection keeps the root between values of different signs. Rounding limits the accuracy of the
+  // result.
   static Guess only_root(const std::array<double, 4>& p) noexcept {
     constexpr double kLastStep = 0x1p-28;  // after a step of this size, the error is about the square of the step
     const double a1 = 3 * (p[1] - p[0]), a2 = 3 * ((p[2] - p[1]) - (p[1] - p[0])),

@@ -90,7 +90,7 @@ Collapses on_a_line(const Vectors& c, const IntegerPolynomial<2, kDigits>& f) no
   return found;
 }
 
-// Finds the collapse if there can only be one, at the root of a linear polynomial.
+// Finds the collapse of a face that can only collapse at the root of a linear polynomial.
 Collapses at_root_of(const IntegerPolynomial<1, 2 * kDigits + 1>& linear, const Vectors& c) noexcept {
   const auto& [l0, l1] = linear.a;
   if (l1.sign() == 0) return {};

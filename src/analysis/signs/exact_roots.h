@@ -5,12 +5,11 @@
 ///
 /// Sturm's theorem counts the roots: in the chain f, f', -(f mod f'), ... the number of changes of sign drops by one at
 /// each root of f, whatever its multiplicity, and nowhere else. All signs are signs of integers (core/wide_integer.h).
-/// They are those just after t, so a t that is itself a root needs no special case. The number of changes is monotone
-/// in t, so a search over doubles finds the neighbours between which the number drops. The search starts from a guess
-/// in floating point, which only affects the time: a few microseconds with a good guess.
+/// The signs are taken just after t, so a t that is itself a root needs no special case. The number of changes is
+/// monotone in t, so a search over doubles finds the neighbours between which the number drops. The search starts from
+/// a guess in floating point, which only affects the time: a few microseconds with a good guess.
 ///
-/// Roots between the same two neighbouring doubles are returned as one. Roots below 2^-200 count
-/// as 0.
+/// Several roots between the same two neighbouring doubles are returned as one root. Roots below 2^-200 count as 0.
 ///
 /// Source: Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), chapter 2.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_EXACT_ROOTS_H_

@@ -18,8 +18,8 @@ bool stays_long(const ControlNormals& c) {
   return smallest > 0 && smallest * smallest > kCollapseShare * kCollapseShare * length_squared(w);
 }
 
-// Returns n at a t between `from` and `end`, an end of the segment. This t is the nearest one tried at which n is
-// clearly longer than in the collapse and has a direction again.
+// Returns n at a t between `from` and `end`, an end of the segment. Of the tried times, t is the one nearest to `from`
+// at which n is clearly longer than in the collapse and has a direction again.
 Vec3d clear_of(const ControlNormals& c, double from, double end) {
   constexpr double kClear = 4 * kCollapseShare;
   double step = kCollapseMargin;
@@ -45,7 +45,7 @@ NearCollapses find_near_collapses(const ControlNormals& normals) noexcept {
   if (stays_long(c)) return found;
 
   // Between neighbouring roots of the derivative, |n(t)| is monotone. If |n(t)| does not exceed the limit between two
-  // neighbouring minima, the two belong to one collapse.
+  // neighbouring minima, these minima belong to one collapse.
   const Bernstein<Vec3d, 2> n = {c.n0, c.m, c.n1};
   const Bernstein<double, 4> square = multiply(n, n, dot<double>);
   Bernstein<double, 3> derivative;

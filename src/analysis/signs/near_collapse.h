@@ -1,12 +1,12 @@
 /// Finds the instants inside a segment at which a normal nearly vanishes, so that its direction is practically
 /// discontinuous when it is interpolated or rendered.
 ///
-/// "Nearly" means that |n(t)| falls below kCollapseShare times the largest control normal. This is far above the
-/// rounding of float32, so that faces are found that were made to collapse and then rounded. It is far below any length
-/// that an author intends. The functions of analysis/signs.h decide exactly whether a normal vanishes.
+/// "Nearly" means that |n(t)| falls below kCollapseShare times the largest control normal. This limit is far above the
+/// rounding of float32, so that it finds faces that were made to collapse and then rounded. The limit is far below any
+/// length that an author intends. The functions of analysis/signs.h decide exactly whether a normal vanishes.
 ///
-/// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h).
-/// Threads    pure: no allocation, no throw.
+/// Source     docs/theory.md, section 3; the minima of |n(t)| are the roots of a cubic (core/polynomial.h). Threads
+/// pure: no allocation, no throw.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_NEAR_COLLAPSE_H_
 
@@ -49,7 +49,8 @@ struct NearCollapses {
 }
 
 /// Finds the times t in (0, 1) at which n(t) vanishes or nearly vanishes. Minima between which |n(t)| stays below the
-/// limit count as one. Cost: three dot products for most faces, and the roots of a cubic for faces that turn far.
+/// limit count as one collapse. Cost: three dot products for most faces, and the roots of a cubic for faces that turn
+/// far.
 [[nodiscard]] NearCollapses find_near_collapses(const ControlNormals& normals) noexcept;
 
 }  // namespace chronormal::inline internal

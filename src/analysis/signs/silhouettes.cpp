@@ -1,5 +1,5 @@
-// Finds silhouette edges over time. It takes the changes of side of both faces at an edge in the order of time. Changes
-// whose brackets touch count as one, so that the order of all changes is certain.
+// Finds silhouette edges over time from the changes of side of both faces at an edge, in the order of time. Changes
+// whose brackets touch count as one change, so that the order of all changes is certain.
 
 #include <algorithm>
 #include <cassert>

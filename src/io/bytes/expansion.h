@@ -5,8 +5,8 @@
 ///     expansion.add_read(file.size());              // whatever is read counts
 ///     if (Status s = expansion.check(wanted, place); !s) return s;      // before memory is taken
 ///
-/// A file may ask for 32 MiB, or for `times` the bytes that were read, whichever is larger. Memory that the user asks
-/// for, such as poses or moments to sample, does not count.
+/// A file may ask for 32 MiB, or for `times` times as many bytes as were read, whichever is larger. Memory that the
+/// user asks for, such as poses or moments to sample, does not count.
 ///
 /// Threads    a plain value; no thread needs care.
 #ifndef CHRONORMAL_IO_BYTES_EXPANSION_H_

@@ -26,8 +26,9 @@ namespace chronormal::inline internal {
 class Journal {
  public:
   /// Opens the journal at `path`. If the file does not exist, begins a journal with the text `run`, which must not
-  /// contain line feeds. An existing journal may belong to another run; run() tells. Errors: kFailed with the path as
-  /// the place, if the file is not a journal, another process has locked it, or the system refuses.
+  /// contain line feeds. An existing journal may belong to another run; run() tells which. Errors: kFailed with the
+  /// path as the place, if the file is not a journal, another process has locked it, or the system refuses to open the
+  /// file.
   [[nodiscard]] static Result<Journal> open(const std::string& path, std::string_view run);
 
   /// Return the text of the run that began the journal, the texts of the records that the journal had when it was
@@ -50,7 +51,7 @@ class Journal {
 
  private:
   Journal(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {}
-  // Reads the lines of the journal up to the first damaged one. Returns false if the first line, which names the run,
+  // Reads the lines of the journal up to the first damaged line. Returns false if the first line, which names the run,
   // is damaged.
   [[nodiscard]] bool read(std::string_view bytes);
 

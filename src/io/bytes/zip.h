@@ -48,7 +48,7 @@ struct StoredMember {
 
 /// A zip file without the bytes of its members: the header of each member with its offset, and the records behind the
 /// last member. The bytes of a member follow its header. No offset depends on a checksum, so the caller may pass the
-/// checksum 0 until the real one is known.
+/// checksum 0 until the real checksum is known.
 struct Frame {
   struct Header {
     std::uint64_t at = 0;

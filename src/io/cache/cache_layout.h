@@ -1,4 +1,5 @@
-/// The layout of a point cache in its file. It allows a sample to be read without the samples before it. Private to io.
+/// The layout of a point cache in its file. A sample has the positions of all vertices at one time. With the layout, a
+/// sample can be read without the samples before it. Private to io.
 ///
 ///     byte begin                       sample 0: (V, 3) numbers, float32 or float64
 ///     byte begin + 3 V item_size       sample 1, and so on
@@ -25,7 +26,7 @@
 namespace chronormal::inline internal {
 
 /// The number of bytes at the beginning of a file from which its layout must be found. If these bytes are too few, the
-/// file counts as one without a layout.
+/// file counts as a file without a layout.
 inline constexpr std::size_t kLayoutBytes = std::size_t{1} << 20;
 
 struct CacheLayout {

@@ -133,8 +133,8 @@ class NpzOutput {
   /// Writes the next bytes of a growing array, in little endian.
   [[nodiscard]] Status append(std::size_t array, std::string_view bytes);
   /// Lets several processes write one file together. join() continues a file that another process has begun
-  /// (OutputFile::join()); each process must add the same arrays before. skip() skips the bytes of a growing array that
-  /// other processes write. The process that called begin() ends the file. For each growing array, it calls
+  /// (OutputFile::join()); each process must first add the same arrays. skip() skips the bytes of a growing array that
+  /// other processes write. The process that called begin() ends the file. For each growing array, this process calls
   /// add_checksum() once for the bytes of each other process, in the order of these bytes in the file, and then
   /// finish().
   void join();

@@ -30,11 +30,11 @@ struct WeightedVector {
 void add_weighted(const Vec3f& base, std::span<const WeightedVector> terms, float* sums, std::size_t stride) noexcept;
 
 /// Compares rendered normals of any length with the true unit normals in as many poses as `degrees` has. Both are given
-/// as planes of x, y and z, and a true normal is (0, 0, 0) where none is known. Writes
+/// as planes of x, y and z, and (0, 0, 0) stands for an unknown true normal. Writes
 ///
 ///     degrees   the angles; 180 for a normal that cannot be lit, -1 where no true normal is known
-///     errors    as planes, the rendered minus the true unit normal; minus twice the true one if the rendered normal
-///               cannot be lit, NaN where none is known
+///     errors    as planes, the rendered minus the true unit normal; minus twice the true normal if the rendered normal
+///               cannot be lit, NaN where no true normal is known
 ///
 /// Returns the largest length of an error.
 [[nodiscard]] float compare_normals(const std::array<const float*, 3>& rendered,

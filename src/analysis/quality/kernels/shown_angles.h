@@ -72,7 +72,7 @@ struct ShownElements {
 void shown_angles(const ShownElements& elements, double t, std::span<double> degrees) noexcept;
 
 /// Writes the angles between pairs of vectors, which need not be unit vectors. `per_radian` is the number of units of
-/// angle per radian: that of degrees, or 1 for radians. The angle is 0 if one of the two vectors is zero.
+/// angle per radian: kDegreesPerRadian for degrees, or 1 for radians. The angle is 0 if one vector of a pair is zero.
 /// Preconditions: all three spans have the same size; no number is infinite or NaN.
 void angles_of_pairs(std::span<const Vec3d> a, std::span<const Vec3d> b, std::span<double> angles,
                      double per_radian = kDegreesPerRadian) noexcept;

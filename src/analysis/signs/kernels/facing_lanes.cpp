@@ -1,6 +1,6 @@
 // Computes coefficients by dot products in double, roots of quadratics in closed form, and roots of cubics by Newton's
-// method, starting from a quadratic. A bracket is only accepted if the values at its ends certainly have different
-// signs, so the way of finding the root does not matter.
+// method, starting from the root of a quadratic. A bracket is only accepted if the values at its ends certainly have
+// different signs, so the way of finding the root does not matter.
 #include "analysis/signs/kernels/facing_lanes.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 /// The kernels of analysis/signs/facing.cpp: the coefficients of f(t) = n(t) . w(t) of many faces at a time, where w is
 /// the vector to the viewer, and the roots of polynomials that change their sign once.
 ///
-/// Every face is computed in its own lane with the same operations, so that its result depends on nothing else.
+/// Every face is computed in its own lane with the same operations, so that its result does not depend on other faces.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACING_LANES_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_KERNELS_FACING_LANES_H_
 
@@ -26,11 +26,12 @@ struct alignas(64) FacingWays {
 };
 
 /// The Bernstein coefficients of f = n . w (normal and vector to the viewer), each multiplied by its binomial
-/// coefficient. There are three for a viewer infinitely far away, whose f is a quadratic, and four for an eye at a
-/// point, whose f is a cubic.
+/// coefficient. A viewer infinitely far away has three coefficients, since f is a quadratic; an eye at a point has
+/// four, since f is a cubic.
 struct alignas(64) FacingCoefficients {
   double values[4][kFacingBlock];
-  /// The error bounds of the coefficients, if control normals are within 2^-26 of the exact ones.
+  /// The error bounds of the coefficients, if each control normal differs from the exact one by at most 2^-26 of its
+  /// length.
   double bounds[4][kFacingBlock];
   /// The sum of the absolute components of the vector to the viewer, at that end of the segment where it is larger.
   double reach[kFacingBlock];
