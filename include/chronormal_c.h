@@ -134,9 +134,9 @@ CHRONORMAL_API size_t chronormal_curves_bytes(const chronormal_curves* curves);
  * `zeros`, unless `zeros` is NULL. */
 CHRONORMAL_API chronormal_status chronormal_curves_unit_normals(chronormal_curves* curves, double t,
                                                                 chronormal_result normals, size_t* zeros);
-/* Writes the unit normals at many t, each to its own output. The total number of (0, 0, 0) is stored in `zeros`, unless
- * `zeros` is NULL. Runs on the calling thread without allocating memory, so that jobs of an engine can write ranges of
- * one output. */
+/* Writes the unit normals at many t, each to its own output. The total number of normals that are (0, 0, 0) is stored
+ * in `zeros`, unless `zeros` is NULL. Runs on the calling thread without allocating memory, so that jobs of an engine
+ * can write ranges of one output. */
 CHRONORMAL_API chronormal_status chronormal_curves_write(const chronormal_curves* curves, const double* times,
                                                          const chronormal_output* outputs, size_t count, size_t* zeros);
 /* Writes the angle in degrees, float32, between each given normal, which need not be a unit vector, and the exact
@@ -174,7 +174,7 @@ CHRONORMAL_API void chronormal_blend_destroy(chronormal_blend* blend);
 /* A motion from files, in every format that the program reads. */
 typedef struct chronormal_motion chronormal_motion;
 
-/* Reads files like the command line of `chronormal sample`; the tolerance of the options is not used. */
+/* Reads files as the command line of `chronormal sample` does; the tolerance of the options is not used. */
 CHRONORMAL_API chronormal_status chronormal_motion_read(const char* const* files, size_t file_count,
                                                         const chronormal_options* options, chronormal_motion** result);
 /* Sets the path of the vertices of a sequence, like `chronormal sample --path`: "linear" (at first), "catmull-rom", on

@@ -97,7 +97,8 @@ const bakedName = (name) => {
 
 /**
  * Returns the functions of the package for a platform, which is platform.browser.js or platform.node.js. index.js and
- * index.node.js each import their own platform, so that neither loads code of the other. No module has a side effect.
+ * index.node.js each import their own platform, so that neither module loads the code of the other platform. No module
+ * has a side effect.
  */
 export function apiOf(platform) {
   const report = (command) => async (input, options = {}) => resultOf(await execute(platform, taskOf(command, input, options), options));

@@ -3,7 +3,7 @@
 import createProgram from './program.js';
 
 // The smallest WebAssembly module that uses vectors and exceptions, both of which the program needs. A runtime that
-// lacks one of them says that this module is invalid.
+// lacks vectors or exceptions says that this module is invalid.
 const NEEDED = [0, 97, 115, 109, 1, 0, 0, 0, 1, 4, 1, 96, 0, 0, 3, 2, 1, 0, 10, 13, 1, 11, 0, 6, 64, 65, 0, 253, 17, 26, 25, 11, 11];
 const TOO_OLD = 'WebAssembly with vectors (SIMD) and exceptions is missing here: chronormal needs Chrome or Edge 95, Firefox 100, Safari 16.4, \
 Node.js 18, or later, on a processor that has vectors';

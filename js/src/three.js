@@ -13,8 +13,8 @@ function formulasOfMesh(mesh) {
 
 /**
  * Drives all meshes of a baked file below an object, until detach(). Call attach() for a clone as well, because
- * three.js does not copy functions that run before drawing. Costs a few operations for each correction target and drawing, and
- * allocates nothing.
+ * three.js does not copy functions that run before drawing. Costs a few operations for each correction target and
+ * drawing, and allocates nothing.
  * @param {import('three').Object3D} root
  * @returns {import('three').Mesh[]} the meshes that have correction targets with formulas
  */

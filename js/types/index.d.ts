@@ -135,7 +135,10 @@ export interface SampleOptions extends MotionOptions {
   world?: boolean;
   /** The times in seconds: one or several numbers, `FIRST:STEP:LAST`, or `keys` for the times of all keyframes. */
   times?: number | number[] | string;
-  /** A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, with 0 for other targets. */
+  /**
+   * A weight for each morph target, or such an array for each pose; or `NAME=WEIGHT,NAME=WEIGHT`, with 0 for other
+   * targets.
+   */
   weights?: number[] | number[][] | string;
   /** The scheme that interpolates between the exact normals at the ends of segments. Default: every normal is exact. */
   scheme?: Scheme;
@@ -172,7 +175,10 @@ export interface Baked extends Judged<BakeReport> {
   files: Record<string, Uint8Array>;
 }
 
-/** An error of a call. `code` is the exit code of the program: 1 for a failure, 2 for wrong usage, 3 for an invalid input. */
+/**
+ * An error of a call. `code` is the exit code of the program: 1 for a failure, 2 for wrong usage, 3 for an invalid
+ * input.
+ */
 export class ChronormalError extends Error {
   constructor(code: number, message: string);
   name: 'ChronormalError';

@@ -225,7 +225,10 @@ export interface BakedMesh {
   weighting: Weighting | null;
   already_baked: boolean;
   different_normals: number;
-  /** The formulas of the weights of correction targets: linear terms [target, factor], and products [target, target, factor]. */
+  /**
+   * The formulas of the weights of correction targets: linear terms [target, factor], and products [target, target,
+   * factor].
+   */
   extra_targets: Array<{ target: number; linear: number[][]; quadratic: number[][] }>;
   bytes: number;
   undriven_targets: number;
@@ -438,7 +441,7 @@ interface FoundVertices {
 }
 
 /**
- * The number of faces with a problem, and the number of pairs of such a face and a keyframe or segment in which it has
+ * The number of faces with a problem, and the number of pairs of a face and a keyframe or segment in which the face has
  * the problem.
  */
 export interface FacePlaces<Place> {

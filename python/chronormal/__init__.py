@@ -41,7 +41,7 @@ _Weighting = Literal["area", "angle", "uniform", "area-angle", "max", "inverse-e
 
 
 def _vectors(array, place):
-    """Return the array itself if it is C-contiguous float32, or else a copy that is."""
+    """Return the array itself if it is C-contiguous float32, or else a copy in this form."""
     array = _np.asarray(array)
     if array.dtype == _np.float32 and array.flags.c_contiguous and array.flags.aligned:
         return array
@@ -270,7 +270,7 @@ def read(source: _Source = None, *, sample: str | None = None, base: _Path | Non
     animation  of a glTF file, by name or index; None: its morph targets
     world      True: the nodes of a glTF file move its vertices to their places in the scene
     path       how vertices of a sequence move: "linear", "catmull-rom" or "hermite", as `--path` of the program. Curves are
-               cut into straight pieces: the keyframes of the motion are the ends of these, as cut() makes them
+               cut into straight pieces: the keyframes of the motion are the ends of these pieces, as cut() makes them
     loop       True: the first keyframe of a sequence follows its last one
     strict     True: an input that can only be read in part raises ValueError
     """
@@ -311,7 +311,7 @@ def interpolate(scheme: str, p0: ArrayLike, p1: ArrayLike, faces: _Faces, t: flo
 
     scheme  a name of schemes()
     p0, p1, faces, elements, crease, weld  as for curves(), but faces by default, as in compare(): the schemes of the paper
-            are about faces, and some need them
+            are about faces, and some schemes need faces
     t       in [0, 1]
     """
     times = _floats(t, "t")

@@ -1,4 +1,5 @@
-// Runs computations while other threads of Python run. Ctrl-C ends a computation, and a fork() waits for it.
+// Runs computations while other threads of Python run. Ctrl-C ends a computation, and a fork() waits until the
+// computation ends.
 #ifndef CHRONORMAL_PYTHON_COMPUTATION_H_
 #define CHRONORMAL_PYTHON_COMPUTATION_H_
 

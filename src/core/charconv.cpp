@@ -60,8 +60,8 @@ std::to_chars_result put(char* first, char* last, std::string_view text) {
   return {std::copy(text.begin(), text.end(), first), std::errc()};
 }
 
-// Formats a number like std::to_chars(): in the shorter one of scientific and fixed notation, or in fixed notation if
-// both have the same length. fmt provides only the digits, and this function places the point and the exponent.
+// Formats a number like std::to_chars(): in scientific or fixed notation, whichever is shorter, or in fixed notation if
+// both texts have the same length. fmt provides only the digits, and this function places the point and the exponent.
 template <class Number>
 std::to_chars_result shortest(char* first, char* last, Number value) {
   const std::string found = fmt::format("{}", value);

@@ -11,10 +11,10 @@
 namespace chronormal::inline internal {
 
 /// The smallest number of bytes, read and written in one pass, for which results are written to memory past the caches.
-/// All arrays of results must then be aligned to 64 bytes (and be packed, for recompute and the schemes). In a shared
-/// cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody reads them.
-/// Measurements on a machine with such a cache, with and without a reader afterwards, show that writing past the caches
-/// is faster from 20 to 30 MiB on.
+/// All arrays of results must then be aligned to 64 bytes (and for recompute and the schemes be packed, without gaps).
+/// In a shared cache of 32 MiB, such results would evict data that is read next, and would be evicted before anybody
+/// reads them. Measurements on a machine with such a cache, with and without a reader afterwards, show that writing
+/// past the caches is faster from 20 to 30 MiB on.
 inline constexpr std::size_t kStreamFrom = std::size_t{24} << 20;
 
 /// Allocates `size` bytes with the alignment of AlignedBytes. The caller frees them with free_aligned(). Throws
@@ -39,7 +39,8 @@ class AlignedBytes {
 
   /// Sets the size, without touching or moving the bytes. Precondition: size is not larger than capacity().
   void resize(std::size_t size) noexcept;
-  /// Returns the memory after size() to the system if it is in huge pages. That memory can still be used.
+  /// Returns the memory behind the first size() bytes to the system if this memory is in huge pages. The caller may
+  /// still use this memory.
   void release_rest() noexcept;
 
   [[nodiscard]] std::byte* data() noexcept { return data_.get(); }

@@ -1,4 +1,4 @@
-/// Guesses which name a user meant who mistyped it.
+/// Guesses which name a user meant by a mistyped name.
 #ifndef CHRONORMAL_CORE_NEAREST_H_
 #define CHRONORMAL_CORE_NEAREST_H_
 

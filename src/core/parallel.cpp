@@ -295,7 +295,7 @@ class Pool {
   Job* jobs_ = nullptr;      // list of the jobs, in the order in which they began
 };
 
-// Returns the pool, which is never destroyed, since a thread may use it until the very end.
+// Returns the pool, which is never destroyed, since a thread may use the pool until the process ends.
 Pool& pool() {
   alignas(Pool) static std::byte room[sizeof(Pool)];
   static Pool* const made = [] {

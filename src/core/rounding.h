@@ -63,8 +63,8 @@ class VectorSum {
   std::size_t terms_ = 0;
 };
 
-/// A sum of cross products of rounded edges. The error of a product is below 4 u times the sum of the absolute products
-/// in it. Twice this bound is assumed for safety.
+/// A sum of cross products of rounded edges. The error of a cross product is below 4 u times the sum of the absolute
+/// values of the products in it. Twice this bound is assumed for safety.
 class CrossSum {
  public:
   void add(const Vec3d& a, const Vec3d& b) noexcept {

@@ -118,18 +118,19 @@ class NormalSampler {
   /// scheme does not support, or for a mesh at rest. kUsage for stepping without a scheme, or with a scheme that cannot
   /// be played step by step.
   [[nodiscard]] static Result<NormalSampler> make(const Motion& motion, const SampleOptions& options);
-  /// Makes a sampler of a stream. A pose at a time reads the two keyframes around the time, and a pose of weights reads
-  /// all keyframes. Errors: those of make() for a motion, and those of the stream, here and for each pose.
+  /// Makes a sampler of a stream. For a pose at a time, the sampler reads the two keyframes around the time; for a pose
+  /// of weights, it reads all keyframes. Errors: those of make() for a motion, and those of the stream, here and for
+  /// each pose.
   [[nodiscard]] static Result<NormalSampler> make(MotionStream& stream, const SampleOptions& options);
 
   /// Computes the pose at a time in seconds. Prepares the segment that contains this time, unless the last request was
-  /// for the same segment. Errors: those of find_instant(); kUsage if the sampler plays steps and no step is at this
+  /// for the same segment. Errors: those of find_instant(); kUsage if the options have stepping and no step is at this
   /// time.
   [[nodiscard]] Result<Pose> at_time(double time);
 
   /// Computes the pose at the weights of blend shapes. Errors: those of check_weights(); kUsage for weights with which
-  /// a vertex exceeds the range of float32 and, with a scheme, for weights that are not between the base and one
-  /// target.
+  /// a vertex exceeds the range of float32 and, with a scheme, for weights that are not all 0 except for one target's
+  /// weight in [0, 1].
   [[nodiscard]] Result<Pose> at_weights(std::span<const double> weights);
 
   /// Computes the pose of keyframe 0, which is the only pose of a mesh at rest. Precondition: if the motion is read as
@@ -171,7 +172,8 @@ class NormalSampler {
   MotionStream* stream_;
   const Motion* motion_;  // the motion of the stream
   SampleOptions options_;
-  // The groups of vertices or corners, to which prepared normals refer; nullptr for faces.
+  // The corners that share a normal, to which curves_ and scheme_normals_ refer; nullptr for faces, which need no
+  // groups.
   std::unique_ptr<const NormalGroups> groups_;
   NormalCurves curves_;                            // the curves of the current segment
   std::shared_ptr<SchemeNormals> scheme_normals_;  // the scheme for the current segment; nullptr without a scheme

@@ -40,7 +40,7 @@ constexpr double kLongestOfThree = 1.7320509;  // the largest length of a vector
 constexpr double kCutting = 0x1p-46;
 
 // Returns the factor that scales a vector with the largest component `largest` to a largest component of 1. Returns 1
-// for the zero vector, so that its error keeps its unit.
+// for the zero vector, whose error is then not scaled.
 double scale_of(double largest) { return largest == 0 ? 1 : 1 / largest; }
 
 // Divides a quadratic that is certainly zero at an end of [0, 1] by t or by 1 - t. The quotient has the same direction

@@ -184,7 +184,7 @@ CurvePiece SphericalCurve::over(double a, double b) const noexcept {
       const double most = turn + half * (from.speed + to.speed) + from.across + to.across + 1e-9;
       if (!(most < kMostTurn)) return {{}, kInfinity, {}, kInfinity, 0};
       // If one end of an arc with the angle T moves by 1, a point at a share of the arc moves by sin(share T) / sin T.
-      // `factor` bounds this for the shares on this piece.
+      // `factor` bounds this quotient for the shares on this piece.
       const double sine = portable::sin(most);
       const auto factor = [most, sine](double share) {
         if (most < 1e-6) return share * (1 + 1e-9);

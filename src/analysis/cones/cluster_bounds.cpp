@@ -20,8 +20,8 @@ constexpr std::size_t kAxisRefinements = 10;
 // culling test.
 constexpr double kWidest = 0.995;
 constexpr double kTestSlack = 0x1p-20;  // the error of the culling test in float32: some ten roundings of 2^-24
-// The factor by which a bound is enlarged, so that rounding the bound up to float and the roundings before cannot make
-// it too small.
+// The factor by which a bound is enlarged, so that rounding the bound to float, and the roundings before, cannot make
+// the bound too small.
 constexpr double kRoundUp = 1 + 0x1p-22;
 constexpr double kSumRounding = 0x1p-46;  // relative rounding error of sums of products in double
 constexpr double kSteps = 127;            // number of steps of a component in 8 bits, from 0 to 1
@@ -100,7 +100,7 @@ class Cluster {
         s = std::fmax(s, (height[k] + error * distance + 2 * p.error * size[k]) / (along[k] - error));
       }
     }
-    // The point is moved further back along the axis, by more than rounding can have moved it forward.
+    // The point is moved further back along the axis, by more than rounding can have moved the point forward.
     const double cosine = std::sqrt((1 - double{cone.sine}) * (1 + double{cone.sine}));
     s += 0x1p-22 * (length(center) + s) / cosine + 0x1p-120;
     const Vec3d point = center - s * axis;

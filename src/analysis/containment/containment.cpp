@@ -182,8 +182,8 @@ class Passage {
   }
 
  private:
-  // A root of the volume of a triangle (crossing_signs.h) that is the only one in a cell of time. At the root the point
-  // is between the edges of the triangle, so the point crosses the triangle.
+  // A root of the volume of a triangle (crossing_signs.h) that is its only root in a cell of time. At the root the
+  // point is between the edges of the triangle, so the point crosses the triangle.
   struct Root {
     std::uint32_t triangle;
     Cell cell;

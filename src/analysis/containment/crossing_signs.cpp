@@ -285,9 +285,9 @@ CrossingSigns::CrossingSigns(const std::array<MovingPoint, 3>& corners, const Mo
   }
   // Let u = 2^-53. A difference has one rounding, and a position at t has three more, so each has an error of at most 4
   // u of the largest coordinate along its axis. A coefficient of a side is a sum of 4 products of two factors, and a
-  // coefficient of a volume is a sum of 18 products of three. Each product has the errors of its factors and its own
-  // roundings, and every addition adds at most one rounding of the whole sum. In units of the product of the sizes, the
-  // error is below 4 (8 + 1 + 2) u = 44 u for a side and 18 (12 + 2 + 5) u = 342 u for a volume.
+  // coefficient of a volume is a sum of 18 products of three factors. Each product has the errors of its factors and
+  // its own roundings, and every addition adds at most one rounding of the whole sum. In units of the product of the
+  // sizes, the error is below 4 (8 + 1 + 2) u = 44 u for a side and 18 (12 + 2 + 5) u = 342 u for a volume.
   constexpr double kRounding = 0x1p-53;
   for (std::size_t axis = 0; axis < 3; ++axis)
     side_bound_[axis] = 64 * kRounding * size[first_of(axis)] * size[second_of(axis)];

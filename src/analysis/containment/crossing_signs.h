@@ -11,8 +11,8 @@
 /// Sides may be taken along any axis along which the normal n(t) is not zero throughout: if the point is in the plane
 /// of the triangle, it is between the edges if and only if the line meets the triangle. V changes from - to + when the
 /// point leaves the side to which the normal points. A polynomial over a cell [t0, t1] of time is judged by the signs
-/// of its Bernstein coefficients, which are polynomials in the corners at t0 and t1: no sign change, no root; one sign
-/// change, one root (Descartes).
+/// of its Bernstein coefficients, which are polynomials in the corners at t0 and t1: without a change of sign the
+/// polynomial has no root, and with one change of sign it has exactly one root (Descartes).
 ///
 /// Ties       A point may go exactly through an edge, or stay in a plane. So all signs are computed as if the point
 ///            were moved by e = (e1, e2, e3), infinitely small with e1 >> e2 >> e3 > 0 (simulation of simplicity):

@@ -38,7 +38,7 @@ class DeltaFit {
  public:
   explicit DeltaFit(DeltaNormals start);
 
-  /// Returns the present deltas, which are those of the start until the first solve(), and then the result of the last
+  /// Returns the present deltas, which are the start deltas until the first solve(), and then the result of the last
   /// solve().
   [[nodiscard]] const DeltaNormals& deltas() const noexcept { return deltas_; }
 

@@ -1,11 +1,12 @@
-// The direction of the line u0 + w (s u1 - u0) moves along the great circle from u0 to u1, and s only changes its
-// speed. For each w, the angle between the line and n(w) decreases with s while the line is behind n(w), seen along the
-// circle, and increases when the line is ahead. Hence, if all angles are below 90 degrees, their maximum over w has a
-// single minimum in s. At this s, the worst angle behind equals the worst angle ahead, so s is the root of a monotone
-// function.
+// The line u0 + w (s u1 - u0) leads from u0 to s u1. Its direction moves along the great circle from u0 to u1, and s
+// only changes the speed of this direction. For each w, the angle between the line and the exact normal n(w) decreases
+// with s while the line is behind n(w), seen along the circle, and increases when the line is ahead. Hence, if all
+// angles are below 90 degrees, their maximum over w has a single minimum in s. At this s, the worst angle behind equals
+// the worst angle ahead, so s is the root of a monotone function.
 //
-// The maximum over w is taken over samples; then the true maxima at that s are added to the samples, until the result
-// no longer improves (an exchange as in the algorithm of Remez).
+// The search takes the maximum over a list of sampled w. It then adds the w at which the angle for the found s is
+// largest to this list, and searches again, until the error can hardly become smaller (an exchange as in the algorithm
+// of Remez).
 
 #include "analysis/fits/end_delta.h"
 
@@ -81,7 +82,7 @@ class Samples {
   }
 
   // Adds samples at the weights that divide the turn of the line from `from` to `to` into roughly equal angles. The
-  // line turns fast near an end if one of the two vectors is much shorter than the other.
+  // line turns fast near an end if `from` or `to` is much shorter than the other vector.
   void follow(const Vec3d& from, const Vec3d& to) noexcept {
     const double ratio = length(to) / length(from);
     constexpr int kShares = 8;
@@ -317,8 +318,8 @@ EndDelta best_end_delta(const ControlNormals& normals) noexcept {
   double best_scale = 1;
   ScaleSearch search(u0, u1);
   constexpr int kExchanges = 6;
-  // The smallest ratio of two errors that counts as a gain, and the largest error that counts as exact, both as keys.
-  // In angles, the gain is half as much.
+  // The smallest ratio of two errors that counts as a gain, and the largest error that counts as exact, both as keys. A
+  // key is about the square of the angle, so in angles the gain is half as much.
   constexpr double kGain = 1 + 1e-3, kExact = 1e-24;
   for (int round = 0; round <= kExchanges; ++round) {
     const double s = portable::exp(log_scale);

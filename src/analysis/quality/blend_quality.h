@@ -35,7 +35,7 @@ namespace chronormal::inline internal {
 /// each element separately. u(w) is the exact unit normal. The rows may not determine the deltas, if there are fewer
 /// rows than targets or if some weights always change together. The result is then closest to the end-point deltas.
 /// Cost: an evaluation for each row, and for each element a linear system with one equation for each target that moves
-/// it. Precondition: weights is (rows, targets).
+/// the element. Precondition: weights is (rows, targets).
 [[nodiscard]] DeltaNormals best_deltas(BlendNormals& normals, std::span<const double> weights);
 
 /// Measures the angles between the rendered and the exact normals, over all rows. Elements count in a row if their

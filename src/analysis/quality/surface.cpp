@@ -94,10 +94,10 @@ bool has_twice(std::span<const std::uint32_t> outline, std::vector<std::uint32_t
   return std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end();
 }
 
-// Rotates the points of a face, which are all different, so that the lowest point comes first. Then reverses the others
-// if necessary, so that the lower one of the first point's neighbours comes second. Faces with the same outline are
-// then equal. Returns true if the points were not reversed; faces with equal outlines and equal results have the same
-// winding.
+// Rotates the points of a face, which are all different, so that the lowest point comes first. Then reverses the other
+// points if necessary, so that the lower of the two neighbours of the first point comes second. Faces with the same
+// outline are then equal. Returns true if the points were not reversed; faces with equal outlines and equal results
+// have the same winding.
 bool make_canonical(std::span<std::uint32_t> outline) {
   std::rotate(outline.begin(), std::min_element(outline.begin(), outline.end()), outline.end());
   if (outline[1] < outline.back()) return true;
@@ -206,7 +206,7 @@ Surface survey(const Topology& topology, const Points& points) {
   Surface surface;
   std::vector<bool> is_copy(topology.face_count());
   // Faces and connected pieces are surveyed at the same time, since the two functions write different members. The
-  // edges come later, because they need the copies among the faces.
+  // edges are surveyed later, because they need the copies among the faces.
   parallel_for(2, [&](std::size_t i) {
     if (i == 0)
       survey_faces(topology, points, is_copy, surface);

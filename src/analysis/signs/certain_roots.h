@@ -1,12 +1,12 @@
-/// Finds the roots of a polynomial whose coefficients are only known up to an error bound. It succeeds if the number of
-/// roots is certain despite the errors.
+/// Finds the roots of a polynomial whose coefficients are only known up to an error bound. The search succeeds if the
+/// number of roots is certain despite the errors.
 ///
 /// In Bernstein form the coefficients bound the polynomial, and by Descartes' rule one change of sign among them means
 /// exactly one root. So a part of [0, 1] is settled in two cases. Either all coefficients have the same certain sign.
-/// Or the coefficients begin with one certain sign, go on with some of unknown sign, and end with the other certain
-/// sign. Any other part is halved, up to kMostHalvings times. If a part is then still not settled, integers decide
-/// (analysis/signs/exact_roots.h). The only root of a part is bracketed by two places at which the polynomial is
-/// certainly not zero.
+/// Or the coefficients begin with one certain sign, go on with some coefficients of unknown sign, and end with the
+/// other certain sign. Any other part is halved, up to kMostHalvings times. If a part is then still not settled,
+/// integers decide (analysis/signs/exact_roots.h). The only root of a part is bracketed by two places at which the
+/// polynomial is certainly not zero.
 #ifndef CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 #define CHRONORMAL_ANALYSIS_SIGNS_CERTAIN_ROOTS_H_
 

@@ -29,7 +29,7 @@
 namespace chronormal::inline internal {
 
 /// A root in [lower, upper]. The two bounds are equal, or are doubles with no double between them. Several roots
-/// between two such bounds count as one.
+/// between two such bounds count as one root.
 struct ExactRoot {
   double lower = 0, upper = 0;
   int before = 0, after = 0;  ///< signs of f before and after the root; 0 before t = 0 and after t = 1
@@ -173,7 +173,7 @@ class SturmChain {
   int last_ = 0;
 };
 
-// Doubles are numbered in ascending order: 0 has the number 0, and those in [2^-200, 1] follow.
+// Doubles are numbered in ascending order: 0 has the number 0, and the doubles in [2^-200, 1] follow.
 inline constexpr std::uint64_t kBelowFirstDouble = (std::uint64_t{1023 - 200} << 52) - 1;
 inline constexpr std::uint64_t kLastDouble = (std::uint64_t{1023} << 52) - kBelowFirstDouble;
 [[nodiscard]] inline double numbered_double(std::uint64_t number) noexcept {

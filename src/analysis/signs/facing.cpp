@@ -106,7 +106,7 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
   }
   constexpr double kRoundings = 64;  // number of roundings in the coefficients and in restrict_to()
   bound += kRoundings * kUnitRoundoff * size;
-  // If the front is certainly seen at one of these five times and the back at another, the answer is kBoth.
+  // If the front is certainly seen at one of the five times below, and the back at another, the answer is kBoth.
   bool shows_front = false, shows_back = false;
   for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
     const double t = share == 1 ? t1 : t0 + share * (t1 - t0);
@@ -122,9 +122,9 @@ std::optional<ShutterSide> side_by_glance(const FacingCoefficients& f, std::size
 }
 
 // Returns a bound of the error of any component of the control normals of a triangle. In n0 and n1, a component is a
-// sum of two products of a component of one edge and a component of the other; in m it is half of a sum of four such
-// products. The error is at most 48 u of the largest such product by core/rounding.h, and smaller for normals that were
-// computed in integers.
+// sum of two products of a component of one edge and a component of the other edge; in m it is half of a sum of four
+// such products. The error is at most 48 u of the largest such product by core/rounding.h, and smaller for normals that
+// were computed in integers.
 double rounding_of_triangle(const Segment& segment, std::span<const std::uint32_t> corners) noexcept {
   const auto largest_edge = [&segment, corners](std::size_t c) {
     const auto edge = [corners, c](const SegmentEnd& end) { return max_abs(end.edge(corners[0], corners[c])); };
@@ -150,8 +150,8 @@ void put(const Segment& segment, std::size_t face, const FacingCoefficients& f, 
     roots.p[k][lane] = k == 0 || k == M - 1 ? f.values[k][i] : kShareOfInner * f.values[k][i];
     bound = std::max(bound, f.bounds[k][i]);
   }
-  // There are up to 16 roundings: of the eye and the vector to it, of the products and sums of a dot product, and of a
-  // mean of three numbers. The terms of a dot product are at most bound / kDotShare.
+  // There are up to 16 roundings: of the position of the eye and the vector to the eye, of the products and sums of a
+  // dot product, and of a mean of three numbers. The terms of a dot product are at most bound / kDotShare.
   constexpr double kRoundings = 16;
   roots.error[lane] = f.reach[i] * rounding_of(segment, face) + kRoundings * kUnitRoundoff / kDotShare * bound;
 }

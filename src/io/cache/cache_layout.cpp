@@ -29,7 +29,7 @@ Status decode_coordinates(const CacheLayout& layout, const std::string& name, st
 
 Status read_sample(const CacheLayout& layout, const PositionedFile& file, const std::string& name, std::size_t k,
                    std::span<float> positions) {
-  // number of coordinates in a block, which is small enough to stay in cache until it is checked
+  // the number of coordinates in a block, so small that a block stays in cache until its coordinates are checked
   constexpr std::size_t kBlock = std::size_t{1} << 15;
   std::vector<char> bytes(std::min(kBlock, positions.size()) * layout.item_size);
   for (std::size_t first = 0; first < positions.size(); first += kBlock) {

@@ -19,7 +19,8 @@ class Python {
  public:
   explicit Python(std::string_view text) noexcept : text_(text) {}
 
-  // Removes the character `c` if it is the next one after blanks. Returns false if another character comes next.
+  // Removes the character `c` if this is the next character after blanks. Returns false if another character comes
+  // next.
   bool sign(char c) {
     while (!text_.empty() && (scan::is_blank(text_.front()) || text_.front() == '\n')) text_.remove_prefix(1);
     if (!text_.starts_with(c)) return false;

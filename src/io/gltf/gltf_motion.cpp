@@ -27,8 +27,8 @@ namespace {
 
 using gltf::WeightCurve;
 
-// The largest number of pieces into which an animation is cut. An animation of a face that speaks for 15 minutes needs
-// some 200,000 pieces at the default tolerance.
+// The largest number of pieces into which an animation is cut. An animation of a human face that speaks for 15 minutes
+// needs some 200,000 pieces at the default tolerance.
 constexpr std::size_t kMostPieces = 250000;
 
 // A collector of the primitives of a motion in order, with the targets and tracks that move them.
@@ -50,8 +50,8 @@ class Assembly {
     }
   }
 
-  // Adds the meshes for which wanted() is true. If the motion is wanted in the world, adds each mesh once for every
-  // node that carries it.
+  // Adds the meshes for which wanted() is true. If the motion is wanted in world coordinates, adds each mesh once for
+  // every node that carries this mesh.
   template <class Wanted>
   void add_meshes(const Wanted& wanted) {
     if (world_) {
@@ -245,8 +245,9 @@ class Assembly {
   [[nodiscard]] Motion& motion() noexcept { return result_.motion; }
   void set_curve_error(double error) noexcept { result_.curve_error = error; }
 
-  // Finishes the motion. `beyond` is the number of faces whose normals, moved by skins, miss the tolerance, and
-  // key_times has the ends of the intervals that were cut into pieces; key_times is empty if no interval was cut.
+  // Finishes the motion. `beyond` is the number of faces whose normals exceed the tolerance because skins move the
+  // faces, and key_times has the ends of the intervals that were cut into pieces; key_times is empty if no interval was
+  // cut.
   [[nodiscard]] Result<GltfMotion> finish(std::size_t beyond = 0, std::vector<double> key_times = {}) {
     if (has_skins()) {
       CutPath& cut = result_.cut.emplace();
@@ -502,9 +503,9 @@ class AnimationReader {
                              std::to_string(kMostPieces) + " straight pieces");
   }
 
-  // Returns the number of pieces, from `fewest` to `most`, into which an interval between two keys is cut, so that
-  // normals behind skins stay within the tolerance. Also returns the number of faces whose normals exceed the
-  // tolerance.
+  // Returns the number of pieces, from `fewest` to `most`, into which an interval between two keys is cut, so that the
+  // normals of faces that skins move stay within the tolerance. Also returns the number of faces whose normals exceed
+  // the tolerance.
   [[nodiscard]] Pieces pieces_behind_skins(double from, double to, std::size_t fewest, std::size_t most) {
     struct OfParts {
       std::vector<GltfSkinPieces> parts;
@@ -548,8 +549,8 @@ class AnimationReader {
     return {count, count > pieces.count ? of_parts.not_within(nullptr, count).size() : pieces.beyond};
   }
 
-  // Sets the number of pieces into which each interval between two keys is cut, so that normals behind skins stay
-  // within the tolerance. An interval gets at most as many pieces as --max-expansion names, or fewer if all keyframes
+  // Sets the number of pieces into which each interval between two keys is cut, so that the normals of faces that skins
+  // move stay within the tolerance. An interval gets at most options_.most_pieces pieces, or fewer if all keyframes
   // would need more memory than is allowed. Counts the faces that stay beyond the tolerance.
   void set_pieces_behind_skins(std::vector<std::size_t>& counts) {
     const std::vector<std::size_t> fewest = counts;

@@ -1,7 +1,7 @@
 /// Reads the motions of a glTF file, which are its morph targets or one of its animations, as keyframes and segments.
 /// Private to io; other code gets motions from an Input (chronormal/io/input.h).
 ///
-///     targets      keyframe 0 is the base, keyframe k has target k - 1 of every mesh at weight 1; segments 0 -> k
+///     targets      keyframe 0 is the base, keyframe k has target k - 1 of every mesh at weight 1; segments from 0 to k
 ///     animation    one keyframe for each time at which any of its weight tracks has a key; two if weights step there
 ///
 /// LINEAR tracks are exact: weights, and so positions, are linear between keys. STEP tracks rest between keys and jump
@@ -9,9 +9,9 @@
 /// into straight pieces. The pieces are so short that the distance of each vertex from its true position is below
 /// curve_error.
 ///
-/// Each mesh is a separate body, and so is each node with a mesh. Vertices are those of the file, not welded, part by
-/// part. The parts have the order of meshes and primitives for targets, and the order of nodes and primitives for an
-/// animation or in the world.
+/// Each mesh is a separate body. A mesh that is read for several nodes is a separate body for each node. Vertices are
+/// those of the file, not welded, part by part. The parts have the order of meshes and primitives for targets, and the
+/// order of nodes and primitives for an animation or in the world.
 ///
 /// Positions are in the space of the mesh, or in the world, where the nodes of the file move them. Animations of nodes
 /// are not applied; by the specification, a node with a skin does not move its mesh. If a node mirrors, faces are
@@ -19,7 +19,7 @@
 ///
 /// On request, skins move vertices, always in the world, and an animation may move a mesh by its joints alone. Joints
 /// move vertices on curves, which are cut into straight pieces, so that normals are within kPathTolerance of the
-/// normals on the curves (gltf_skinned_part.h). Vertices behind a skin are rounded to float32.
+/// normals on the curves (gltf_skinned_part.h). Vertices that a skin moves are rounded to float32.
 #ifndef CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 #define CHRONORMAL_IO_GLTF_GLTF_MOTION_H_
 
@@ -44,8 +44,8 @@ struct GltfMotionOptions {
   bool skins = false;     ///< true if skins move vertices
   /// The largest number of straight pieces into which the curves of vertices that skins move are cut between two keys.
   std::size_t most_pieces = chronormal::kMostPieces;
-  /// The largest allowed distance between a cut cubic spline and the true one, relative to the diagonal of the bounding
-  /// box.
+  /// The largest allowed distance between the straight pieces of a cubic spline and the spline itself, relative to the
+  /// diagonal of the bounding box.
   double curve_tolerance = 1e-5;
   /// The largest memory for keyframes in bytes. The limit is needed because a small file can ask for much memory.
   std::size_t most_bytes = addressable(std::uint64_t{4} << 30);
@@ -54,8 +54,8 @@ struct GltfMotionOptions {
 struct GltfMotion {
   Motion motion;
   std::vector<GltfPart> parts;
-  /// A bound of the distance between the cut cubic splines and the true ones, in units of the file. The bound is 0
-  /// without cubic splines.
+  /// A bound of the distance between the straight pieces of cubic splines and the splines themselves, in units of the
+  /// file. The bound is 0 without cubic splines.
   double curve_error = 0;
   /// The times of the keys of an animation, ascending, without the times at which cubic splines were cut.
   std::vector<double> key_times = {};

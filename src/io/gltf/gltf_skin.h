@@ -30,11 +30,11 @@ struct JointShare {
   double share = 0;
 };
 
-/// Bounds of the motion of a bone, which is a joint or a node above one, over an interval of time in which no curve has
-/// a key. The first three bound the linear part of its matrix in the world. `path_bend` bounds the second derivative of
-/// the offset of this matrix, as the sum of what each bone from the root to this one adds. If the paths from the root
-/// to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how the joint bends relative
-/// to that bone.
+/// Bounds of the motion of a bone, which is a joint or a node above a joint, over an interval of time in which no curve
+/// has a key. `size`, `speed` and `bend` bound the linear part of the bone's matrix in the world. `path_bend` bounds
+/// the second derivative of the offset of this matrix, as the sum of what each bone from the root to this bone adds. If
+/// the paths from the root to two joints part at a bone, the `path_bend` of a joint minus that of this bone bounds how
+/// the joint bends relative to that bone.
 struct BoneBounds {
   double size = 1, speed = 0, bend = 0;  ///< of its value, and of its first and second derivative in time
   double path_bend = 0;

@@ -2,9 +2,9 @@
 //
 // Over an interval of length h, a curve f with |f''| <= b has |f| at most h^2 b / 8 above the larger of its values at
 // the ends, and f' differs from the slope of the chord by at most h b / 2. A rotation that turns by w(t) per second has
-// a matrix R with |R'| = w and |R''| <= w^2 + |w'|. The product rule gives all other bounds: from a joint's scale,
-// rotation and translation those of its matrix, and from the roots down those of the joints. The length of a matrix is
-// that of the longest image of a unit vector.
+// a matrix R with |R'| = w and |R''| <= w^2 + |w'|. The product rule gives all other bounds: the bounds of a joint's
+// own matrix follow from those of its scale, rotation and translation, and the bounds of matrices in the world follow
+// from the roots down to the joints. The length of a matrix is the length of the longest image of a unit vector.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
-/// A primitive behind a skin, in a motion: where its joints move its vertices, and into how many straight pieces their
-/// curved paths must be cut. Private to io.
+/// A primitive of a motion that a skin moves. Computes where joints move the vertices, and into how many straight
+/// pieces the curved paths of the vertices must be cut. Private to io.
 ///
 /// A vertex is at the sum of w_j M_j p, for the joint matrices M_j = W_j B_j (io/gltf/gltf_skin.h), its shares w_j, and
 /// its position p before the skin, which morph targets move. For an edge from p to q, with shares v_j and w_j, this is
@@ -39,8 +39,8 @@ class GltfSkinnedPart {
     return std::span(shares_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
   }
 
-  /// Returns the position of a vertex of the part behind the skin. `pose` has the joint matrices, and `before` is the
-  /// position before the skin.
+  /// Returns the position to which the skin moves a vertex of the part. `pose` has the joint matrices, and `before` is
+  /// the position before the skin moves the vertex.
   [[nodiscard]] Vec3d place(std::span<const AffineTransform> pose, std::size_t vertex,
                             const Vec3d& before) const noexcept;
 
@@ -50,12 +50,13 @@ class GltfSkinnedPart {
   std::vector<JointShare> shares_;
 };
 
-/// The positions of a part before its skin, over an interval of time in which no curve has a key.
+/// The positions that the vertices of a part have before its skin moves them, over an interval of time in which no
+/// curve has a key.
 struct GltfUnskinned {
   double from = 0, to = 1;
   /// Writes the positions of some vertices of the part at a time.
   std::function<void(std::span<const std::uint32_t> vertices, double time, bool just_before, std::span<Vec3d> all)> at;
-  /// A bound of the acceleration |p''| of each vertex before the skin; empty if all are 0.
+  /// A bound of the acceleration |p''| of each vertex before the skin moves the vertex; empty if all bounds are 0.
   std::vector<double> bend;
 };
 

@@ -1,12 +1,12 @@
-// The smallest cone around three unit vectors is the cone of the widest pair if it contains the third vector, that is,
-// if the triangle has no acute angle at the third vector. Otherwise the cone goes through all three, around the
-// circumcentre of the triangle. Its axis is found in float32, and the cone is then made wide enough for the rounded
+// The smallest cone around three unit vectors is the cone of the widest pair if this cone contains the third vector,
+// that is, if the triangle has no acute angle at the third vector. Otherwise the cone goes through all three, around
+// the circumcentre of the triangle. Its axis is found in float32, and the cone is then made wide enough for the rounded
 // axis: its sine is the largest sine of the angles between the axis and the three vectors, plus, with u = 2^-24,
 //     2^-20 of itself, for the lengths of axis and vectors, the root and the quotient
 //     5 u: a vector loses 2 u to float32, and a cross product of unit vectors 2.5 u
 //     the relative error of a vector, which is the sine of the angle of that error
-// By sin(a + b) <= sin a + sin b, this sum is at least the sine of the angle to any exact vector, and if it is at most
-// 1 that angle is at most 90 degrees.
+// By sin(a + b) <= sin a + sin b, this sum is at least the sine of the angle to any exact vector. If the sum is at most
+// 1, that angle is at most 90 degrees.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <algorithm>

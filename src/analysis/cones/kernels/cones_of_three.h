@@ -33,7 +33,7 @@ struct Restriction {
   }
 };
 
-/// The number of elements whose flags are the bits of one number.
+/// The number of elements whose flags share one number, with one bit for each element.
 inline constexpr std::size_t kConesPerFlags = 16;
 
 /// Writes the cone around the three control normals of each element. The error of each vector is at most `share` times

@@ -1,5 +1,5 @@
-// A tile of sums, four rows by two vectors, stays in registers while the loop runs over the rows of both matrices. The
-// loop then needs only six loads for each eight additions.
+// A tile of sums, four rows by two SIMD vectors, stays in registers while the loop runs over the rows of both matrices.
+// The loop then needs only six loads for each eight additions.
 #include "analysis/fits/kernels/products.h"
 
 #undef HWY_TARGET_INCLUDE

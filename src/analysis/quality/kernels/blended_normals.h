@@ -15,7 +15,7 @@
 namespace chronormal::inline internal {
 
 /// The padding of planes of sums and weights. The size of such a plane is a multiple of this number of poses, which is
-/// the number of floats in the widest vector.
+/// the number of floats in the widest SIMD vector.
 inline constexpr std::size_t kPosePadding = 16;
 
 /// A finite vector, and its weight in each pose. The weights are zero outside [first, end).

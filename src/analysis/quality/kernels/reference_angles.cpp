@@ -24,8 +24,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles are stored in groups of eight, which is the number of doubles in the widest vector. Value k of triangle i
-// of a group is at k * kGroup + i.
+// Triangles are stored in groups of eight, which is the number of doubles in the widest SIMD vector. Value k of
+// triangle i of a group is at k * kGroup + i.
 constexpr std::size_t kGroup = 8, kValues = 20;
 // A normal whose size is below this share of the size of its terms is doubtful, so reference_normals() computes that
 // normal. The share equals kDoubtfulShare in reference_normals.cpp.

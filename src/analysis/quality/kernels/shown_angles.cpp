@@ -19,9 +19,9 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Triangles are stored in groups of eight, which is the number of doubles in the widest vector. Value k of triangle i
-// of a group is at k * kTriangles + i. The values are x, y, z of each corner at the start, and then x, y, z of each
-// corner at the end.
+// Triangles are stored in groups of eight, which is the number of doubles in the widest SIMD vector. Value k of
+// triangle i of a group is at k * kTriangles + i. The values are x, y, z of each corner at the start, and then x, y, z
+// of each corner at the end.
 constexpr std::size_t kTriangles = 8, kPositionValues = 18;
 
 }  // namespace

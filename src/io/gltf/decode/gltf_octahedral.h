@@ -6,7 +6,7 @@
 ///            which thereby tells the number of bits: (12, -3, 127, w) or (193, -51, 2047, w). The result is the
 ///            normal, with length 127 or 32767, in place of the first three numbers; w does not change. An element
 ///            without a direction (0, 0, 0, w) does not change either.
-/// Precision  the extension leaves the last digit open. Here it equals, bit for bit, the digit of the decoder in
+/// Precision  the extension leaves the last digit of a number open. Here this digit is always that of the decoder in
 ///            browsers: npm meshoptimizer, compiled for SIMD. Meshoptimizer's other decoders differ in one 16-bit
 ///            number of 2,000 and in no 8-bit number; Debian's library uses a reciprocal square root of 12 bits for
 ///            8-bit numbers, which differs between processors.

@@ -96,8 +96,8 @@ struct Part {
   std::size_t view = 0, offset = 0, length = 0;
 };
 
-// Returns the number of bytes from the first element to the end of the last one. An element has `size` bytes, and the
-// next one begins `stride` bytes later. Returns nothing on overflow.
+// Returns the number of bytes from the first element to the end of the last element. An element has `size` bytes, and
+// the next one begins `stride` bytes later. Returns nothing on overflow.
 std::optional<std::size_t> length_of(std::size_t count, std::size_t stride, std::size_t size) {
   if (count == 0) return 0;
   if (stride > 0 && count - 1 > (static_cast<std::size_t>(-1) - size) / stride) return std::nullopt;
@@ -244,7 +244,7 @@ UnusedArrays find_unused_arrays(const Model& model, std::span<const std::optiona
     parts[a] = std::move(*found);
     const bool is_dead = was[a] && !is[a];
     // A view of interleaved arrays is kept completely, because three.js reads a whole stride for every element, also
-    // for the last one.
+    // for the last element.
     if (const std::optional<std::size_t> view = model.accessors[a].view; view && !is_dead)
       is_whole[*view] = is_whole[*view] || model.views[*view].stride.value_or(0) > model.accessors[a].element_size();
     if (is_dead && !parts[a].empty()) unused_accessors.push_back(a);

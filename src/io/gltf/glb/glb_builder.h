@@ -59,9 +59,9 @@ class GlbBuilder {
   std::size_t add_table(std::size_t rows, std::size_t width,
                         const std::function<void(std::size_t row, std::span<float> values)>& fill);
 
-  /// Renumbers the accessors of arrays: accessor order[i] becomes accessor i after that of the triangles, and the bytes
-  /// of the arrays get the same order. Nothing may be added after this call. `order` must contain each accessor of an
-  /// array once.
+  /// Renumbers the accessors of arrays: accessor order[i] becomes the i-th accessor after the accessor of the
+  /// triangles, with i from 0, and the bytes of the arrays get the same order. Nothing may be added after this call.
+  /// `order` must contain each accessor of an array once.
   void put_in_order(std::span<const std::size_t> order);
 
   /// Moves the spool out, so that it can be cleared and used again.

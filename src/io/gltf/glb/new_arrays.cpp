@@ -18,8 +18,8 @@ namespace chronormal::inline internal::gltf {
 namespace {
 
 constexpr std::size_t kFloat = 5126, kArrayBuffer = 34962;
-// The number of characters by which the JSON of a sparse accessor is longer than that of a dense one. The number is an
-// estimate.
+// The number of characters by which the JSON of a sparse accessor is longer than the JSON of a dense accessor. The
+// number is an estimate.
 constexpr std::size_t kSparseJson = 130;
 
 void pad(std::string& bytes) { bytes.resize((bytes.size() + 3) / 4 * 4, '\0'); }
