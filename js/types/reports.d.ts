@@ -31,9 +31,9 @@ export interface AuditPlace {
   primitive?: number | null;
   vertex: number;
   segment?: number;
-  /** Present if the weight of a target or an expression moves. */
+  /** The weight at this place. Present if the weight of a target or an expression moves. */
   weight?: number;
-  /** Present for an animation or a sequence. */
+  /** The time in seconds. Present for an animation or a sequence. */
   time?: number;
   /** The number of the pose, if the call asked for poses. */
   pose?: number;
@@ -340,7 +340,7 @@ interface ComparedInput {
 export interface SchemesReport extends Head<'compare', 1> {
   input: ComparedInput & CurvedPath & { segments: number };
   elements: Elements;
-  /** Present for vertices and corners. */
+  /** Present if the elements are vertices or corners. */
   weighting?: Weighting;
   samples: number;
   schemes: SchemeReport[];

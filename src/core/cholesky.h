@@ -21,7 +21,8 @@ class Cholesky {
   /// Factors a matrix (n, n), of which only the lower half is read. Rounding could make a squared pivot negative, so
   /// squared pivots smaller than `least` are replaced by `least`, which must be positive.
   Cholesky(std::vector<double> matrix, std::size_t n, double least) : lower_(std::move(matrix)), n_(n) {
-    // Each column is subtracted from everything to its right, so that inner loops go along rows.
+    // The product of each column with itself is at once subtracted from everything to the right of the column, so that
+    // inner loops go along rows.
     std::vector<double> column(n_);
     for (std::size_t k = 0; k < n_; ++k) {
       const double pivot = std::sqrt(std::max(lower_[k * n_ + k], least));

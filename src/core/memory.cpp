@@ -1,4 +1,4 @@
-// Allocates memory for arrays that are streamed, with huge pages for large arrays.
+// Allocates memory for arrays that are read or written from front to back, with huge pages for large arrays.
 #include "core/memory.h"
 
 #include <cassert>

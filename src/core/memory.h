@@ -77,7 +77,8 @@ class AlignedArray {
   AlignedBytes bytes_;
 };
 
-/// An allocator with which a std::vector takes memory from AlignedBytes, for arrays that are streamed.
+/// An allocator with which a std::vector takes memory from AlignedBytes, for arrays that are read or written from front
+/// to back.
 template <class T>
 struct AlignedAllocator {
   using value_type = T;

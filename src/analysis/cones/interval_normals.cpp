@@ -36,7 +36,8 @@ NormalCone cone_around(IntervalNormals part) noexcept {
   const std::array<Vec3d*, 3> vectors{&c.n0, &c.m, &c.n1};
   const auto first = std::find_if_not(vectors.begin(), vectors.end(), [](const Vec3d* v) { return *v == Vec3d{}; });
   if (first == vectors.end()) return NormalCone::empty();
-  // Zero vectors are replaced by copies of another vector, which do not change the cone.
+  // cones_of_three() finds no cone for elements with zero vectors. Such vectors are therefore replaced by copies of
+  // another vector, which do not change the cone.
   for (Vec3d* const v : vectors) {
     if (*v == Vec3d{}) *v = **first;
   }

@@ -258,7 +258,8 @@ Result<GltfGeometry> GltfDocument::geometry(std::size_t mesh, std::size_t primit
     }
   }
 
-  // A compressed mesh may contain only some attributes of a primitive. The others are read from their accessors.
+  // A compressed mesh may contain only some attributes of a primitive. The other attributes are read from their
+  // accessors.
   if (Status status =
           state_->read(source.base, wanted.shading, geometry.positions, geometry.normals, geometry.tangents);
       !status)

@@ -477,7 +477,7 @@ class AnimationReader {
         size_ = std::max(size_, longest);
       }
     }
-    // If the base is a single point, the size of the targets counts instead.
+    // If the base is a single point, the diagonal is 0, so the size of the targets counts instead.
     size_ = std::max(portable::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 1e-3 * size_);
   }
 
@@ -551,7 +551,8 @@ class AnimationReader {
 
   // Sets the number of pieces into which each interval between two keys is cut, so that the normals of faces that skins
   // move stay within the tolerance. An interval gets at most options_.most_pieces pieces, or fewer if all keyframes
-  // would need more memory than is allowed. Counts the faces that stay beyond the tolerance.
+  // would need more memory than is allowed, but never fewer than its cubic splines need. Counts the faces that stay
+  // beyond the tolerance.
   void set_pieces_behind_skins(std::vector<std::size_t>& counts) {
     const std::vector<std::size_t> fewest = counts;
     std::vector<Pieces> pieces(counts.size());

@@ -31,7 +31,7 @@ class ReferenceTriangles {
  private:
   Segment segment_;
   IndexRange faces_;
-  // The values of each triangle that do not depend on t: 20 values per triangle, in groups of lanes.
+  // The values of each triangle that do not depend on t: 20 values per triangle, in groups of eight triangles.
   std::vector<double> edges_;
 };
 
