@@ -64,7 +64,7 @@ inline constexpr double kMostLinesPerFace = 1;
 }
 
 /// The result of lines_per_face() above which neighbours in the mesh are not neighbours in memory. Curves are then
-/// prepared from a copy of the positions at both ends, which takes kScatteredBytes per vertex.
+/// prepared from a copy of the positions at both ends of the segment, which takes kScatteredBytes per vertex.
 inline constexpr double kScatteredLines = 1;
 inline constexpr std::size_t kScatteredBytes = 8 * sizeof(float);
 

@@ -75,7 +75,7 @@ struct BendSums {
 };
 
 // Adds the contribution of keyframe `at` to the two sums that bend_of() divides. Its neighbours are the keyframes
-// `every` before and after it. Precondition: the stream holds all three.
+// `every` before and after it. Precondition: the stream holds these three keyframes.
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
@@ -252,8 +252,8 @@ std::vector<float> VelocityShares::velocities(std::span<const std::span<const fl
   return result;
 }
 
-// Returns the weights of the keyframes' positions in the velocity at key `at`. The velocity is the derivative, at this
-// key, of the polynomial in Lagrange form through this key and its neighbours.
+// Returns the weights of the keyframes' positions in the velocity at keyframe `at`. The velocity is the derivative, at
+// this keyframe, of the polynomial in Lagrange form through this keyframe and its neighbours.
 VelocityShares velocity_shares(std::span<const double> times, std::size_t at) {
   const bool is_end = at == 0 || at + 1 == times.size();
   const std::size_t used = std::min<std::size_t>(is_end ? 4 : 3, times.size());

@@ -112,7 +112,8 @@ std::vector<std::array<std::uint32_t, 3>> clipped(const std::vector<Point>& poin
   std::size_t at = 1;
   while (rest.size() > 3) {
     // Ears are cut in turn, so that triangles do not all meet in one corner. If there is no ear, a corner between two
-    // edges on one line is cut, whose triangle has no area. A polygon that crosses itself may have neither.
+    // edges on one line is cut, whose triangle has no area. A polygon that crosses itself may have neither an ear nor
+    // such a corner; then the next corner is cut.
     std::size_t found = rest.size();
     for (std::size_t i = 0; i < rest.size() && found == rest.size(); ++i)
       if (is_ear((at + i) % rest.size())) found = (at + i) % rest.size();

@@ -42,7 +42,7 @@ bool is_obj(std::string_view first_bytes) {
     if (keyword.empty() || keyword.starts_with('#')) continue;
     return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
   }
-  // The first bytes may contain only comments. The file may then be an OBJ file.
+  // If the first bytes contain nothing but comments, the rest of the file may be OBJ statements.
   return has_comment;
 }
 

@@ -35,14 +35,14 @@ struct Format {
   std::string_view name;  ///< name for messages and for the fuzz target: "obj"
   Holds holds;
   std::span<const std::string_view> extensions;  ///< extensions of file names in lower case and with the dot: ".obj"
-  /// Returns true if a file that begins with these bytes (a few hundred are enough) looks like this format. nullptr for
-  /// a format that is recognised only by its extension.
+  /// Returns true if a file that begins with these bytes (a few hundred are enough) looks like this format. The pointer
+  /// is nullptr for a format that is recognised only by its extension.
   bool (*recognises)(std::string_view first_bytes) = nullptr;
 
-  // read_mesh, read_motion or read_cache, whichever reads the kind of data that the format holds; the other two are
-  // nullptr. All three are nullptr for glTF, targets and descriptions of Maya caches, which cannot be read from one
-  // block of bytes alone. `name` is for messages. A reader of meshes subtracts the origin from positions
-  // (io/mesh/far_origin.h). Errors: kInvalidInput, always with a place.
+  // Only one of read_mesh, read_motion and read_cache is set: the function for the kind of data that the format holds.
+  // The others are nullptr. All three are nullptr for glTF, targets and descriptions of Maya caches, which cannot be
+  // read from one block of bytes alone. `name` is the name of the file for messages. A reader of meshes subtracts the
+  // origin from positions (io/mesh/far_origin.h). Errors: kInvalidInput, always with a place.
   Result<MeshFrame> (*read_mesh)(std::string_view bytes, const std::string& name, const Origin& origin) = nullptr;
   /// Reads a mesh with its smoothing groups and normals; nullptr if the reader of the format ignores them.
   Result<MeshFrame> (*read_shaded_mesh)(std::string_view bytes, const std::string& name,

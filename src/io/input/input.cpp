@@ -58,7 +58,8 @@ struct Opened {
   ReadMotion read;            // motion and other data; for a document, empty until they are requested
 };
 
-// Return the name of a file, its name without folders, or one name for several files, for messages and tables.
+// The next three functions return names for messages and tables: the name of a file, its name without folders, and one
+// name for several files.
 std::string name_of_file(const std::string& path) { return path == "-" ? "<stdin>" : path; }
 
 std::string short_name(std::string path) {
@@ -171,7 +172,7 @@ Result<MotionStream> stream_samples(const InputOptions& options, Motion outline,
   return MotionStream(std::move(outline), read, options.kept_bytes);
 }
 
-// Returns a cache with the times of a layout, but without positions.
+// Returns a cache that has the times of the samples of a layout, but no positions.
 Result<PositionCache> outline_of(const CacheLayout& layout) {
   PositionCache cache{layout.vertex_count, {}, layout.origin};
   for (const double time : layout.times) cache.samples.push_back({time, {}});

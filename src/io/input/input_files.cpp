@@ -120,8 +120,8 @@ std::string file_name_of(const std::string& path) { return path == "-" ? "<stdin
 
 namespace {
 
-// Returns far_origin(), or the place of a mesh whose vertices are all at one place in float32. Such a mesh may be small
-// and far away.
+// Returns far_origin(positions). If all vertices have the same position in float32, returns this position instead,
+// because the mesh may be small and far from (0, 0, 0).
 Origin far_origin_of_file(std::span<const float> positions) {
   const Origin origin = far_origin(positions);
   if (positions.size() < 3) return origin;
@@ -284,8 +284,8 @@ Status set_loop_velocities(const InputOptions& options, std::size_t count,
   std::vector<double> times;
   std::vector<std::size_t> which;
   for (std::size_t i = 0; i <= 2 * kBeside; ++i) {
-    // The first keyframe needed is kBeside before the loop begins. Adding kBeside rounds of the loop keeps its index
-    // from being negative.
+    // The first keyframe needed comes kBeside keyframes before the start of the loop. Adding kBeside rounds of the loop
+    // keeps the index `at` from being negative.
     const std::size_t rounds = kBeside, at = i + rounds * round - kBeside;
     times.push_back(chosen.keyframes[at % round].time +
                     (static_cast<double>(at / round) - static_cast<double>(rounds)) * period);

@@ -65,7 +65,7 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 
 /// Reads a mesh of a motion, whose positions are measured from wanted.origin. If the mesh is so far from this point
 /// that float32 loses digits, the mesh is read with an origin of its own, and its positions relative to wanted.origin
-/// are kept in positions and residuals together. Errors: those of read_mesh().
+/// are stored as float32 positions plus residuals (MeshFrame::residuals). Errors: those of read_mesh().
 [[nodiscard]] Result<MeshFrame> read_mesh_from(std::string_view bytes, const std::string& file_name,
                                                const std::string& place, const WantedOfMesh& wanted);
 

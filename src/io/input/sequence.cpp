@@ -170,8 +170,8 @@ Result<std::vector<double>> find_times(const std::vector<std::string>& files, co
 }
 
 // Selects the files that are examined for coordinates with more digits than float32 holds, if the first file has no
-// such coordinates. Selects the last file, whose mesh has most likely moved, and other files at even distances before
-// it.
+// such coordinates. Selects the last file, because its mesh has most likely moved, and other files at even distances
+// before the last one.
 std::vector<std::string> files_that_tell_digits(const std::vector<std::string>& files,
                                                 const std::vector<std::size_t>& frames) {
   constexpr std::size_t kMost = 32;
@@ -221,9 +221,9 @@ Result<ReadMotion> read_sequence(const std::vector<std::string>& files, const In
   motion.topology = std::move(first.value().topology);
   keep(std::move(first.value().positions), std::move(first.value().velocities), {});
 
-  // Each thread reads one frame at a time. Frames are read one after the other in two cases: from a resolver, which may
-  // not be thread-safe, and if normals are kept, because the normals of a frame are read only if the previous frame had
-  // normals.
+  // Each thread reads one frame at a time. Frames are read one after the other in two cases: if a resolver of the
+  // caller reads the files, because it may not be thread-safe, and if normals are kept, because the normals of a frame
+  // are read only if the previous frame had normals.
   const bool of_all = options.shading == KeepShading::kAll || options.shading == KeepShading::kRead;
   const bool keeps_normals = of_all && !read.normals.of_keyframes.empty();
   const std::size_t at_once = options.resolve || keeps_normals ? 1 : thread_count();

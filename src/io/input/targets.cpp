@@ -74,7 +74,7 @@ std::string keyframe_name(const std::string& path) {
   return utf8_of(is_packed_target ? stem.stem() : stem);
 }
 
-// Checks that options.max_expansion allows the memory of one more keyframe beside the keyframes and residuals
+// Checks that options.max_expansion allows the memory of one more keyframe in addition to the keyframes and residuals
 // that were read. Even a target file of a single line needs memory for all vertices, so a small file can ask for much
 // memory.
 Status ask_for_keyframe(const InputOptions& options, const std::string& path, const ReadMotion& read) {

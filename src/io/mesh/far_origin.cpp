@@ -5,8 +5,8 @@
 namespace chronormal::inline internal {
 
 std::string note_of_lost_digits(std::span<const float> positions) {
-  // The largest allowed step between neighbouring float32 numbers, as a fraction of the extent of the mesh. A larger
-  // step is worth a note.
+  // The largest allowed step between neighbouring float32 numbers, as a fraction of the extent of the mesh. If the step
+  // is larger, the user gets a note.
   constexpr double kMuch = 1e-4;
   double extent = 0, step = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -32,7 +32,8 @@ struct Inflater {
   }
 };
 
-// Unpacks all members of a gzip file, but no more than `most` bytes. The memory grows with the result.
+// Unpacks all members of a gzip file, but no more than `most` bytes. The memory in use grows with the result, not with
+// `most`.
 Result<std::string> unpack_gzip(std::string_view packed, std::size_t most, const std::string& name) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<uInt>::max(), kFirstRoom = 16384;
   Inflater inflater;

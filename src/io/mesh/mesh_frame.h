@@ -15,8 +15,8 @@ namespace chronormal::inline internal {
 struct MeshFrame {
   Topology topology;
   std::vector<float> positions;  ///< (V, 3), V = topology.vertex_count()
-  /// The rests of positions that float32 cannot hold (Motion::Keyframe). Readers of formats leave this list empty;
-  /// read_mesh_from() fills it.
+  /// The differences between the exact positions and `positions`, which float32 cannot hold (Motion::Keyframe). Readers
+  /// of formats leave this list empty; read_mesh_from() fills it.
   std::vector<double> residuals = {};
 
   /// True if the caller's origin was subtracted from positions, and this kept digits that float32 would have lost

@@ -51,7 +51,8 @@ struct Shading {
   std::vector<std::uint32_t> group_of_face;
   std::uint32_t group = 0;  // smoothing group of the faces that follow
   bool has_groups = false;  // true if there was a statement "s"
-  // The number of corners with an unknown normal, and the number of statements "s" without a word.
+  // The number of corners that refer to a normal which the file does not have, and the number of statements "s" without
+  // a group.
   std::size_t unknown_normals = 0, nameless_groups = 0;
 
   [[nodiscard]] std::size_t normal_count() const { return normals.size() / 3; }
@@ -101,8 +102,8 @@ class ObjReader {
   std::string joined_;              // text of a statement that extends over several lines
   std::vector<float> positions_;
   PolygonBuilder faces_;
-  // The largest positive index so far, and the place where it was used. Only the end of the file shows if this vertex
-  // exists.
+  // The largest positive vertex index so far, and the place where it was used. A face may refer to a later vertex, so
+  // only the end of the file shows if the vertex exists.
   struct Largest {
     std::int64_t index = 0;
     std::size_t line = 0;

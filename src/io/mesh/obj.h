@@ -6,7 +6,7 @@
 ///     v 0 1 0 # comment      a comment ends the line (and is not continued by a backslash)
 ///     f 1/1/1 2//2 -1        a face of three or more corners: v, v/vt, v//vn or v/vt/vn
 ///
-/// Vertices are counted from 1; -1 is the vertex before the face. A positive index may name a vertex that follows
+/// Vertices are counted from 1; -1 is the last vertex before the face. A positive index may name a vertex that follows
 /// later. Texture indices must be integers and are left out. All other statements (vt, vp, g, o, usemtl, mtllib, l, p,
 /// and unknown words) are left out, too. Lines end in LF, CRLF or CR; a byte order mark is skipped.
 ///

@@ -260,7 +260,7 @@ class BodyReader {
 
   [[nodiscard]] Status read_element(std::size_t e) {
     const Element& element = header_.elements[e];
-    // An element without properties takes no bytes, however large its count is.
+    // An element without properties takes no bytes, however large its count is, so its rows are skipped at once.
     if (element.properties.empty()) return Success{};
     // The counts have been checked against the size of the file, so a small file cannot ask for much memory here.
     if (e == header_.vertex_element) positions_.reserve(3 * static_cast<std::size_t>(element.count));

@@ -102,8 +102,8 @@ void never_wait(int descriptor) noexcept;
 [[nodiscard]] bool write_at(int descriptor, std::uint64_t at, std::string_view bytes);
 /// Makes a file `size` bytes long. The next call of write_bytes() then appends to the file.
 [[nodiscard]] bool set_end(int descriptor, std::uint64_t size);
-/// Tells the system that nobody will read the `size` bytes of a file from byte `at` on again. If the system supports
-/// it, their space on the disk becomes free.
+/// Tells the system that nobody will read the `size` bytes of a file from byte `at` on again. If the system can do
+/// this, the disk space of these bytes becomes free.
 void forget_bytes(int descriptor, std::uint64_t at, std::uint64_t size) noexcept;
 /// Returns the number of bytes of a file that were ever written; the other bytes are holes. Stops counting at `enough`.
 /// If the system cannot find holes, every byte counts.
@@ -124,8 +124,8 @@ void flush_folder_of(const std::string& path);
 /// Removes the name of a file. Safe to call in a signal handler. Errors: ENOENT if there is no such name.
 bool remove_file(const char* path) noexcept;
 /// Renames a file. If `replace` is true, the file takes the place of an existing file of that name. Otherwise an
-/// existing file is the error EEXIST; only on systems that cannot rename without replacing, the existing file is
-/// replaced even then.
+/// existing file is the error EEXIST, except on systems that cannot rename without replacing: there the existing file
+/// is replaced in both cases.
 [[nodiscard]] bool rename_file(const char* from, const char* to, bool replace) noexcept;
 
 /// Maps all bytes of a file into memory, to be read once from the first to the last. Returns nullptr on failure. If the

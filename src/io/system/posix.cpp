@@ -64,8 +64,9 @@ int open_path(const std::string& path, int flags, mode_t mode) {
   return descriptor;
 }
 
-// Waits until a pipe that the other side made non-blocking is ready. Also returns true if a signal interrupted the last
-// call. Returns false for any other error in errno.
+// Returns true if a call that failed with an error in errno should be repeated. If a pipe is not ready (EAGAIN),
+// because the other side made it non-blocking, waits until the pipe is ready. If a signal interrupted the call (EINTR),
+// does not wait. Returns false for all other errors.
 bool may_go_on(int descriptor, short events) noexcept {
   if (errno == EINTR) return true;
   if (errno != EAGAIN) return false;
@@ -329,7 +330,7 @@ extern "C" void end_by_abort(int /*signal*/) { watched.by_abort(); }
 void install(int signal, void (*handler)(int), unsigned flags = SA_RESETHAND) {
   struct sigaction action {};
   action.sa_handler = handler;
-  // A set SA_RESETHAND in `flags` has no effect if the action is SIG_IGN.
+  // SA_RESETHAND in `flags` does no harm if the action is SIG_IGN, because an ignored signal runs no handler.
   action.sa_flags = static_cast<int>(flags);
   (void)sigfillset(&action.sa_mask);  // without ::, because it is a macro on macOS
   (void)::sigaction(signal, &action, nullptr);

@@ -26,8 +26,9 @@ struct Endings {
   void (*by_abort)();
 };
 
-/// Installs the functions, which are called from now on. Signals that the process ignored before stay ignored. Writing
-/// a file beyond the size limit of the process then fails with an ordinary error.
+/// Installs the functions, which are called from now on. Signals that the process ignored before stay ignored.
+/// Afterwards, writing a file beyond the size limit of the process fails with an ordinary error, and does not end the
+/// process by a signal.
 void watch_endings(const Endings& endings) noexcept;
 
 /// Gives freed memory back to the system, if the C library supports that.

@@ -1,6 +1,6 @@
-// Keeps a list with a place for every temporary file that exists at the same time. One of two takes a name out of the
-// list, and alone may use the name then: the TemporaryFile when it is done with its file, or remove_temporaries(),
-// which never puts a name back.
+// Keeps a list with a place for every temporary file that exists at the same time. A name is taken out of the list
+// either by its TemporaryFile, when it is done with the file, or by remove_temporaries(). From then on, only the
+// function that took the name may use it. remove_temporaries() never puts a name back.
 #include "io/system/temporary_file.h"
 
 #include <array>
@@ -22,7 +22,8 @@ constexpr std::size_t kMostFiles = std::size_t{1} << 16U;
 
 std::array<std::atomic<char*>, kMostFiles> names{};
 std::array<std::atomic<char*>, kMostFiles>
-    // Names that remove_temporaries() took. They are never freed, because their objects may still read them.
+    // Names that remove_temporaries() took. They are never freed, because their TemporaryFile objects may still read
+    // them.
     removed{};
 static_assert(std::atomic<char*>::is_always_lock_free, "a signal handler may not wait");
 
@@ -35,13 +36,13 @@ std::string random_digits() {
 }
 
 // Returns a new name in the folder of `target`. The name does not contain the name of the target, so it is never too
-// long.
+// long for the file system.
 std::string name_beside(const std::string& target) {
   return utf8_of(path_of(target).parent_path() / (".chronormal-" + random_digits() + ".tmp"));
 }
 
 // Puts a name into the first free place of the list of temporary files, and returns this place. Returns kMostFiles if
-// the list is full; the file is then written without an entry.
+// the list is full; the file is then written without an entry, and remove_temporaries() does not find it.
 std::size_t enter(char* name) noexcept {
   for (std::size_t i = 0; i < kMostFiles; ++i) {
     char* nobody = nullptr;

@@ -28,8 +28,8 @@ class TemporaryFile {
     std::string name;
   };
   TemporaryFile(const Kept& kept, bool is_private);
-  /// Opens a temporary file that another process has created, by its name. Both
-  /// processes remove the file when they are done with it, and the second finds it gone.
+  /// Opens a temporary file that another process has created, by its name. Both processes remove the file when they are
+  /// done with it, and the second process finds that the file no longer exists.
   [[nodiscard]] static std::unique_ptr<TemporaryFile> of_peer(const std::string& name);
   /// Creates a file in the folder of `target` for reading and writing, and removes its name at once. The file exists as
   /// long as its descriptor is open, however the process ends. Returns a closed descriptor and sets errno on failure.

@@ -287,7 +287,7 @@ bool write_bytes(int descriptor, std::string_view bytes) noexcept {
     DWORD count = 0;
     const auto size = static_cast<DWORD>(std::min(bytes.size(), kMost));
     if (::WriteFile(handle_of(descriptor), bytes.data(), size, &count, nullptr) == 0) return fail();
-    // The disk is full, or a pipe accepts no bytes.
+    // A count of 0 means that the disk is full, or that a pipe accepts no bytes.
     if (count == 0) {
       errno = ENOSPC;
       return false;

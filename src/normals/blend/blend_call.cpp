@@ -31,9 +31,9 @@ constexpr UnitLimits kLimitsOfPoints = {kSmallestSquare, kLargestSquare, kLarges
 // terms is at most 14 times 2^-24 |n(w)|, and the rounding of the result to float32 is added.
 constexpr UnitLimits kLimitsOfTerms = {kSmallestSquare, kLargestSquare, 14};
 
-// The costs of the steps of an evaluation, in nanoseconds, by which the path is chosen. They were fitted to a grid of
-// 15,000 vertices with up to 100 targets, on one core of the machine epyc-zen3-2cores in docs/benchmarks.md. Only their
-// ratios matter.
+// The costs of the steps of an evaluation, in nanoseconds, by which the path of the computation (BlendPath) is chosen.
+// They were fitted to a grid of 15,000 vertices with up to 100 targets, on one core of the machine epyc-zen3-2cores in
+// docs/benchmarks.md. Only their ratios matter.
 constexpr double kCopiedElement = 0.35;   // copying the base normal of an element
 constexpr double kTargetElement = 3;      // adding the terms of a target to an element
 constexpr double kPairElement = 1.4;      // adding the term of a pair of targets to an element
@@ -55,7 +55,7 @@ IndexRange part_of(std::span<const std::uint32_t> list, IndexRange range) {
 }
 
 // Returns the number of elements that are computed from points. Elements are computed in groups of four on every
-// machine. So an element that was not requested counts, too, if another element of its group was requested.
+// machine, so an element that was not requested counts, too, if another element of its group was requested.
 std::size_t lanes_of(const IndexBits& elements) {
   std::size_t count = 0;
   for (const std::uint64_t word : elements.words()) {
@@ -159,7 +159,8 @@ class Call {
     return done_;
   }
 
-  // Returns the normal of a large face. It is computed once, because every corner of the face needs it.
+  // Returns the normal of a large face. The normal is computed once and stored, because the elements at all corners of
+  // the face need it.
   [[nodiscard]] BlendedFace make_face(std::size_t f) const {
     const auto face = source_.set.topology.face(f);
     struct Edge {

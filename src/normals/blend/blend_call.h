@@ -25,15 +25,16 @@ struct BlendInput {
   bool in_float32;  ///< true if the path kWhole works in float32
 };
 
-/// Chooses the path that costs least for some weights. In the pose, sets only the active targets, the elements that
-/// they touch, and the elements without stored terms.
+/// Chooses the path of the computation (BlendPath) that takes least time at some weights. In the pose, sets only the
+/// active targets, the elements that they touch, and the elements without stored terms.
 BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
 /// Sets the weights of a pose: chooses the path, and computes the data that all elements share at these weights.
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
-/// Writes the normals of a range of elements, and returns the counts of this range. Any thread may call this function.
-/// Preconditions: elements.first is a multiple of 64, and `result` has as many elements as the range.
+/// Writes the normals of a range of elements, and returns how many elements of this range were recomputed, are zero, or
+/// are uncertain. Any thread may call this function. Preconditions: elements.first is a multiple of 64, and `result`
+/// has as many elements as the range.
 BlendEvaluation evaluate(const BlendInput& input, const BlendPose& pose, IndexRange elements,
                          VectorView<float> result) noexcept;
 

@@ -14,7 +14,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Threads work on terms of at most 1 / kShareOfWork of all terms' bytes at a time. A single term may be larger.
+// Terms that are computed at the same time need at most 1 / kShareOfWork of the bytes of all terms. A single term may
+// need more.
 constexpr std::size_t kShareOfWork = 8;
 
 // The number of bytes that an element takes in the terms of a target, and in the term of a pair of targets.

@@ -6,8 +6,8 @@
 /// A face has the vector area n(p) = B(p, p) for the positions p of its corners, where B is bilinear. With the base b
 /// and the deltas d_i of target i, A_i = B(b, d_i) + B(d_i, b), C_ii = B(d_i, d_i) and C_ij = B(d_i, d_j) + B(d_j,
 /// d_i). Elements are sums of faces. A_i is zero at an element if target i moves no corner of the element's faces, and
-/// C_ij is zero unless both targets move the same face, so terms are sparse. pair_elements() returns their sizes
-/// without computing them.
+/// C_ij is zero unless both targets move the same face, so terms are sparse. pair_elements() returns upper bounds of
+/// the sizes of the terms C_ij without computing the terms.
 ///
 /// Units      lengths squared, in double; lengths of the sums are twice the area.
 /// Order      sums are in the order of NormalGroups, so the bits are the same for every number of threads.

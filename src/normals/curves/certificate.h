@@ -49,8 +49,8 @@ template <std::size_t M>
 /// The smallest size of the control normals of an element for which 1 / size serves as a scale. Smaller elements, which
 /// only tiny meshes have, are computed in double.
 inline constexpr double kSmallestMesh = 0x1p-900;
-/// The number that is added to the length of a control normal in blocks in which each control normal has its own
-/// exponent (kScaled16), since these exponents are limited.
+/// The number that is added to the length of each control normal before kScaled16 is tested. In blocks of that kind,
+/// each control normal has its own exponent, and the range of these exponents is limited.
 inline constexpr double kSmallestScale = 0x1p-30;
 
 /// Returns the lowest precision that keeps an element within the tolerance at every t, or no value if double is needed.

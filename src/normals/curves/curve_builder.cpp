@@ -79,7 +79,8 @@ class Build {
     curves_.size = size;
     curves_.keeps_lengths = limits_.with_lengths;
     if (size == 0) return;
-    // Memory is reserved for the largest possible result. The part of it that is not written costs nothing.
+    // Memory is reserved for the largest possible result. Memory that is never written costs nothing, because the
+    // system provides it only when it is written.
     if (curves_.blocks.capacity() < whole() * kWorst) {
       curves_.blocks = {};
       curves_.blocks = AlignedBytes(whole() * kWorst);
@@ -96,8 +97,8 @@ class Build {
     for (; count > 0; --count) {
       if (!builder_) {
         parts_[next_].begin = curves_.blocks.data() + bytes_;
-        // The flagged elements so far are swapped into the part, which appends its own. They need not be moved one by
-        // one.
+        // The part gets the list of all flagged elements by a swap and appends its own, so that no element is copied.
+        // The list is swapped back when the part is complete.
         std::swap(parts_[next_].flagged, curves_.flagged);
         builder_.emplace(parts_[next_], limits_);
       }

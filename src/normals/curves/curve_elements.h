@@ -1,5 +1,5 @@
-/// The formulas for one element of a curve of normals, over any scalar. If the scalar counts operations, they count
-/// what the kernels do to each of sixteen elements at a time.
+/// The formulas for one element of a curve of normals, over any scalar. With a scalar that counts operations, the
+/// formulas count the operations that the kernels execute for each element.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_ELEMENTS_H_
 

@@ -30,9 +30,9 @@ namespace chronormal::inline internal {
 [[nodiscard]] Result<std::string> resolve_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                    bool allow_external, const std::string& place);
 
-/// Returns the name under which a resolver looks for the file of a relative URI; the file system is not used. The name
-/// is the folder and the URI, joined to a path without "." and "..". Errors: those of resolve_file_uri(), and a URI
-/// that leads out of the folder.
+/// Returns the name of the file of a relative URI for the caller's resolver (InputOptions::resolve), which is used
+/// instead of the file system. The name is the folder and the URI, joined to a path without "." and "..". Errors: those
+/// of resolve_file_uri(), and a URI that leads out of the folder.
 [[nodiscard]] Result<std::string> name_file_uri(std::string_view uri, const std::optional<std::string>& folder,
                                                 const std::string& place);
 

@@ -49,8 +49,8 @@ void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, Exa
 inline constexpr double kCertainAbove = 0x1p-22;
 
 /// Writes the control normals of one triangle into one lane of a tile. Components that are only rounding error become
-/// zero, and integers compute a control normal if double is not precise enough. A magnitude that is finite does not
-/// change.
+/// zero, and integers compute a control normal if double is not precise enough. A finite magnitude in the lane stays as
+/// it is.
 void set_without_rounding(const Segment& segment, const std::uint32_t* corners, std::size_t lane,
                           ExactTile& tile) noexcept;
 

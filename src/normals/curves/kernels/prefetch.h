@@ -7,7 +7,7 @@
 /// shortest median time. The trials are repeated now and then, because other work on the machine may have influenced
 /// them, and that work changes. Normals do not depend on the distance.
 ///
-///     a span   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
+///     a pass   [2 KiB][none][4 KiB][8 KiB][16 KiB] the rest at the best so far    until each has had its trials
 #ifndef CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
 #define CHRONORMAL_NORMALS_CURVES_KERNELS_PREFETCH_H_
 
@@ -35,7 +35,7 @@ class PrefetchRule {
   static constexpr std::size_t kTrials = 16;
   // Bytes of curves that a trial reads.
   static constexpr std::size_t kTrialBytes = std::size_t{128} << 10;
-  // After the trials, this many calls of next() later, the trials are repeated.
+  // The trials are repeated this many calls of next() after the last trial.
   static constexpr std::size_t kCallsBetween = 1024;
 
   /// Creates a rule that tries the first `distances` numbers of kDistances.
