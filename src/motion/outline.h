@@ -1,4 +1,5 @@
-/// The two parts of validate(). One checks a motion without its positions, the other the positions of one keyframe.
+/// The two parts of validate(): one function checks a motion without its positions, and one checks the positions of a
+/// keyframe.
 #ifndef CHRONORMAL_MOTION_OUTLINE_H_
 #define CHRONORMAL_MOTION_OUTLINE_H_
 
@@ -13,7 +14,7 @@ namespace chronormal::inline internal {
 /// Checks everything in a motion that validate() checks, except positions.
 [[nodiscard]] Status validate_outline(const Motion& motion);
 
-/// Checks positions that are to become those of keyframe k.
+/// Checks positions before they become the positions of keyframe k.
 [[nodiscard]] Status validate_positions(const Motion& motion, std::size_t k, std::span<const float> positions);
 
 }  // namespace chronormal::inline internal

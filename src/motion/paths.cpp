@@ -1,8 +1,9 @@
 // Draws cubics through keyframes, and cuts them into straight pieces.
 //
-// The bound of the angle between normals is in motion/piece_bounds.h. For a cubic, an edge differs from its chord by
-// p s (1 - s), where p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2 e''(1)) / 6. Here e is the edge on
-// the curves, which is a difference of two cubics, and e'' is its second derivative by s. To see this, note that p s (1
+// The bound of the angle between normals is in motion/piece_bounds.h. Let s run from 0 to 1 over a piece. On a cubic,
+// an edge differs from its chord by p s (1 - s), where p is linear in s, from -(2 e''(0) + e''(1)) / 6 to -(e''(0) + 2
+// e''(1)) / 6. Here e is the edge on the curves, which is a difference of two cubics, and e'' is its second derivative
+// by s. To see this, note that p s (1
 // - s) and the difference of cubic and chord are cubics that vanish at s = 0 and 1 and have the same second
 // derivatives.
 #include "chronormal/motion/paths.h"
@@ -35,8 +36,8 @@ VectorView<const float> packed(const std::vector<float>& numbers) {
   return VectorView<const float>::packed(std::span(numbers));
 }
 
-// Returns the velocities that a keyframe stores and that this kind of path uses. They are empty if velocities must be
-// computed from positions.
+// Returns the velocities that a keyframe stores and that this kind of path uses. The result is empty if velocities must
+// be computed from positions.
 const std::vector<float>& given_velocities(const Motion::Keyframe& keyframe, PathKind kind) noexcept {
   static const std::vector<float> kNone;
   if (kind == PathKind::kLinear) return kNone;
@@ -79,8 +80,8 @@ struct BendSums {
 void add_bend(const Motion& motion, std::size_t at, std::size_t every, BendSums& sums) {
   const Motion::Keyframe &from = motion.keyframes[at - every], &middle = motion.keyframes[at],
                          &to = motion.keyframes[at + every];
-  // Times may be uneven. So the middle keyframe is compared with the point at its own time on the straight line between
-  // its two neighbours.
+  // The keyframes may be unevenly spaced in time, so the middle keyframe is compared with the point at its own time on
+  // the straight line between its two neighbours.
   const double part = (middle.time - from.time) / (to.time - from.time);
   const auto before = packed(from.positions), here = packed(middle.positions), after = packed(to.positions);
   for (std::size_t v = 0; v < here.count; ++v) {
@@ -151,8 +152,8 @@ class PieceBounds {
   double sine_;
 };
 
-// A source of the keyframes at the ends of straight pieces. It computes them from the keyframes of the original stream,
-// which it reads when they are needed.
+// A source of the keyframes at the ends of straight pieces. The source computes them from the keyframes of the original
+// stream, which are read when they are needed.
 struct Cutter {
   MotionStream source;
   PathKind kind;

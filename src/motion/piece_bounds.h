@@ -97,7 +97,7 @@ struct Pieces {
 };
 
 /// Returns the smallest number of pieces that is enough for every face, but at most `most`. Faces for which no number
-/// of pieces is enough do not matter. bounds.not_within(faces, pieces) returns those of `faces` for which `pieces`
+/// of pieces is enough do not count. bounds.not_within(faces, pieces) returns those of `faces` for which `pieces`
 /// pieces are not enough, in their order; nullptr stands for all faces.
 template <class Bounds>
 [[nodiscard]] Pieces pieces_for(const Bounds& bounds, std::size_t most) {
@@ -115,8 +115,8 @@ template <class Bounds>
     left.push_back(never.size());
   }
   auto rung = static_cast<std::size_t>(std::find(left.begin(), left.end(), never.size()) - left.begin());
-  // Smaller pieces should suffice for every face for which larger pieces did. This is checked once more, because the
-  // tolerance is guaranteed.
+  // Smaller pieces should suffice for every face for which larger pieces did. This assumption is checked once more,
+  // because the tolerance is guaranteed.
   for (; rung > 0 && rung + 1 < ladder.size(); ++rung) {
     const std::vector<std::uint32_t> now = bounds.not_within(nullptr, ladder[rung]);
     if (std::includes(never.begin(), never.end(), now.begin(), now.end())) break;

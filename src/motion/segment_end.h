@@ -30,7 +30,7 @@ class SegmentEnd {
   [[nodiscard]] Vec3f position(std::size_t vertex) const noexcept { return positions_[vertex]; }
 
   /// Return the vector from vertex a to vertex b, and the vector from a vertex to a point. Each component is rounded
-  /// once, also far from the origin (with residuals slightly more: see core/twofold.h).
+  /// once, also far from the origin. With residuals, the error is slightly larger than one rounding (core/twofold.h).
   [[nodiscard]] Vec3d edge(std::size_t a, std::size_t b) const noexcept {
     const Vec3d p = to_double(positions_[a]), q = to_double(positions_[b]);
     return has_residuals() ? difference(q, residuals_[b], p, residuals_[a]) : q - p;

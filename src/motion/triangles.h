@@ -22,8 +22,8 @@
 namespace chronormal::inline internal {
 
 /// Returns the n - 2 triangles of a polygon with n corners, as the numbers of their corners in the polygon, counted
-/// from 0. `positions` are those of the mesh. O(n) for convex polygons, otherwise O(n^2). A polygon of more corners
-/// than kMostClipped becomes a fan.
+/// from 0. `positions` are the positions of all vertices of the mesh. O(n) for convex polygons, otherwise O(n^2). A
+/// polygon of more corners than kMostClipped becomes a fan.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> triangles_of_face(std::span<const std::uint32_t> face,
                                                                           std::span<const float> positions);
 inline constexpr std::size_t kMostClipped = 1U << 11;

@@ -24,8 +24,8 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
   const Vec3d to_middle = middle - u0, to_end = u1 - u0;
   const Vec3d normal = cross(to_middle, to_end);
 
-  // A circle needs three different points. On a short arc, the area of their triangle is of third order in the length
-  // of the arc.
+  // A circle needs three different points. On a short arc, the area of their triangle is tiny, of third order in the
+  // length of the arc, so the sine of an angle of the triangle is tested and not the area.
   constexpr double kSmallestChord = 1e-12, kSmallestSine = 1e-10;
   const double chords = length(to_middle) * length(to_end);
   if (length(to_end) > kSmallestChord && length(middle + u0) > kSmallestChord &&
@@ -36,7 +36,7 @@ ThroughMiddle circle_through_middle(ElementMotion& element) {
     if (0 < middle_angle && middle_angle < arc.angle) return {arc, middle_angle / arc.angle};
   }
   // If the turn is too small for float32, nothing is lost without a circle, so such a turn does not count as a
-  // fallback. Every other case without a circle does.
+  // fallback. Every other case without a circle counts as a fallback.
   constexpr double kInvisibleTurn = 1e-7;
   if (maximum_number(length(to_end), length(to_middle)) > kInvisibleTurn) element.use_fallback();
   const CircleFamily circles(u0, u1);

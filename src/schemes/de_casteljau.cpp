@@ -1,6 +1,6 @@
-// The scheme decasteljau:K. It runs De Casteljau's algorithm over K exact unit normals at equidistant t, with slerp in
-// place of every linear interpolation (section 2.4 of the paper). The curve passes only through the first and the last
-// normal, and takes K (K - 1) / 2 slerps per evaluation.
+// The scheme decasteljau:K. This scheme runs De Casteljau's algorithm over K exact unit normals at equidistant t, with
+// slerp in place of every linear interpolation (section 2.4 of the paper). The curve passes only through the first and
+// the last normal, and takes K (K - 1) / 2 slerps per evaluation.
 
 #include "schemes/curve_scheme.h"
 #include "schemes/makers.h"

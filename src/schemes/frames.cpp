@@ -89,9 +89,10 @@ std::optional<FramePair> polar_frames(const ElementMotion& element) {
   const auto frames = edge_frames(element);
   if (!frames) return std::nullopt;
 
-  // M (frames.h) maps the plane of the face at t = 0 to its plane at t = 1, and u0 to u1. So the polar rotation of M is
-  // the rotation of the 2 x 2 map between the planes. Over the edge frames that map is upper triangular, S = [s11 s12;
-  // 0 s22], and the rotation factor of S turns by atan2(s21 - s12, s11 + s22). The determinant of S is not negative.
+  // M (frames.h) maps the plane of the face at t = 0 to its plane at t = 1, and u0 to u1. Therefore the rotation in the
+  // polar decomposition of M is that of the 2 x 2 map between the planes. Over the edge frames that map is upper
+  // triangular, S = [s11 s12; 0 s22], and the rotation factor of S turns by atan2(s21 - s12, s11 + s22). The
+  // determinant of S is not negative.
   const EdgeMotion edges = edges_of(element);
   const double e0x = dot(edges.start.e, frames->at_start.tangent), f0x = dot(edges.start.f, frames->at_start.tangent);
   const double f0y = dot(edges.start.f, frames->at_start.binormal);

@@ -50,8 +50,8 @@ class Lagrange {
   }
 
   // Returns how many numbers the curve of an element needs to be played step by step, or 0 if it cannot be played.
-  // Curves are played by forward differences, with K additions per component and step. This works only up to degree 3,
-  // since differences of higher order are smaller than the rounding of float32.
+  // Curves are played by forward differences, with K additions per component and step. This method works only up to
+  // degree 3, since differences of higher order are smaller than the rounding of float32.
   [[nodiscard]] std::size_t state_planes() const { return degree_ <= 3 ? plane_count() : 0; }
 
   void anchor(ElementCoefficients c, double t, double step, double* state) const {

@@ -49,8 +49,8 @@ struct OptimalQuaternion : UniformArc {
     std::size_t count = 0;
     for (; count < kGrid; ++count) points[count] = limit * (2.0 * static_cast<double>(count) / (kGrid - 1) - 1);
 
-    // The grid contains slerp. The frames that are constructed from the edges of a face, and the circle through the
-    // middle normal, are added to the grid.
+    // The middle point of the grid is phi = 0, which is slerp. The phi of the frames that are constructed from the
+    // edges of a face, and the phi of the circle through the middle normal, are added to the grid.
     if (element.is_face()) {
       for (const auto& frames : {matrix_frames(element), edge_frames(element), polar_frames(element)}) {
         if (!frames) continue;

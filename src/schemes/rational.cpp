@@ -1,7 +1,7 @@
 // The scheme rational: the cross product as a function of t, with its normalisation in the formula (eq. 3 of the
-// paper). It is three quadratics over the square root of one quartic, |n(t)|^2, whose coefficients are prepared. This
-// saves a sum of squares in each evaluation, but reads five more coefficients. The direction is that of `polynomial`,
-// but without the evaluation in double where n(t) is small.
+// paper). The normal is three quadratics over the square root of one quartic, |n(t)|^2, whose coefficients are
+// prepared. The prepared quartic saves a sum of squares in each evaluation, but has five more coefficients to read. The
+// direction is that of the scheme polynomial, but is not computed in double where n(t) is small.
 
 #include "chronormal/core/polynomial.h"
 #include "schemes/curve_scheme.h"
@@ -22,8 +22,8 @@ class Rational {
     const ControlNormals& exact = element.control_normals();
     const double largest = maximum_number(length(exact.n0), maximum_number(length(exact.m), length(exact.n1)));
     const double scale = 1 / largest;
-    // An end that vanishes, or nearly does, keeps its direction. Its length is so small that it only matters where the
-    // other control normals have no weight.
+    // An end that vanishes, or nearly does, keeps its direction. The length kVanishingLength is so small that the end
+    // only matters where the other control normals have no weight.
     const auto end = [scale](const Vec3d& n, const UnitNormal& u) {
       const Vec3d scaled = scale * n;
       return length(scaled) > kVanishingLength ? scaled : kVanishingLength * u.vector;

@@ -1,7 +1,7 @@
-// The scheme recompute: the cross product, computed again at every t. It takes eq. 1 for the vertices at t, and then
-// eq. 2. The scheme runs normals/recompute/recompute_faces.h, and counts the operations of its formula. Two edges are
-// interpolated instead of three vertices. This gives the same normal, costs less, and stays precise far from the
-// origin.
+// The scheme recompute: the cross product, computed again at every t. The formula takes the vertices at t by eq. 1, and
+// then the normal by eq. 2. The scheme runs normals/recompute/recompute_faces.h, and counts the operations of its
+// formula. The code interpolates two edges instead of three vertices, which gives the same normal, costs less, and
+// stays precise far from the origin.
 
 #include "normals/curves/curve_elements.h"
 #include "normals/recompute/recompute_faces.h"

@@ -49,8 +49,8 @@ WeightBasis WeightBasis::lagrange(std::size_t degree) {
   std::vector<Coefficients> weights;
   Coefficients sums{};
   for (std::size_t k = 0; k <= degree; ++k) {
-    // Weight k is the product of the factors (degree x - j) / (k - j) over all j except k. Each factor has degree 1;
-    // they are multiplied one after the other.
+    // Weight k is the product of the factors (degree x - j) / (k - j) over all j except k. The factors have degree 1,
+    // and are multiplied one after the other.
     Coefficients p{1}, sizes{1};
     std::size_t so_far = 0;
     for (std::size_t j = 0; j <= degree; ++j) {

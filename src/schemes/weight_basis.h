@@ -10,8 +10,8 @@
 
 namespace chronormal::inline internal {
 
-/// Restrict a polynomial, given by its Bernstein coefficients, to the part after t, or to the part before t. Both work
-/// in place, by de Casteljau's algorithm.
+/// Restrict a polynomial, given by its Bernstein coefficients, to the part after t, or to the part before t. Both
+/// functions change the coefficients in place, by de Casteljau's algorithm.
 template <class T>
 void keep_after(std::span<T> p, double t) {
   for (std::size_t level = 1; level < p.size(); ++level) {

@@ -1,8 +1,8 @@
 // Finds the angle of a vector in lanes of double. The result has the same bits as that of portable::atan2() for y >= 0.
 // This file also defines the type Real, with which formulas for lanes look the same as for one number.
 //
-// This file is included once for each instruction set, as lanes-inl.h is. The polynomial is Highway's for the arc
-// tangent on [0, 1]. Its operations are in the same order but never fused, as in core/portable_math for one number.
+// This file is included once for each instruction set, as lanes-inl.h is. The polynomial is that of Highway for the arc
+// tangent on [0, 1]. The operations are in the same order but never fused, as in core/portable_math for one number.
 
 #include "simd/highway-inl.h"
 

@@ -482,7 +482,7 @@ HWY_INLINE Vec<D> DemoteTo(D d, const Vector<T, kCount>& v) {
   return ConvertTo(d, v);
 }
 
-// Adds two products to lane i of `sum`: that of the lanes 2 i of a and b, and that of their lanes 2 i + 1.
+// Adds two products to lane i of `sum`: the product of the lanes 2 i of a and b, and the product of the lanes 2 i + 1.
 HWY_INLINE Vector<std::int32_t, 4> ReorderWidenMulAccumulate(Simd<std::int32_t, 4>, const Vector<std::int16_t, 8>& a,
                                                              const Vector<std::int16_t, 8>& b,
                                                              const Vector<std::int32_t, 4>& sum,
@@ -501,7 +501,7 @@ HWY_INLINE Vector<std::int32_t, 4> RearrangeToOddPlusEven(const Vector<std::int3
 
 // ---- lanes in other places
 
-// Returns the lanes with the numbers kFrom... The numbers count the lanes of a first, and then those of b.
+// Returns the lanes with the numbers kFrom... The numbers count through the lanes of a and then through the lanes of b.
 template <class D, std::size_t kCount, std::size_t... kFrom>
 HWY_INLINE Vec<D> Picked(const Vector<typename D::Lane, kCount>& a, const Vector<typename D::Lane, kCount>& b,
                          std::index_sequence<kFrom...>) {

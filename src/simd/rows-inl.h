@@ -52,7 +52,7 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
 #define CHRONORMAL_DEMOTE_CLAMPS 0
 #endif
 
-// Rounds both halves of the lanes to float and joins them. Their values must be in the range of float. If a vector of
+// Rounds both halves of the lanes to float and joins them. All values must be in the range of float. If a vector of
 // floats has a single lane, only `lower` is rounded.
 HWY_INLINE Floats Joined(Doubles lower, [[maybe_unused]] Doubles upper) {
 #if HWY_TARGET == HWY_SCALAR
@@ -83,8 +83,8 @@ struct Lanes4 {
   HWY_INLINE Lanes3 xyz() const { return {x, y, z}; }
 };
 
-// The following functions Columns(row) return the columns of a matrix. Its row i, of four floats at row(i), becomes
-// lane i of the columns.
+// The following functions Columns(row) return the columns of a matrix. Row i of the matrix, which consists of the four
+// floats at row(i), becomes lane i of the columns.
 #if HWY_TARGET == HWY_SCALAR
 
 using Row = Lanes4;

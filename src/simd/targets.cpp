@@ -17,8 +17,8 @@ std::vector<std::int64_t> supported_targets() {
 std::string target_name(std::int64_t target) { return hwy::TargetName(target); }
 
 std::int64_t current_target() {
-  // If a test has chosen a target, `supported` has only the bit of this target. Otherwise its lowest bit is the best
-  // target.
+  // If a test has chosen a target, `supported` has only the bit of this target. Otherwise the lowest bit of `supported`
+  // is the best target.
   const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   return supported & -supported;
 }

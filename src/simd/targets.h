@@ -1,5 +1,5 @@
-/// The instruction set on which the kernels run. It is chosen at run time, and is the widest that the machine has.
-/// Tests and benchmarks try all instruction sets, and results have the same bits on each of them.
+/// The instruction set on which the kernels run. The instruction set is chosen at run time, and is the widest that the
+/// machine has. Tests and benchmarks try all instruction sets, and results have the same bits on each of them.
 #ifndef CHRONORMAL_SIMD_TARGETS_H_
 #define CHRONORMAL_SIMD_TARGETS_H_
 
@@ -9,8 +9,8 @@
 
 namespace chronormal::inline internal {
 
-/// Returns the instruction sets that the kernels are compiled for and that this machine runs, the best first. They are
-/// values of Highway's HWY_TARGET.
+/// Returns the instruction sets that the kernels are compiled for and that this machine runs, the best first. The
+/// results are values of Highway's HWY_TARGET.
 [[nodiscard]] std::vector<std::int64_t> supported_targets();
 /// Returns the name that Highway has for a target: "SSE4", "AVX2", "AVX3" (AVX-512); without Highway there is only
 /// "plain".

@@ -59,7 +59,8 @@ struct Format {
   Result<PositionCache> (*read_cache)(std::string_view bytes, const std::string& name,
                                       const CacheOptions& options) = nullptr;
 
-  /// Finds the places of samples in a cache (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
+  /// Finds the offsets at which a cache file stores its samples, which are the positions at one time each
+  /// (io/cache/cache_layout.h); nullptr if samples cannot be read one by one.
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
@@ -85,8 +86,8 @@ struct Format {
 [[nodiscard]] std::string unknown_format(std::string_view bytes, std::string_view what);
 
 /// Returns advice for a file that is not supported but that other programs can convert: "this is an FBX file, which is
-/// not read: ...". The format is recognised by the name or the first bytes of the file. Returns an empty text for other
-/// files.
+/// not read: ...". The format is recognised by the name or the first bytes of the file. Returns an empty text for all
+/// files without such advice.
 [[nodiscard]] std::string way_in(std::string_view file_name, std::string_view bytes);
 
 /// Returns the extensions of all formats that hold one of these kinds of data, for messages: ".obj, .ply". `last` is

@@ -67,7 +67,7 @@ Result<std::vector<std::string>> find_gltf_files(const std::vector<std::string>&
     } else if (is_pattern) {
       InputOptions pattern;
       pattern.files = {input};
-      // A pattern without matches is not an error here. It is reported when the input is opened.
+      // A pattern without matches is not an error here, because the code that opens the input reports it.
       Result<std::vector<std::string>> matches = find_input_files(pattern, list_folder);
       found = matches ? std::move(matches).value() : pattern.files;
     } else if (is_folder) {

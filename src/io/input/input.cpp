@@ -1,4 +1,4 @@
-// Opens any input. open_input() tries the forms of an input in this order: a built-in morph, a base with its targets, a
+// Opens any input. open_input() tries the kinds of inputs in this order: a built-in morph, a base with its targets, a
 // cache with its mesh, a single file that holds everything, the files of a sequence. The format of a file is found by
 // its extension, or else by its content. No file is opened twice.
 #include "chronormal/io/input.h"
@@ -114,8 +114,8 @@ Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
   const Result<std::vector<std::size_t>> frames = choose_frames(motion.keyframes.size(), options);
   if (!frames) return frames.error();
-  // Keyframes from several clips, between which the motion jumps, stay an animation. Keyframes without a jump become an
-  // ordinary sequence.
+  // If the chosen keyframes belong to several clips, between which the motion jumps, the motion stays of kind
+  // kAnimation. Without a jump, the motion becomes an ordinary sequence (kSequence).
   const std::size_t last = options.to.value_or(motion.keyframes.size() - 1);
   bool jumps = false;
   for (std::size_t k = options.from + 1; k <= last && motion.kind == MotionKind::kAnimation; ++k)
@@ -179,8 +179,9 @@ Result<PositionCache> outline_of(const CacheLayout& layout) {
   return cache;
 }
 
-// A cache file whose samples can be read one by one, and its layout. find_samples() returns nothing if the samples
-// cannot be read one by one, or if the file has a fault. The reader of the whole file then reports the fault.
+// A cache file whose samples (the positions at one time) can be read one by one, and its layout. find_samples() returns
+// nothing if the samples cannot be read one by one, or if the file has a fault. The reader of the whole file then
+// reports the fault.
 struct FoundSamples {
   PositionedFile file;
   CacheLayout layout;

@@ -211,8 +211,8 @@ Result<MeshFrame> read_next_mesh(const InputOptions& options, std::string_view b
       const bool is_point = std::equal(around.begin() + 3, around.end(), around.begin());
       bool has_more_digits = !is_point && shifted.value().has_more_digits;
       for (std::size_t i = 0; i < read.other_files.size() && !has_more_digits && !is_point; ++i) {
-        // Errors in the other files of a sequence are ignored here. They are reported when the files are read as
-        // keyframes.
+        // Errors in the other files of a sequence are ignored here. The code that reads the files as keyframes reports
+        // these errors.
         const Result<FileBytes> file = FileBytes::open(read.other_files[i], options.resolve);
         if (!file) continue;
         const Result<MeshFrame> other =
@@ -273,7 +273,7 @@ double closing_time(std::span<const double> times, std::span<const std::size_t> 
 
 namespace {
 
-// Sets the velocities at both ends of a loop to those of the closed curve.
+// Sets the velocities at both ends of a loop to the velocities of the closed curve there.
 Status set_loop_velocities(const InputOptions& options, std::size_t count,
                            const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   const Result<std::vector<std::size_t>> frames = choose_frames(count, options);
@@ -311,8 +311,8 @@ Status set_end_velocities(const InputOptions& options, std::span<const double> t
                           const std::function<Result<std::vector<float>>(std::size_t k)>& read, Motion& chosen) {
   if (!options.is_curved() || !options.chooses_frames()) return Success{};
   if (options.loop) return set_loop_velocities(options, times.size(), read, chosen);
-  // Every N-th keyframe was chosen. The velocities at the ends are those of the longer sequence that takes every N-th
-  // keyframe from the beginning to the end of the files.
+  // Every N-th keyframe was chosen. The velocities at the ends are computed from the longer sequence that takes every
+  // N-th keyframe from the beginning to the end of the files.
   const std::size_t start = options.from % options.every, first = options.from / options.every;
   std::vector<double> of_whole, of_part;
   for (std::size_t k = start; k < times.size(); k += std::min(options.every, times.size()))

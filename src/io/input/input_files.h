@@ -47,7 +47,8 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 
 /// Returns the files that the options name, in order, as io/input.h describes. list_folder() lists folders, and sort()
 /// sorts the files of folders and patterns. No file is opened. Errors: kFailed if nothing of that name exists or
-/// nothing matches a pattern; kUsage for "-" twice; those of list_folder() and sort(). The place is the input.
+/// nothing matches a pattern; kUsage for "-" twice; the errors of list_folder() and sort(). The place of an error is
+/// the input.
 [[nodiscard]] Result<std::vector<std::string>> find_input_files(const InputOptions& options,
                                                                 const FolderLister& list_folder,
                                                                 const FileSorter& sort = sort_by_number);
@@ -78,10 +79,10 @@ using FileSorter = std::function<Status(const std::string& input, std::vector<st
 /// keyframes; the last index repeats the first. `times` are the times of all keyframes of the sequence.
 [[nodiscard]] double closing_time(std::span<const double> times, std::span<const std::size_t> frames);
 
-/// Sets end_velocities of the first and the last chosen keyframe. This is needed if vertices move on curves and the
-/// velocities at the ends depend on keyframes that were not chosen. If every N-th keyframe is chosen, the keyframes
-/// beyond the ends are also N apart. `times` are the times of all keyframes of the sequence, and read(k) returns the
-/// positions of keyframe k.
+/// Sets end_velocities of the first and the last chosen keyframe. These velocities are needed if vertices move on
+/// curves and the velocities at the ends depend on keyframes that were not chosen. If every N-th keyframe is chosen,
+/// the keyframes beyond the ends are also N apart. `times` are the times of all keyframes of the sequence, and read(k)
+/// returns the positions of keyframe k.
 [[nodiscard]] Status set_end_velocities(const InputOptions& options, std::span<const double> times,
                                         const std::function<Result<std::vector<float>>(std::size_t k)>& read,
                                         Motion& chosen);

@@ -22,9 +22,9 @@ struct FileIdentity {
   [[nodiscard]] std::string text() const;
 };
 
-/// Returns the files that the options name, in order, or no files for a built-in morph. Errors: those of finding the
-/// files; kUsage for a pipe, which cannot be read again, and for the .xml of a Maya cache, because its data are in
-/// other files.
+/// Returns the files that the options name, in order, or no files for a built-in morph. Errors: the errors of
+/// find_frames(); kFailed if the system has no information about a file; kUsage for a pipe, which cannot be read again,
+/// and for the .xml of a Maya cache, because its data are in other files.
 [[nodiscard]] Result<std::vector<FileIdentity>> identify_files(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

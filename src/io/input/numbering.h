@@ -29,8 +29,8 @@ namespace chronormal::inline internal {
 
 /// The times that the names of files give.
 struct FileTimes {
-  /// The times in seconds, or the numbers of frames counted from the first file. They are 0, 1, 2, ... if the numbers
-  /// in the names increase in even steps, or if the names give no times.
+  /// The times in seconds, or the numbers of frames counted from the first file. The times are 0, 1, 2, ... if the
+  /// numbers in the names increase in even steps, or if the names give no times.
   std::vector<double> times;
   std::optional<FileSeries> series;  ///< set if numbers in the names gave the times
 };

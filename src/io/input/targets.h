@@ -24,8 +24,8 @@ namespace chronormal::inline internal {
 ///
 /// The place of an error is the input, or begins with the path of the file ("targets/blink.target, line 17"). Errors:
 /// kFailed for files that are missing or cannot be read; kInvalidInput of the readers, for a mesh whose number of
-/// vertices or faces differ from the base, for a folder without targets or with targets of several formats, and if
-/// there is no target besides the base; kUsage for "-" twice.
+/// vertices or whose faces differ from the base, for a folder without targets or with targets of several formats, and
+/// if there is no target besides the base; kUsage for "-" twice.
 [[nodiscard]] Result<ReadMotion> read_targets(const InputOptions& options);
 
 }  // namespace chronormal::inline internal

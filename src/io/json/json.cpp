@@ -46,8 +46,9 @@ bool overflows(std::string_view number) {
   const auto [stop, code] = from_chars(number.data(), number.data() + number.size(), value);
   if (code == std::errc()) return std::isinf(value);
   if (code != std::errc::result_out_of_range) return false;
-  // from_chars() tells only that the number is out of range. The decimal exponent of its first nonzero digit tells the
-  // direction: it is the written exponent plus the place of this digit relative to the decimal point.
+  // from_chars() tells only that the number is out of range. The decimal exponent of its first nonzero digit tells if
+  // the number is too large or too small. This exponent is the written exponent plus the place of the digit relative to
+  // the decimal point.
   const std::string_view mantissa = number.substr(0, exponent_at);
   const auto first = static_cast<std::ptrdiff_t>(mantissa.find_first_of("123456789"));
   const auto point = static_cast<std::ptrdiff_t>(std::min(mantissa.find('.'), mantissa.size()));

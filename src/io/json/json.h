@@ -46,7 +46,7 @@ class JsonComplaint {
   void add(const std::string& pointer, std::string message) {
     if (!first_) first_ = invalid_input(place(pointer), std::move(message));
   }
-  /// Adds an error that was found without a JsonView, unless there is a complaint already.
+  /// Adds an error that was found without a JsonView, unless an earlier complaint is kept.
   void add(Error error) {
     if (!first_) first_ = std::move(error);
   }
@@ -68,8 +68,8 @@ class JsonView {
   /// Returns true if the value is an object that has the member `key`.
   [[nodiscard]] bool has(const char* key) const { return find(key) != nullptr; }
 
-  /// Return a member that is a non-empty object (or array) as a view. Return nothing if the member is missing. Complain
-  /// and return nothing if the member is empty or of another kind.
+  /// Return a member that is an object, or a non-empty array, as a view. Return nothing if the member is missing.
+  /// Complain and return nothing if the member is of another kind, or if the array is empty.
   [[nodiscard]] std::optional<JsonView> object(const char* key) const;
   [[nodiscard]] std::optional<JsonView> array(const char* key) const;
 
@@ -80,11 +80,14 @@ class JsonView {
   [[nodiscard]] bool is_object() const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Return the member `key` as an integer from 0 to `most`. 4.0 counts as an integer, as glTF demands.
+  /// Return the member `key` as an integer from 0 to `most`; 4.0 counts as an integer, as glTF demands. Complain about
+  /// any other value. Without a usable value, find_count() returns nothing, count() returns the fallback, and
+  /// required_count() returns 0. Only required_count() complains about a missing member.
   [[nodiscard]] std::optional<std::size_t> find_count(const char* key, std::size_t most) const;
   [[nodiscard]] std::size_t count(const char* key, std::size_t most, std::size_t fallback) const;
   [[nodiscard]] std::size_t required_count(const char* key, std::size_t most) const;
-  /// Return the member `key` as an index below `count`. Complain about a larger index: "there are only N WHAT".
+  /// Return the member `key` as an index below `count`. Complain about a larger index: "the index is 7, but the number
+  /// of WHAT is only 5". If the member is missing, return nothing; required_index() then also complains.
   [[nodiscard]] std::optional<std::size_t> find_index(const char* key, std::size_t count, const char* what) const;
   [[nodiscard]] std::optional<std::size_t> required_index(const char* key, std::size_t count, const char* what) const;
   /// Returns the value of this view as an index below `count`, or nothing after a complaint.
@@ -92,7 +95,8 @@ class JsonView {
   [[nodiscard]] bool flag(const char* key) const;
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] std::string required_text(const char* key) const;
-  /// Return the value of this view as text or as a finite number.
+  /// Return the value of this view as text or as a number. Complain about a value of another kind, and about a number
+  /// that is too large for double.
   [[nodiscard]] std::string as_text() const;
   [[nodiscard]] double as_number() const;
 

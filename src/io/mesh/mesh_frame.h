@@ -29,7 +29,8 @@ struct MeshFrame {
   /// the file has them.
   std::vector<float> velocities = {};
 
-  // The next members describe the shading of the mesh in the file. They are empty unless the caller requests them.
+  // The next members describe the shading of the mesh in the file. These members are empty unless the caller requests
+  // them.
   /// The smoothing group of each face, numbered from 1 in the order in which the file names the groups; 0 for a face in
   /// no group. Empty if the file has no groups.
   std::vector<std::uint32_t> group_of_face = {};

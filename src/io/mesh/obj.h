@@ -13,7 +13,7 @@
 /// Only read_obj_shading() reads the shading of the mesh:
 ///
 ///     vn 0 0 1               a normal, counted as vertices are; f refers to it after the last slash
-///     s 1                    a smoothing group, for the faces that follow: a number or a name; off and 0 are none
+///     s 1                    a smoothing group, for the faces that follow: a number or a name; off and 0 mean no group
 ///
 /// Shapes     V = vertices; positions are (V, 3).
 /// Threads    pure.

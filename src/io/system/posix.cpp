@@ -306,7 +306,7 @@ constexpr Request kRequests[] = {
     {SIGXCPU, "stopped, since it used more time than allowed (SIGXCPU)"},
 };
 
-// The functions that the signal handlers call. They are set before the handlers are installed.
+// The functions that the signal handlers call. These functions are set before the handlers are installed.
 Endings watched{};
 
 extern "C" void end_by_request(int signal) {

@@ -1,6 +1,5 @@
 // Implements io/system for Windows. Descriptors are those of the C library of Windows, but files are opened by calls of
-// the system. This allows names in UTF-16, passes bytes unchanged, and lets a file be renamed and removed while
-// somebody has it open.
+// the system. So names can be in UTF-16, bytes pass unchanged, and a file can be renamed and removed while it is open.
 #ifdef _WIN32
 
 #define WIN32_LEAN_AND_MEAN
@@ -155,7 +154,7 @@ HANDLE open_handle(const std::string& path, DWORD access, DWORD makes) {
                        FILE_ATTRIBUTE_NORMAL | FILE_FLAG_BACKUP_SEMANTICS, nullptr);  // the flags also open folders
 }
 
-// Calls ReadFile() or WriteFile() for a place in a file.
+// Calls ReadFile() or WriteFile() for the bytes of a file from offset `at` on.
 template <class Call, class Bytes>
 std::optional<std::size_t> call_at(Call call, int descriptor, std::uint64_t at, Bytes* bytes, std::size_t size) {
   constexpr std::size_t kMost = std::size_t{1} << 30;
@@ -476,7 +475,7 @@ std::size_t columns_of_terminal(int stream) noexcept {
 
 namespace {
 
-// The functions that the handlers call. They are set before the handlers are installed.
+// The functions that the handlers below call. These functions are set before the handlers are installed.
 Endings watched{};
 
 // Ends the process with the exit code that Windows uses for Ctrl-C. The system runs this function in a thread of its

@@ -17,7 +17,7 @@ namespace chronormal::inline internal {
 namespace {
 
 constexpr std::size_t kBlockOfVertices = 16384, kBlockOfLargeFaces = 64;
-// The number of elements that are computed together. Their sums take 16 KiB on the stack.
+// The number of elements that are computed together. The sums of so many elements take 16 KiB on the stack.
 constexpr std::size_t kTileWords = 8, kTileElements = kTileWords * kBitsOfWord;
 constexpr std::size_t kSlicesOfWord = kBitsOfWord / kRingLanes;
 constexpr std::size_t kMostRows = kMostRingPoints + 2;
@@ -213,8 +213,8 @@ class Call {
     }
   }
 
-  // Writes the normals of the elements that are not in `again` from their terms. Adds those elements to `again` for
-  // which terms in float32 do not guarantee the accuracy.
+  // Writes the normals of elements from stored terms, except for the elements in `again`. If terms in float32 do not
+  // guarantee the accuracy of an element, adds the element to `again` instead.
   void add_terms(IndexRange elements, IndexRange words, std::span<const std::uint64_t> touched, std::uint64_t* again,
                  const VectorView<float>& result) {
     copy_base(elements, result);
@@ -236,8 +236,8 @@ class Call {
       const double weight = pose_.weights[i];
       const double linear = weight * target.term.scale, square = weight * weight * target.term.scale;
       IndexRange part = part_of(target.term.elements, elements);
-      // The list of a target has all elements that touch a face which the target moves. So no stored pair of this
-      // target has an element outside of the list.
+      // The list of a target has all elements that touch a face which the target moves. So it also has all elements of
+      // the stored pairs of the target, and an empty part of the list means that the pairs have nothing to add either.
       if (part.count == 0) continue;
       add_target_rows(in(part, target.term.elements), target.term.lanes.data() + 2 * kBlendLanes * part.first,
                       row_weights(linear), row_weights(square), first, sums);
@@ -294,7 +294,8 @@ class Call {
           row[0] = p.x, row[1] = p.y, row[2] = p.z, row[3] = 0;
         }
       }
-      // The kernel expects the offsets of all slices of the tile. All slices except this one are described as empty.
+      // The kernel expects the offsets of all slices of the tile, which have sixteen elements each. All slices except
+      // the slice of these elements are described as empty.
       std::size_t first_row[kTileElements / kRingLanes + 1] = {};
       std::fill(std::begin(first_row) + static_cast<std::ptrdiff_t>(word * kSlicesOfWord + slice) + 1,
                 std::end(first_row), row_count);
@@ -330,7 +331,8 @@ class Call {
     for (const std::uint32_t f : source_.groups->faces(e)) body(f);
   }
 
-  // Computes an element for which lanes do not guarantee the accuracy. Each of its faces has an error bound of its own.
+  // Computes the normal of an element for which lanes do not guarantee the accuracy. The error bound is tighter than
+  // that of the lanes, because each face of the element has an error bound of its own.
   void make_element(std::size_t e, std::size_t place, const VectorView<float>& result) {
     Vec3d n;
     double noise = 0, count = 0;

@@ -45,7 +45,7 @@ struct BlendPose {
   BlendChoice choice;
   std::vector<double> weights;
   double point_noise = 0;  ///< bound of the error of a point, in units of length
-  /// True if `points` are those at the weights; if false, they are those of the base.
+  /// True if `points` are the points of the mesh at the weights, false if they are the points of the base.
   bool has_points = false;
   std::vector<BlendedFace> large;     ///< the normals of the storage's large_faces(), if has_points is true
   std::vector<double> points;         ///< x, y, z and 0 for each vertex

@@ -1,5 +1,5 @@
 /// The terms of the quadratic form in the weights that gives the normals (blend_terms.h), as BlendNormals stores them.
-/// They are in float32, sparse, and only as many as fit into memory.
+/// The terms are in float32 and sparse, and only as many terms are stored as fit into memory.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_STORAGE_H_
 
@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// The largest number of points of a path around an element that SIMD lanes can process.
+/// The largest number of points of a path around an element (groups/rings.h) that SIMD lanes can process.
 inline constexpr std::size_t kMostRingPoints = 64;
 
 /// The coefficients of n(w) (blend_terms.h) at some elements: A and C_ii for a target, or C_ij for a pair of targets. A
@@ -59,7 +59,8 @@ class BlendStorage {
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }
-  /// Returns the paths around all elements. If an element has more than kMostRingPoints points, its path adds nothing.
+  /// Returns the paths around all elements (groups/rings.h). A path that would have more than kMostRingPoints points is
+  /// replaced by a path that adds nothing to the normal.
   [[nodiscard]] const Rings& rings() const noexcept { return rings_; }
   /// Returns the faces of more than kMostRingPoints corners in ascending order. Elements that touch such a face have no
   /// path.

@@ -90,7 +90,7 @@ class FacesOfVertices {
 
 }  // namespace
 
-// A counter of the elements that two targets have in common. It has a list of the targets that move each face.
+// A counter of the elements that two targets have in common. The counter has a list of the targets that move each face.
 class BlendTerms::PairCounter {
  public:
   explicit PairCounter(const BlendTerms& terms)

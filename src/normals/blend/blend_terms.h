@@ -9,7 +9,7 @@
 /// C_ij is zero unless both targets move the same face, so terms are sparse. pair_elements() returns upper bounds of
 /// the sizes of the terms C_ij without computing the terms.
 ///
-/// Units      lengths squared, in double; lengths of the sums are twice the area.
+/// Units      lengths squared, in double; the length of a sum is twice the area.
 /// Order      sums are in the order of NormalGroups, so the bits are the same for every number of threads.
 /// Ownership  the set and the groups must outlive this object. Call target_added() after a target was added to the set.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_
@@ -45,7 +45,8 @@ class BlendTerms {
   /// Returns the number of elements.
   [[nodiscard]] std::size_t size() const noexcept;
 
-  /// Returns n_b of all elements. The list `elements` of the term is empty, which means all elements in order.
+  /// Returns the term n_b, the normals of all elements in the base. The list `elements` of the term is empty, which
+  /// means all elements in order.
   [[nodiscard]] BlendTerm base_term() const;
   /// Returns the values of base_term() only.
   [[nodiscard]] std::vector<Vec3d> base() const { return base_term().values; }
@@ -78,8 +79,8 @@ class BlendTerms {
   [[nodiscard]] bool overlap(std::size_t i, std::size_t j) const noexcept;
 
   /// Another target that moves a face which target i also moves, and an upper bound of the number of elements of
-  /// pair(i, other). pair_elements(i) returns these targets in ascending order. It computes no term: O(targets on each
-  /// of the faces of target i).
+  /// pair(i, other). pair_elements(i) returns these targets in ascending order. The function computes no term, so it
+  /// takes O(targets on each of the faces of target i).
   struct PairCount {
     std::uint32_t other = 0;
     std::uint32_t elements = 0;

@@ -16,8 +16,8 @@
 namespace chronormal {
 namespace {
 
-// The rounding error of n(t) by eq. 5 in double, relative to the sizes of the control normals. n(t) counts as zero if
-// no component is larger than this error, which unit_normal_at() in the header describes as 8 rounding errors.
+// The rounding error of n(t) by eq. 5 in double, relative to the sizes of the control normals: 8 rounding errors of
+// 2^-52. n(t) counts as zero if no component is larger than this error (unit_normal_at() in the header).
 constexpr double kEvaluationError = 16 * kUnitRoundoff;
 
 // An edge from the first corner of a face, at both ends of the segment.
@@ -25,8 +25,8 @@ struct Edge {
   Vec3d from, to;
 };
 
-// Returns the direction at an end of the segment, without rounding. It is the direction of the first nonzero control
-// normal, counted from this end.
+// Returns the direction at an end of the segment, without rounding. The result is the direction of the first nonzero
+// control normal, counted from this end.
 UnitNormal first_direction(const Vec3d& at_end, const Vec3d& middle, const Vec3d& other) noexcept {
   if (at_end != Vec3d{}) return {unit(at_end), Direction::kRegular};
   if (middle != Vec3d{}) return {unit(middle), Direction::kLimit};

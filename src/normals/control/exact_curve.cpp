@@ -285,7 +285,7 @@ Vec3d ExactCurve::normal_at_double(double t) const noexcept {
 }
 
 // Returns the blossom n0 + (s + t) / 2 linear + s t bend. Twice the blossom is the sum of two terms that Horner's rule
-// computes. One of them begins with s, the other with t.
+// computes. The first term begins with s, the second with t.
 Vec3d ExactCurve::blossom_at(double s, double t) const noexcept {
   const UnitFraction a = UnitFraction::of(s), b = UnitFraction::of(t);
   const CoefficientVector c1 = linear(), c2 = bend();

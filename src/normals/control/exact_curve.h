@@ -80,8 +80,8 @@ class ExactCurve {
   [[nodiscard]] ControlNormals rounded() const noexcept;
   /// Returns n(t). Each component is rounded a few times. t must be the result of local_time().
   [[nodiscard]] Vec3d normal_at(const LocalTime& t) const noexcept;
-  /// Returns the middle control normal of the part [s, t] of the curve, rounded as by normal_at(). It is the blossom
-  /// (polar form) of n at (s, t), which is n(t) if s = t. Both arguments must be doubles from local_time().
+  /// Returns the middle control normal of the part [s, t] of the curve, rounded as by normal_at(). The result is the
+  /// blossom (polar form) of n at (s, t), which is n(t) if s = t. s and t must be doubles from local_time().
   [[nodiscard]] Vec3d blossom_at(double s, double t) const noexcept;
   /// Returns n(t) / |n(t)|. The cases of Direction are decided exactly. t must be the result of local_time().
   [[nodiscard]] UnitNormal unit_normal_at(const LocalTime& t) const noexcept;

@@ -70,7 +70,7 @@ class SharedFaces {
     return normals_.of(topology, face, [&] { return polygon_control_normals(segment_, topology.face(face)); });
   }
 
-  /// Return the exact curve of one face, and that of the sum of several faces.
+  /// Return the exact curve of one face, and the sum of the exact curves of several faces.
   [[nodiscard]] ExactCurve exact(std::uint32_t face) const noexcept {
     const Topology& topology = *segment_.topology;
     return curves_.of(topology, face, [&] { return ExactCurve::of_polygon(segment_, topology.face(face)); });

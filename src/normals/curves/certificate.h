@@ -87,8 +87,8 @@ inline constexpr double kSmallestLength = 0x1p-400;  ///< squares of larger leng
 inline constexpr double kSmallestProvenShare = 0x1p-20;
 
 /// Returns true if it is proven that n(t) stays above the relative size `certain` at every t, so that double suffices.
-/// One determinant usually proves it: n(t) never leaves the plane through the three control normals, and is never
-/// nearer to zero than that plane.
+/// One determinant usually suffices for the proof: n(t) never leaves the plane through the three control normals, and
+/// is never nearer to zero than that plane.
 [[nodiscard]] inline bool stays_certain(const ControlNormals& c, double certain) {
   const double largest = largest_component(c);
   if (largest == 0) return true;

@@ -91,7 +91,7 @@ class Build {
 
   [[nodiscard]] std::size_t chunk_count() const { return block_count(curves_.size, kChunk); }
 
-  // Builds the next `count` chunks on this thread.
+  // Builds the next `count` chunks, of kChunk elements each, on this thread.
   template <class Source>
   void make_chunks(Source& source, std::size_t count) {
     for (; count > 0; --count) {
@@ -267,8 +267,8 @@ CurveData build_curves(const Segment& segment, const NormalGroups& groups, const
   return build_curves(segment, &groups, options, threads, reuse);
 }
 
-// The work of CurveSlices. It has two steps. The first copies both positions of each vertex side by side, if vertices
-// are in no order. The second builds the curves.
+// The work of CurveSlices, in two steps. The first step copies both positions of each vertex side by side, but only if
+// vertices are in no order. The second step builds the curves.
 struct CurveSlices::State {
   State(const Segment& of_segment, const NormalGroups* of_groups, const CurveOptions& options, CurveData* reuse)
       : segment(of_segment),

@@ -1,4 +1,5 @@
-/// Counts the bytes that NormalCurves take, and the number of their flagged elements, without building them.
+/// Counts the bytes that NormalCurves take, and the number of their flagged elements (for which float32 is not accurate
+/// enough), without building the curves.
 ///
 ///     CurveCount count = count_curves(segment, {0, 1024}, exact);
 ///     count.add(count_curves(segment, {1024, 1024}, exact));          // ... and so on to the last face
@@ -35,10 +36,10 @@ struct CurveCount {
 /// The number of faces that are counted together. Each counted range must begin at a multiple of this number.
 inline constexpr std::size_t kCountedTogether = 512;
 
-/// Counts the sizes of exact curves of some faces. Also writes the control normals of these faces and their longest
-/// edges, sixteen faces to an element of `exact`. Preconditions: faces.first is a multiple of kCountedTogether;
-/// faces.end() is such a multiple, too, or the end of all faces, unless there are no faces; exact has ceil(faces.count
-/// / 16) elements.
+/// Counts the sizes of the curves of some faces, for the default tolerance of NormalCurves. Also writes the control
+/// normals of these faces and their longest edges, sixteen faces to an element of `exact`. Preconditions: faces.first
+/// is a multiple of kCountedTogether; faces.end() is such a multiple, too, or the end of all faces, unless there are no
+/// faces; exact has ceil(faces.count / 16) elements.
 [[nodiscard]] CurveCount count_curves(const Segment& segment, IndexRange faces, std::span<EdgedTile> exact);
 
 }  // namespace chronormal::inline internal

@@ -1,6 +1,7 @@
 /// Evaluates prepared curves, for any class that has CurveData. An evaluation goes through the runs of blocks
-/// (curve_data.h), passes each run to the kernel as a whole, and then overwrites the flagged elements of the result
-/// with values computed in double. outputs.h lists the forms of results. Nothing here allocates or throws.
+/// (curve_data.h), passes each run to the kernel as a whole, and then overwrites the flagged elements, for which
+/// float32 is not accurate enough, with values computed in double. outputs.h lists the forms of results. Nothing here
+/// allocates or throws.
 #ifndef CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 #define CHRONORMAL_NORMALS_CURVES_CURVE_EVALUATION_H_
 

@@ -50,7 +50,7 @@ struct FlaggedElements {
     numbers.push_back(number);
   }
 
-  /// Adds elements that are side by side in another tile. The first of them is in lane `first` of that tile.
+  /// Adds elements that are side by side in another tile. The first added element is in lane `first` of that tile.
   void append(std::span<const std::size_t> more, const FlaggedTile& from, std::size_t first,
               std::span<const std::int16_t> of_more) {
     const std::size_t lane = size() % kTile, fitting = std::min(more.size(), kTile - lane);

@@ -1,6 +1,6 @@
 // Evaluates NormalCurves in one pass over the runs of blocks (curve_data.h). Each run is passed to the kernel as a
-// whole. Then the flagged elements of the result are overwritten with values computed in double. outputs.h lists the
-// forms of results.
+// whole. Then the flagged elements, for which float32 is not accurate enough, are overwritten with values computed in
+// double. outputs.h lists the forms of results.
 
 #include "chronormal/normals/normal_curves.h"
 
@@ -26,7 +26,8 @@
 namespace chronormal {
 namespace {
 
-// The number of elements that a thread takes at a time. Fewer elements are not shared between threads.
+// The number of elements that a thread takes at a time. If there are fewer than twice as many elements, one thread
+// computes all of them.
 constexpr std::size_t kPiece = 8192;
 // The number of elements that are evaluated at all requested t before the next elements are evaluated. kManyTimes
 // elements fit into the nearest cache. kManyTimesLarge is for results that bypass the caches, which should be written
@@ -140,7 +141,7 @@ const CurveData& NormalCurves::data() const noexcept {
   return none;
 }
 
-// Returns the data of curves whose memory is to be reused. Curves without elements may have no data. They then get
+// Returns the data of curves whose memory is to be reused. Curves without elements may have no data. Such curves get
 // empty data, in which memory can be kept.
 CurveData* NormalCurves::data_of(NormalCurves* reuse) {
   if (reuse == nullptr) return nullptr;
@@ -205,7 +206,7 @@ std::size_t NormalCurves::unit_normals(std::span<const double> times, std::span<
 std::size_t NormalCurves::uncertain_count(double time) const noexcept {
   const CurveData& curves = data();
   const double t = local_time(time);
-  // At both ends, n(t) is a control normal, and nothing is rounded. So no element is uncertain there.
+  // At t = 0 and t = 1, n(t) is a control normal and nothing is rounded, so no element is uncertain there.
   if (!(0 < t && t < 1)) return 0;
   std::size_t count = 0;
   for_flagged(

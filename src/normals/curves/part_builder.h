@@ -151,8 +151,8 @@ Examined examined(const Source& source, std::size_t element, const PrecisionLimi
   return result;
 }
 
-// The requirements that follow from a tolerance. They say whether blocks keep lengths, and how precise elements must
-// be: for tiles that are computed in double and, if the tolerance allows it, for tiles in float32.
+// The requirements that follow from a tolerance. The members say whether blocks keep lengths, and how precise elements
+// must be: for tiles that are computed in double and, if the tolerance allows it, for tiles in float32.
 struct BuildLimits {
   explicit BuildLimits(double tolerance)
       : with_lengths(!(tolerance > kExactTolerance)),
@@ -235,7 +235,7 @@ class PartBuilder {
     return {elements.first + first, std::min(count * kTile, elements.count - first)};
   }
 
-  // Computes a few tiles, and finds for each of them what its block needs.
+  // Computes a few tiles, and finds for each of them the precision and the degree that its block needs.
   template <class Source>
   void add_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles, Need* needs) {
     std::array<TileSummary, kWrittenTiles> summaries;
@@ -263,8 +263,8 @@ class PartBuilder {
   template <class Source>
   void write_tiles(Source& source, IndexRange elements, std::span<ControlTile> tiles,
                    std::span<TileSummary> summaries) {
-    // If elements of the last tiles had to be examined, this is likely for the next tiles, too. So error bounds are
-    // requested now, while they cost little.
+    // If elements of the last tiles had to be examined, elements of the next tiles probably will be, too. So error
+    // bounds are requested together with the tiles, which costs little.
     const bool with_bounds = std::exchange(is_examined_, false);
     has_bounds_ = 0;
     const auto in_double = [&](std::size_t first, std::size_t count) {
@@ -356,7 +356,7 @@ class PartBuilder {
       }
     });
     if (out_of_range) flagged |= rescale(source, elements, flagged, tile, alone);
-    // The tile has new values, which replace sums that were only rounding error. So the degrees of its elements may
+    // New values in the tile have replaced sums that were only rounding error, so the degrees of these elements may
     // have changed.
     for (std::size_t lane = 0; lane < kTile; ++lane) {
       if (alone[lane]) summary.set_degree(lane, degree(alone[lane]->normals));
@@ -381,7 +381,7 @@ class PartBuilder {
     return flagged;
   }
 
-  // Adds neighbouring flagged elements, whose values are stored in certificates_.
+  // Adds neighbouring elements to the flagged elements of the part. Their control normals are in certificates_.
   void add_known(std::size_t first, std::size_t lane, std::size_t count) {
     std::array<std::size_t, kTile> numbers;
     for (std::size_t i = 0; i < count; ++i) numbers[i] = first + lane + i;

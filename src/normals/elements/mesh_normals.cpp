@@ -127,7 +127,7 @@ void put(const Rgb10A2Output& output, std::size_t i, Rgb10A2 value) { output.res
 
 // ---- the two sources of elements -----------------------------------------------------------------------------------
 
-// A form that writes the elements from number `first` on to memory that begins with element `first`.
+// A form of output for memory that begins with element `first` and not with element 0.
 template <class Form>
 struct Shifted {
   Form form;
@@ -147,8 +147,8 @@ Rgb10A2Output form_of(std::span<Rgb10A2> view) { return {view, MemoryAccess{}}; 
 
 // The evaluation of a segment at one t.
 struct AtTime {
-  // The number of elements of a tile. It is the number of bits that write_tile() returns. A smaller number would be
-  // slower, since starting an evaluation takes as long as evaluating some elements.
+  // The number of elements of a tile, which is also the number of bits that write_tile() returns. A smaller number
+  // would be slower, since starting an evaluation takes as long as evaluating some elements.
   static constexpr std::size_t kTileElements = 64;
   template <class Output>
   using Values = typename ValuesOf<Output>::type;
@@ -387,7 +387,7 @@ struct MeshNormals::Parts {
     return {first, std::min(outputs.count, size() - first)};
   }
 
-  // Decides which outputs share a normal. This is done once for a mesh.
+  // Decides which outputs share a normal. The groups are made once for each mesh.
   Status share(const Motion& motion) {
     Result<NormalGroups> made = make_groups(motion, options.elements);
     if (!made) return made.error();

@@ -100,7 +100,8 @@ NormalGroups::NormalGroups(const Topology& topology, std::vector<std::uint32_t> 
   for (const std::uint32_t e : element_of_corner_) ++offsets_[e + 1];
   std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
 
-  // Corners are added to their elements face by face. The order of the faces does not change if the mesh is shuffled.
+  // Corners are added to their elements face by face. The order of the faces depends only on their vertices, so the
+  // sums have the same bits if the mesh lists its faces in another order.
   std::vector<std::uint32_t> next = offsets_;
   for (const std::uint32_t f : faces_by_vertices(topology)) {
     const std::size_t first = first_corner(topology, f);

@@ -47,7 +47,8 @@ class PathMaker {
     return path_;
   }
 
-  // Returns true if the last path that was made adds nothing, in place of a path with more than most_points points.
+  // Returns true if the path that was made last would have more than most_points points, and was replaced by a path
+  // that adds nothing.
   [[nodiscard]] bool is_left_out() const { return is_left_out_; }
 
  private:
@@ -57,7 +58,7 @@ class PathMaker {
     std::size_t first, last;  // the first and the last point of the piece, as indices into points_
   };
 
-  // Returns a path that adds nothing, in place of a path that is too long.
+  // Returns a path that consists only of the centre and adds nothing, in place of a path that is too long.
   const Path& no_path() {
     is_left_out_ = true;
     path_.resize(1);
@@ -190,7 +191,8 @@ Rings Rings::of_groups(const Topology& topology, const NormalGroups& groups, std
   std::vector<std::uint32_t> left_out;
   Rings rings(groups.size(), [&](std::size_t e) -> const Path& {
     const Path& path = paths.make(e);
-    // Each path is requested twice, but must be listed once. Elements are requested in ascending order.
+    // Each path is requested twice, but its element must be listed only once. Elements are requested in ascending
+    // order.
     if (paths.is_left_out() && (left_out.empty() || left_out.back() < e))
       left_out.push_back(static_cast<std::uint32_t>(e));
     return path;

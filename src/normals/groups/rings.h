@@ -58,7 +58,8 @@ class Rings {
   [[nodiscard]] RingSlices view() const noexcept { return {indices_.data(), first_row_.data(), first_row_.size() - 1}; }
   [[nodiscard]] bool empty() const noexcept { return indices_.empty(); }
   [[nodiscard]] std::size_t row_count() const noexcept { return first_row_.back(); }
-  /// Returns the elements with more points than most_points, in ascending order. Their paths add nothing.
+  /// Returns the elements with more points than most_points, in ascending order. The paths of these elements add
+  /// nothing to sums.
   [[nodiscard]] std::span<const std::uint32_t> left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t bytes() const noexcept {
     return (indices_.capacity() + left_out_.capacity()) * sizeof(std::uint32_t) +
@@ -74,7 +75,7 @@ class Rings {
   std::vector<std::uint32_t> left_out_;
 };
 
-/// The paths around the elements of some groups. They are made when they are first requested.
+/// The paths around the elements of some groups. The paths are made when they are first requested.
 struct RingsOfGroups {
   std::once_flag once;
   Rings rings;

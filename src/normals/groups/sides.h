@@ -1,9 +1,9 @@
 /// Finds the two sides of a sheet, which consists of faces that are back to back. Used by normals and workflow.
 ///
 /// A cape, a flag or a card of hair is often modelled twice, once for each side. Every face then has a *back*: a face
-/// with the same points in reversed order. The normals of the two cancel, so a point that belongs to both sides would
-/// have no direction. The sides are therefore treated as two surfaces. At a point where both sides meet, two relations
-/// between faces decide which faces belong to the same side:
+/// with the same points in reversed order. The normals of a face and its back cancel, so a point that belongs to both
+/// sides would have no normal. The sides are therefore treated as two surfaces. At a point where both sides meet, two
+/// relations between faces decide which faces belong to the same side:
 ///
 ///     together    two faces with an edge from the point in common, along which one face leaves the point and the other
 ///                 comes to it

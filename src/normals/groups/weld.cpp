@@ -16,8 +16,8 @@ namespace {
 // Returns a number that is equal for equal coordinates, also for -0 and 0.
 std::uint32_t key(float coordinate) { return bit_cast<std::uint32_t>(coordinate + 0.0F); }
 
-// The position of a vertex as three keys, which can be compared. Vertices of separate bodies are separated before their
-// positions are compared.
+// The position of a vertex as three keys, which can be compared. The keys need no body: vertices of different bodies
+// (Motion::body_of_vertex) are separated before their positions are compared.
 using PlaceKey = std::array<std::uint32_t, 3>;
 
 PlaceKey place_key(const Motion::Keyframe& keyframe, std::uint32_t vertex) {

@@ -33,7 +33,7 @@ namespace {
 constexpr std::size_t kFaceBatch = 1024;  // number of doubtful faces for which there is room on the stack
 constexpr std::size_t kFaceBlock = 16;
 constexpr std::size_t kBlockOfVertices = 16384;
-// Number of elements whose faces must be in the window at the same time.
+// The number of elements whose faces must be in the window of face normals (groups/face_window.h) at the same time.
 constexpr std::size_t kGroupBatch = 256;
 constexpr std::size_t kLargestWindow = std::size_t{1} << 14;  // normals of this many faces take 256 KiB
 constexpr std::size_t kWindowSamples = 64;
@@ -140,8 +140,8 @@ FaceNormal face_normal(const Segment& segment, std::size_t f, const LocalTime& t
   return rounded(normal_at_time(segment, f, t));
 }
 
-// Returns the direction of a normal. It is computed in double if rounding turns the normal by at most 2^-23 = 1.2e-7
-// rad, and otherwise from make_exact().
+// Returns the direction of a normal. If rounding turns the normal by at most 2^-23 = 1.2e-7 rad, the direction is
+// computed in double, and otherwise from the exact curve that make_exact() returns.
 template <class MakeExact>
 UnitNormal unit_normal_of(const NormalAtTime& normal, const LocalTime& t, const MakeExact& make_exact) {
   constexpr double kLargestAngle = 0x1p-23;
@@ -182,7 +182,7 @@ UnitNormal unit_normal_of_group(const FacesAtTime& shared, const NormalGroups& g
     sum.error += normal.error;
     magnitude += sum_abs(normal.n);
   }
-  // Each addition rounds by at most u times the sum of the absolute values.
+  // Each addition rounds by at most u = 2^-53 times the sum of the absolute values.
   sum.error += kUnitRoundoff * static_cast<double>(groups.faces(element).size()) * magnitude;
   return unit_normal_of(sum, t, [&] { return shared.faces.exact_sum(groups.faces(element)); });
 }
@@ -211,8 +211,8 @@ std::span<const std::uint32_t> faces_of(const NormalGroups& groups, IndexRange e
   return {first.data(), last.data() + last.size()};
 }
 
-// Returns the smallest power of two for which a window can hold the faces around nine of ten batches of elements.
-// Returns 0 if that window would be too large for the cache.
+// Returns the smallest power of two for which a window of face normals can hold the faces around nine tenths of the
+// examined batches of elements. Returns 0 if that window would be too large for the cache.
 std::size_t window_for(const NormalGroups& groups) {
   std::array<std::size_t, kWindowSamples> counts{};
   const std::size_t batches = groups.size() / kGroupBatch;
@@ -234,12 +234,12 @@ bool is_packed(const VectorView<const float>& points) {
 struct Scratch {
   bool vertices_are_near = true;  // true if vertices of neighbouring faces are neighbours in memory
   AlignedArray<float> pairs;      // x y z _ of both ends of each vertex, one vertex after the other; or empty
-  // Number of face normals in the window, a power of two; 0 if all face normals are stored.
+  // The number of face normals in the window (groups/face_window.h), a power of two; 0 if all face normals are stored.
   std::size_t window = 0;
   AlignedBytes normals;  // normals of faces, from which those of groups are added up
 };
 
-// One call of unit_normals(), at one t.
+// One call of NormalRecompute::unit_normals(), at one t.
 class Call {
  public:
   // Evaluates faces, without scratch memory. The normal of element `first` is written to result[0].

@@ -18,8 +18,8 @@ namespace chronormal::inline internal {
 
 struct SampledNormal {
   Vec3d normal;
-  /// The factor for a length by area: the sum of |n| over the corners, divided by the sum of the lengths of their
-  /// terms.
+  /// The factor that scales `normal` to the length that it would have with weights by area: the sum of the lengths |n|
+  /// of the face normals over the corners, divided by the sum of the lengths of the terms of the corners.
   double to_area = 0;
 
   [[nodiscard]] Vec3d with_area_length() const noexcept { return to_area * normal; }

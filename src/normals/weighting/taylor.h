@@ -22,7 +22,8 @@ using Series = std::array<Interval, M>;
 template <std::size_t M>
 using VectorSeries = std::array<Series<M>, 3>;
 
-/// Returns the first K coefficients of the product of two series, of which coefficients that are missing count as zero.
+/// Returns the first K coefficients of the product of two series. Coefficients beyond the last one of a series count as
+/// zero.
 template <std::size_t K, std::size_t M, std::size_t N>
 [[nodiscard]] Series<K> product(const Series<M>& a, const Series<N>& b) noexcept {
   Series<K> result{};
@@ -84,8 +85,8 @@ template <std::size_t M>
   return {shifted(p[0], around), shifted(p[1], around), shifted(p[2], around)};
 }
 
-/// Returns the series y of p^exponent. It uses the recurrence that follows from p y' = exponent p' y. `first` is the
-/// first coefficient of y.
+/// Returns the series y of p^exponent. The function uses the recurrence that follows from p y' = exponent p' y. `first`
+/// is the first coefficient of y.
 template <std::size_t K, std::size_t M>
 [[nodiscard]] Series<K> power(const Series<M>& p, double exponent, const Interval& first) noexcept {
   Series<K> y;

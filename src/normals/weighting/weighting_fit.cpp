@@ -98,8 +98,8 @@ VectorSeries<2> about(const IntervalEdge& e, double t) {
   return result;
 }
 
-// Returns the squared length of a vector, given by its series about c, as a series about all points of c + around. Its
-// first coefficient about c is computed as a sum of squares, so it is never negative.
+// Returns the squared length of a vector, given by its series about c, as a series about all points of c + around. The
+// first coefficient about c is computed as a sum of squares, so that it is never negative.
 template <std::size_t M>
 Series<2 * M - 1> squared_length(const VectorSeries<M>& v, const Interval& around) {
   Series<2 * M - 1> squares = dot_product<2 * M - 1>(v, v);
@@ -112,8 +112,8 @@ VectorSeries<kTerms> unit_series(const VectorSeries<3>& n, const Interval& aroun
   return scaled_by<kTerms>(power<kTerms>(squares, -0.5, reciprocal(square_root(squares[0]))), shifted(n, around));
 }
 
-// Returns the angle between two edges, in radians, as a series. Its derivative is (x y' - y x') / (x^2 + y^2) with x =
-// e.f and y = |e x f|.
+// Returns the angle between two edges, in radians, as a series. The derivative of the angle is (x y' - y x') / (x^2 +
+// y^2) with x = e.f and y = |e x f|.
 Series<kTerms> angle_series(const VectorSeries<2>& e, const VectorSeries<2>& f, const Interval& around) {
   const VectorSeries<3> c = cross_product<3>(e, f);
   const Series<3> x_here = dot_product<3>(e, f), x = shifted(x_here, around);
@@ -242,8 +242,8 @@ struct Element {
             (1 + 1e-12) * sum.slack * largest};
   }
 
-  // Returns true if a corner adds something to the normal at some time. A corner of a face that never has an area, or
-  // at an edge that always has length 0, never does.
+  // Returns true if a corner adds something to the normal at some time. A corner adds nothing if its face never has an
+  // area or, unless weights are uniform, if an edge at the corner always has length 0.
   [[nodiscard]] bool adds_something(std::size_t c) const {
     if (!of_faces[faces[c]].area) return false;
     if (weighting == Weighting::kUniform) return true;

@@ -23,7 +23,7 @@ namespace chronormal::inline internal {
 
 inline constexpr std::size_t kBlock = 32;
 
-// A larger degree is useless, since the weights at equidistant nodes grow like 2^degree.
+// A larger degree of the scheme lagrange is useless, since the weights at equidistant nodes grow like 2^degree.
 inline constexpr std::size_t kMaxLagrangeDegree = 64;
 inline constexpr std::size_t kMaxDeCasteljauNormals = 32;  // an evaluation with K normals takes K (K - 1) / 2 slerps
 
@@ -48,8 +48,8 @@ enum class Formula {
   return f == Formula::kSum || f == Formula::kSumOf2 || f == Formula::kSumOf3 || f == Formula::kSumOf4;
 }
 
-/// Returns the values that a formula other than a sum needs at one t. They are t itself, or the Bernstein weights of a
-/// quadratic and of its square.
+/// Returns the values that a formula other than a sum needs at one t. The values are t itself, or the Bernstein weights
+/// of a quadratic and of its square.
 [[nodiscard]] SharedValues shared_values(Formula formula, double t) noexcept;
 
 /// A reference to coefficients in blocks. The memory belongs to the caller and is aligned to 64 bytes.

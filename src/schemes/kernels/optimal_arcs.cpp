@@ -41,7 +41,7 @@ HWY_INLINE Real small_cosine(Real x) {
 }
 
 // Returns the angle in radians between two unit vectors, given the square of their distance. Below a right angle the
-// result is that of angle_of_squared_chord() of mean_error.h; for larger angles it is too large.
+// result is that of angle_of_squared_chord() of mean_error.h; for larger angles the result is too large.
 HWY_INLINE Real angle_of_chord(Real square) {
   const Real z = Real(0.25) * square;
   const Real series =
@@ -81,7 +81,7 @@ struct Search {
   }
 };
 
-// Three arcs with ascending g, and their mean errors.
+// Three arcs with ascending g (see the top of this file), and their mean errors.
 struct Bracket {
   Real low, middle, high;
   Real at_low, at_middle, at_high;

@@ -25,8 +25,8 @@ double end_of_fine_bin(std::size_t bin) noexcept {
 
 constexpr std::array<std::string_view, 6> kRules = {"gltf", "lerp", "nlerp", "slerp", "step", "flat"};
 
-// Returns true if two shards may belong to one audit: both judge the same vertices at the same samples by the same
-// rule.
+// Returns true if two shards may belong to one audit: both shards judge the same vertices at the same samples by the
+// same AuditRule.
 bool are_of_one(const Audit& a, const Audit& b) {
   const auto same_subject = [](const AuditSubject& one, const AuditSubject& other) {
     return one.kind == other.kind && one.weighting == other.weighting && one.segments == other.segments &&
@@ -89,11 +89,12 @@ WorseRespects find_worse(const MotionError& after, const MotionError& before) no
   // Tolerances for rounding errors, in degrees. A sum in float32 has an error of 1e-7 times the length of its terms,
   // and a normal may be a hundredth as long as the terms of its sum.
   constexpr double kWorst = 0.05, kMean = 0.001;
-  // The average also grows if fewer samples are judged, for example because deltas are gone that were only rounding
-  // errors. For this reason the sum of all errors must grow as well.
+  // The average also grows if fewer samples are judged, for example because deltas that were only rounding errors have
+  // been removed. For this reason the sum of all errors must grow as well.
   const bool is_farther =
       after.mean() > before.mean() + kMean && after.sum > before.sum + kMean * static_cast<double>(after.judged);
-  // Rounding may tear edges that were nearly torn before. One more torn edge is allowed for each hundred torn edges.
+  // An edge is torn if the errors at its two vertices differ by more than 10 degrees. Rounding may tear edges that were
+  // nearly torn before, so one more torn edge is allowed for each hundred torn edges.
   const bool is_torn = after.samples > 0 && before.samples > 0 && after.torn_edges() > 1.01 * before.torn_edges() + 0.5;
   return {after.unlit > before.unlit, is_farther, after.worst > before.worst + kWorst, is_torn};
 }
@@ -106,7 +107,7 @@ std::size_t FineBins::operator[](std::size_t number) const noexcept {
 
 void FineBins::add(std::size_t number, std::uint64_t count) {
   if (count == 0) return;
-  // The usual case: bins come in ascending order.
+  // Bins usually come in ascending order, so the new bin is usually the last one.
   if (bins_.empty() || bins_.back().number() < number) return bins_.push_back(Bin(number, count));
   const auto at =
       std::partition_point(bins_.begin(), bins_.end(), [&](const Bin& bin) { return bin.number() < number; });
@@ -218,8 +219,9 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
 
 void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, const AuditPlace& at, MotionError& error) {
   constexpr std::size_t kEdgeBlock = 4096;
-  // If the differences at both ends of an edge are shorter than half of the smallest tear, the edge is not torn. Most
-  // edges pass this test and need no other.
+  // `differences` are the rendered minus the true normals. An edge is torn if the differences at its two ends are too
+  // far apart. If both differences are shorter than half of the smallest limit, the edge is not torn. Most edges pass
+  // this test and need no other.
   constexpr float kQuarter = 0.999F * TearCounts::kSquares[0] / 4;  // the factor leaves a margin for rounding
   std::vector<std::uint8_t> is_far(part.vertices_of_edges());
   std::size_t far = 0;

@@ -40,10 +40,10 @@ class BlendSource {
   static constexpr bool kNeedsEnds = false;
 
   /// Creates a source. shading, truth, part, and the skin through which the mesh is seen (if there is one) must outlive
-  /// the source. Its outputs are the outputs of the part. If the joints of the skin move, moment must return the time
-  /// in seconds. `involved` lists targets in ascending order. `weights` writes a value for each of these targets, and
-  /// all other targets always have weight 0. The caller places the source at `samples` moments of each segment, in
-  /// ascending order.
+  /// the source. The outputs of the source, which are vertices or corners, are the outputs of the part. If the joints
+  /// of the skin move, moment must return the time in seconds. `involved` lists targets in ascending order. `weights`
+  /// writes a value for each of these targets, and all other targets always have weight 0. The caller places the source
+  /// at `samples` moments of each segment, in ascending order.
   BlendSource(const GltfShading& shading, const AuthorTruth& truth, const JudgedPart& part, AuditRule rule,
               std::vector<std::size_t> involved, Weights weights, Moment moment, std::size_t samples,
               MeshSkin* skin = nullptr);
@@ -57,8 +57,8 @@ class BlendSource {
   [[nodiscard]] std::size_t placed() const noexcept { return placed_; }
   void forget() { known_ = false; }
   [[nodiscard]] AuditRule rule() const noexcept { return rule_; }
-  /// Turn sums of face normals into true normals, at the placed moment or at the given weights. They rotate each sum as
-  /// the author's normal is rotated from the normal of the geometry.
+  /// Turn sums of face normals into true normals, at the placed moment or at the given weights. Both functions rotate
+  /// each sum as the author's normal is rotated from the normal of the geometry.
   void turn(std::span<const Vec3d> positions, std::span<Vec3d> normals) const { turn_at(now_, positions, normals); }
   void turn_at(std::span<const double> weights, std::span<const Vec3d> positions, std::span<Vec3d> normals) const;
   /// Adds up the stored normals for the moment of the last place() as they are rendered, and finds how the skin
@@ -76,8 +76,8 @@ class BlendSource {
 
  private:
   using Delta = std::pair<std::uint32_t, Vec3f>;
-  // Weights and positions at both ends of a segment. Most tracks are linear between two keys, and then vertices move on
-  // straight lines. For such tracks, the deltas of many targets need to be added up only at the ends.
+  // Weights and positions at both ends of a segment. Most tracks of weights are linear between two keyframes, and then
+  // vertices move on straight lines. For such tracks, the deltas of many targets need to be added up only at the ends.
   struct SegmentEnds {
     std::size_t segment = 0;
     std::vector<double> start, end;  // the weights of the involved targets at both ends
@@ -113,7 +113,7 @@ class BlendSource {
   std::vector<double> now_, start_, end_;
   StoredSums sums_;
   // The sums of stored normals and their weighted deltas: at the moment of the last place(), and at the start and the
-  // end of its segment. Each is an array (outputs, 3).
+  // end of the segment of this moment. Each sum is an array (outputs, 3).
   std::span<const float> shown_now_, shown_start_, shown_end_;
 };
 

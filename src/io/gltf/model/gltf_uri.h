@@ -1,8 +1,8 @@
-/// Finds the bytes to which the URI of a glTF buffer refers. They are in the URI itself (data:...;base64,) or in a
+/// Finds the bytes to which the URI of a glTF buffer refers. The bytes are in the URI itself (data:...;base64,) or in a
 /// file. Private to io.
 ///
-/// The file must be a regular file inside the folder of the asset. This is checked after the URI is decoded and links
-/// and .. are followed, because an untrusted model must not read /etc/passwd or wait for a device.
+/// The file must be a regular file inside the folder of the asset. The path is checked after the URI is decoded and
+/// links and ".." are followed, because an untrusted model must not read /etc/passwd or wait for a device.
 #ifndef CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 #define CHRONORMAL_IO_GLTF_MODEL_GLTF_URI_H_
 

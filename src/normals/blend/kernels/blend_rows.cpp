@@ -158,8 +158,8 @@ std::uint64_t UnitNormalsOfRows(std::uint64_t elements, std::size_t place, const
   });
 }
 
-// The factors that give a bound of the error of a sum over a path. The factors are multiplied by the largest component
-// of the path's edges and of half the distances between neighbours whose products are added.
+// The factors of the error bound of unit_normals_of_rings() (blend_rows.h). An object returns the bound for m, which is
+// the largest component of the edges of a path and of half the distances between neighbours whose products are added.
 struct RingError {
   double of_square, of_edge, alone;
 

@@ -1,4 +1,5 @@
-/// The inner loops of BlendNormals, on rows of four doubles. They add up terms, move points, and compute unit normals.
+/// The inner loops of BlendNormals, on rows of four doubles. The loops add up terms, move points, and compute unit
+/// normals.
 ///
 /// A row is x, y, z and a fourth number. In a row of a sum of terms, the fourth number is an error bound in units of
 /// kFloatUnitRoundoff; in a point it is 0. Every loop gives the same bits on all instruction sets.

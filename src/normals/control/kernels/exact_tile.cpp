@@ -35,7 +35,7 @@ void put(BoundedTile& tile, std::size_t lane, const BoundedNormals& c) noexcept 
 void set_polygon(const Segment& segment, std::size_t face, std::size_t lane, ExactTile& tile) noexcept {
   const PolygonNormals polygon = polygon_control_normals(segment, segment.topology->face(face));
   set_normals(polygon.normals, lane, tile);
-  // The fan of a polygon has more roundings than a triangle. So the magnitude of the polygon is raised until it covers
+  // The fan of a polygon has more roundings than a triangle, so the magnitude of the polygon is raised until it covers
   // the errors of the fan.
   tile.magnitude[lane] = magnitude_above(maximum_number(
       polygon.magnitude, *std::max_element(polygon.errors.begin(), polygon.errors.end()) / (12 * kUnitRoundoff)));

@@ -11,8 +11,8 @@
 
 namespace chronormal::inline internal {
 
-/// The control normals of sixteen faces in double, in planes as in ControlTile. They have the same bits as those that
-/// face_control_normals() computes.
+/// The control normals of sixteen faces in double, in planes as in ControlTile. They have the same bits as the control
+/// normals that face_control_normals() computes.
 struct alignas(64) ExactTile {
   double normals[9][kTile];
   float magnitude[kTile];
@@ -26,8 +26,8 @@ struct BoundedTile : ExactTile {
 
 /// The control normals of sixteen faces, and the lengths of their edges.
 struct EdgedTile : ExactTile {
-  /// For each face, a bound of every component of the edges from its first corner, at both ends of the segment. It is
-  /// infinity if the face is not a triangle.
+  /// For each face, a bound of every component of the edges from its first corner, at both ends of the segment. The
+  /// bound is infinity if the face is not a triangle.
   float longest[kTile];
 };
 

@@ -151,8 +151,8 @@ HWY_INLINE Floats LongestAbove(const TriangleLanes& p) {
   return hn::Mul(hn::Set(kFloats, 1 + 0x1p-22f), hn::Max(e, f));  // the factor covers the rounding of the differences
 }
 
-// Returns the bounds of MagnitudeAbove() separately for n0, m and n1. Each is computed from the ends of the segment on
-// which the control normal depends. The bound for m covers both of its products.
+// Returns the bounds of MagnitudeAbove() separately for n0, m and n1. Each bound is computed from the ends of the
+// segment on which its control normal depends. The bound for m covers both of its products.
 HWY_INLINE Lanes3 MagnitudesAbove(const TriangleLanes& p) {
   const Floats e0 = MaxAbs(p.b0 - p.a0), e1 = MaxAbs(p.b1 - p.a1);
   const Floats f0 = MaxAbs(p.c0 - p.a0), f1 = MaxAbs(p.c1 - p.a1);
@@ -185,7 +185,7 @@ HWY_INLINE bool HalfOfTriangles(const TriangleLanes& p, Floats magnitude, std::s
   return !hn::AllTrue(kDoubles, hn::Gt(smallest, certain));
 }
 
-// Stores the bounds of the errors of half of the lanes, which are those of CrossSum::error().
+// Stores the error bounds of half of the lanes. The bounds are the values of CrossSum::error().
 template <int kHalf>
 HWY_INLINE void StoreErrors(const Lanes3& magnitudes, double (*errors)[kTile], std::size_t lane) {
   const Doubles3 e = Scale(hn::Set(kDoubles, 12 * kUnitRoundoff), ToDouble<kHalf>(magnitudes));

@@ -1,4 +1,4 @@
-// Proves for sixteen elements, in lanes of double, that n(t) stays long enough. The operations are those of
+// Proves for sixteen elements, in lanes of double, that n(t) stays long enough. The code does the same operations as
 // certificate.h.
 #include "normals/curves/kernels/certify.h"
 
@@ -185,7 +185,7 @@ void CertifyLanes(const BoundedTile& tile, const PrecisionLimits& limits, std::s
   const Vectors given{VectorAt(tile, 0, lane), VectorAt(tile, 3, lane), VectorAt(tile, 6, lane)};
   const Doubles size0 = LargestOf(given.n0), size_m = LargestOf(given.m), size1 = LargestOf(given.n1);
   const Doubles largest = hn::Max(hn::Max(size0, size_m), size1);
-  // A NaN may be lost in the maximum of two numbers. So the sum of all nine components is computed, which is NaN if a
+  // A NaN may be lost in the maximum of two numbers, so the sum of all nine components is computed, which is NaN if any
   // component is NaN.
   const Doubles3 sums = (given.n0 + given.m) + given.n1;
   const Doubles sum = hn::Add(hn::Add(sums.x, sums.y), sums.z);

@@ -13,10 +13,11 @@
 
 namespace chronormal::inline internal {
 
-/// The results for those elements of a tile that were asked for. Each number is a set of elements, in which bit i is
-/// element i.
+/// The results for those elements of a tile that certify_tile() was asked to examine. Each number is a set of elements,
+/// in which bit i is element i.
 struct TileCertificates {
-  /// The flagged elements, as in FlaggedNormals; the other lanes have no meaning.
+  /// The control normals of the flagged elements, as in FlaggedNormals. The lanes of all other elements have no
+  /// meaning.
   FlaggedTile scaled;
   std::int16_t exponents[kTile];  ///< exponents of the flagged elements, as in FlaggedNormals
   std::uint32_t known = 0;        ///< elements that were decided; the others are huge, tiny, or mostly noise

@@ -379,7 +379,7 @@ HWY_EXPORT(EvaluateRgb10A2);
 namespace {
 
 // Calls evaluate() for parts of a span, one after the other. Each call gets the memory for the results of its part, and
-// the number of bytes by which to prefetch in advance.
+// the number of bytes by which to prefetch in advance (prefetch.h).
 template <class Result, class Evaluate>
 void at_best_distance(const BlockSpan& span, const Result& result, const Evaluate& evaluate) {
   if (span.kind == BlockKind::kNone) return;

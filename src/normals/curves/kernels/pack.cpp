@@ -74,7 +74,8 @@ HWY_NOINLINE PieceTest TestPiece(const Piece& p, hn::Mask<FloatTag> needed, Floa
     if (hn::AllFalse(kFloats, open)) return whole;
     const Lanes3 a = Middle(p.n0, p.m), b = Middle(p.m, p.n1), c = Middle(a, b);
     const Floats la = Middle(p.l0, p.lm), lb = Middle(p.lm, p.l1), lc = Middle(la, lb);
-    // Both halves contain this middle point. So halving does not help in lanes in which n(t) is too short here.
+    // Both halves of the piece contain this middle point, so halving does not help in lanes in which n(t) is too short
+    // here.
     open = hn::And(open, hn::Ge(hn::Mul(sum_ratio_square, Dot(c, c)), hn::Mul(lc, lc)));
     if (hn::AllFalse(kFloats, open)) return whole;
     const PieceTest before = TestPiece<kDepth - 1>({p.n0, a, c, p.l0, la, lc}, open, enough);

@@ -217,7 +217,7 @@ HWY_INLINE std::uint32_t RoundTile(const PointColumns* points, std::size_t rows,
     const Floats magnitude = MagnitudeAbove(points, rows, lane);
     hn::Store(magnitude, kFloats, tile.magnitude + lane);
     const Floats error = hn::Mul(hn::Set(kFloats, kSumErrorAbove), magnitude);
-    // NaN counts as doubtful, too.
+    // An element whose magnitude is NaN counts as doubtful, too.
     auto some = hn::Ne(magnitude, magnitude);
     for (std::size_t k = 0; k < 9; ++k) {
       const Floats v = ToFloat(exact.normals[k] + lane);

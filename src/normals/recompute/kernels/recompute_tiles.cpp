@@ -163,8 +163,8 @@ HWY_INLINE void LoadEdges(const float* from, const float* to, const std::uint32_
 
 #endif
 
-// Returns s a + t b in double, for as many lanes from `lane` on as fit into a vector of doubles. This is half of a
-// vector of floats, or the whole vector if it has only one lane.
+// Returns s a + t b in double, for as many lanes from `lane` on as fit into a vector of doubles. A vector of doubles
+// has half as many lanes as a vector of floats, or one lane if a vector of floats has one.
 HWY_INLINE Doubles3 Lerp(Doubles s, const float (*a)[kBlock], Doubles t, const float (*b)[kBlock], std::size_t lane) {
   const HalfFloatTag part;
   const auto load = [part, lane](const float* plane)
@@ -294,8 +294,8 @@ HWY_INLINE bool Contains(const std::uint32_t* corners, std::uint32_t vertex) {
   return !hn::AllFalse(kIndices, found);
 }
 
-// The number of faces, and of terms of sums, by which memory is prefetched in advance. This is enough for about 50
-// cache misses at once.
+// The number of faces, and of terms of sums, by which memory is prefetched in advance. These distances are enough for
+// about 50 cache misses at the same time.
 constexpr std::size_t kFacesAhead = 48, kTermsAhead = 64;
 
 template <std::size_t kStride>
