@@ -73,7 +73,8 @@ struct MotionStream::State {
   bool keeps_all = false;
   std::size_t first = 0, end = 0;              // the keyframes in the window: from `first` to before `end`
   std::vector<std::vector<float>> spare = {};  // memory of keyframes that left the window
-  // The last member, since reading must end before the data that it uses are destroyed.
+  // Must be the last member, which is destroyed first, since reading must end before the data that it uses are
+  // destroyed.
   ReadAhead ahead = {};
 
   [[nodiscard]] std::vector<float> room() {

@@ -50,7 +50,7 @@ namespace chronormal::inline internal {
 /// One element of a block while a scheme is fitted to it.
 class ElementMotion {
  public:
-  /// Creates the i-th element of a block.
+  /// Prepares to fit a scheme to the i-th element of a block.
   ElementMotion(const ElementBlock& block, std::size_t i)
       : segment_(*block.segment),
         element_(block.elements.first + i),

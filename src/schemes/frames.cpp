@@ -49,7 +49,7 @@ Frame turned(const Frame& frame, double angle) {
   return {c * frame.tangent + s * frame.binormal, c * frame.binormal - s * frame.tangent, frame.normal};
 }
 
-// Mixes bits by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
+// Turns a number into a pseudo-random number by the finaliser of SplitMix64 (Steele, Lea, Flood 2014).
 std::uint64_t mixed(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
   z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
@@ -76,7 +76,8 @@ std::optional<FramePair> matrix_frames(const ElementMotion& element) {
 
 std::optional<FramePair> edge_frames(const ElementMotion& element) {
   const EdgeMotion edges = edges_of(element);
-  // If an edge has length zero, the direction is used in which it begins to grow, or from which it has shrunk to zero.
+  // If an edge has length zero at an end of the segment, it is replaced by the direction in which it begins to grow, or
+  // from which it has shrunk to zero.
   const Vec3d& u0 = element.start().vector;
   const Vec3d& u1 = element.end().vector;
   const Vec3d start = edges.start.e == Vec3d{} ? within_plane(edges.e_delta, u0) : edges.start.e;

@@ -39,8 +39,8 @@ class ExactSamples {
  public:
   explicit ExactSamples(const ControlNormals& normals) {
     sample(normals, kIntervals);
-    // If the normal turns fast between two samples, a sum over few samples would favour a wrong curve. More samples are
-    // then taken.
+    // If the normal turns fast between two samples, a sum over few samples would favour a wrong curve. In this case,
+    // more samples are taken.
     constexpr double kFastTurn = 0.15;
     double longest = 0;
     for (std::size_t i = 0; i + 1 < count_; ++i) {

@@ -91,7 +91,8 @@ HWY_INLINE void StorePacked(const Lanes3& v, float* to) {
 template <class AddressOf>
 HWY_INLINE Floats LoadBlocks(const AddressOf& address) {
 #if HWY_TARGET == HWY_AVX3
-  // A masked load fills only some of the lanes, and needs no permutation. An insertion would need one.
+  // A masked load writes four floats to some of the lanes, and needs no permutation. An insertion would need a
+  // permutation.
   __m512 blocks = _mm512_castps128_ps512(_mm_loadu_ps(address(0)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x00F0, _mm_loadu_ps(address(1)));
   blocks = _mm512_mask_broadcast_f32x4(blocks, 0x0F00, _mm_loadu_ps(address(2)));

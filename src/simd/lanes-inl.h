@@ -22,7 +22,7 @@ namespace chronormal::inline internal::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Vectors have at most 16 floats. A block of 16 elements is then a whole number of vectors on every machine.
+// Vectors have at most 16 floats, so that a block of 16 elements is a whole number of vectors on every machine.
 using FloatTag = hn::CappedTag<float, 16>;
 using IntTag = hn::RebindToSigned<FloatTag>;
 using Floats = hn::Vec<FloatTag>;

@@ -20,8 +20,8 @@
 #error "chronormal promises the same bits everywhere, which -ffast-math breaks; compile without -ffast-math"
 #endif
 
-// The following intrinsics are the only instructions that this file names. Compilers do not generate these instructions
-// from plain code without flags.
+// The following headers declare intrinsics, the only instructions that this file names. Without special flags,
+// compilers do not generate these instructions from plain code.
 #if defined(__GNUC__) && defined(__SSE2__)
 #include <emmintrin.h>
 #define CHRONORMAL_PLAIN_SSE2 1
@@ -468,7 +468,7 @@ HWY_INLINE Mask<D> FirstN(D, std::size_t count) {
 
 // ---- other types
 
-// Convert numbers to another type. Floats become integers by dropping their fractions.
+// Convert numbers to another type. Floats become integers by rounding towards zero.
 template <class D, class T, std::size_t kCount>
 HWY_INLINE Vec<D> ConvertTo(D, const Vector<T, kCount>& v) {
   return {Converted<Raw<typename D::Lane, kCount>>(v.raw)};

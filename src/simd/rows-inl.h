@@ -44,7 +44,7 @@ HWY_INLINE Doubles3 ToDouble(const Lanes3& v) {
   return {ToDouble<kHalf>(v.x), ToDouble<kHalf>(v.y), ToDouble<kHalf>(v.z)};
 }
 // Highway's plain C++ rounds values beyond the range of float to the largest float. All other targets, and static_cast,
-// give infinity.
+// round them to infinity.
 #undef CHRONORMAL_DEMOTE_CLAMPS
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
 #define CHRONORMAL_DEMOTE_CLAMPS 1

@@ -64,7 +64,7 @@ struct Format {
   Result<CacheLayout> (*find_layout)(std::string_view bytes, std::uint64_t size, const std::string& name,
                                      const CacheOptions& options) = nullptr;
 
-  // Write a mesh or a motion in the format; nullptr if writing is not supported.
+  // The next two functions write a mesh and a motion in the format. A function is nullptr if writing is not supported.
   std::string (*write_mesh)(const Topology& topology, VectorView<const float> positions,
                             const Origin& origin) = nullptr;
   Status (*write_motion)(MotionStream& stream, OutputFile& file) = nullptr;

@@ -108,7 +108,7 @@ std::vector<double> times_of(const Motion& motion) {
   return times;
 }
 
-// Keeps only the chosen keyframes of a motion that was read completely.
+// Removes all keyframes that the options do not choose from a motion that was read completely.
 Status keep_chosen(const InputOptions& options, Motion& motion) {
   if (!options.chooses_frames()) return Success{};
   if (motion.kind == MotionKind::kTargets || motion.segments.empty()) return chooses_nothing(options);
@@ -378,7 +378,8 @@ Result<Opened> open_document(FileBytes file, const std::string& path, const Inpu
   return opened;
 }
 
-// Reads a file with a whole motion. If its samples can be read one by one, leaves the positions in the file.
+// Reads a file with a whole motion. If the positions at each time can be read one by one, leaves the positions in the
+// file.
 Status read_whole_motion(const Format& format, std::string_view bytes, const std::string& path,
                          const InputOptions& options, ReadMotion& read) {
   const std::string name = file_name_of(path);

@@ -27,7 +27,7 @@ namespace chronormal::inline internal {
 /// other order stay as they are. Returns true if the order changed.
 [[nodiscard]] bool sort_listed(std::vector<std::string>& files);
 
-/// The times that the names of files give.
+/// The times of the keyframes of a sequence, as far as the numbers in the names of its files tell them.
 struct FileTimes {
   /// The times in seconds, or the numbers of frames counted from the first file. The times are 0, 1, 2, ... if the
   /// numbers in the names increase in even steps, or if the names give no times.

@@ -22,7 +22,7 @@ struct MeshFrame {
   /// True if the caller's origin was subtracted from positions, and this kept digits that float32 would have lost
   /// otherwise.
   bool has_more_digits = false;
-  /// A sentence for each kind of part of the file that was skipped.
+  /// Sentences for the user, one for each kind of data in the file that the reader left out.
   std::vector<std::string> notes = {};
 
   /// The velocity of each vertex, (V, 3), in length units per second. Empty unless the caller requests velocities and

@@ -38,8 +38,8 @@ std::optional<Scalar> find_scalar(std::string_view word) {
   return std::nullopt;
 }
 
-// Returns the character that ends lines. If a CR without LF follows the first word, the file has old Macintosh line
-// ends.
+// Returns the character that ends lines. This character is CR if the first word is followed by a CR without LF, as in
+// files of old Macintosh systems, and LF in all other files.
 char find_separator(std::string_view bytes) {
   return bytes.size() > 4 && bytes[3] == '\r' && bytes[4] != '\n' ? '\r' : '\n';
 }

@@ -5,9 +5,9 @@
 
 namespace chronormal::inline internal {
 
-/// Opens each closed standard stream on the null device, in the direction that the program does not use. Reading and
-/// writing then still fail, but no file that is opened later becomes this stream. On Windows, also makes all three
-/// streams pass bytes unchanged.
+/// Opens each closed standard stream on the null device, in the direction that the program does not use. So using such
+/// a stream still fails, but no file that is opened later gets the number of the stream. On Windows, also makes all
+/// three streams pass bytes unchanged.
 void prepare_standard_streams() noexcept;
 
 /// The functions that are called when something ends the program. Each runs in a signal handler, or in a thread that

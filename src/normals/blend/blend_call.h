@@ -1,5 +1,5 @@
 /// The evaluation of BlendNormals. set_weights() computes the data that all elements share at some weights, and
-/// evaluate() the normals of a range of elements.
+/// evaluate() computes the normals of a range of elements.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_CALL_H_
 
@@ -29,7 +29,8 @@ struct BlendInput {
 /// active targets, the elements that they touch, and the elements without stored terms.
 BlendChoice choose_path(const BlendInput& input, std::span<const double> weights, BlendPose& pose) noexcept;
 
-/// Sets the weights of a pose: chooses the path, and computes the data that all elements share at these weights.
+/// Sets the weights of a pose: chooses the path of the computation (BlendPath), and computes the data that all elements
+/// share at these weights.
 BlendChoice set_weights(const BlendInput& input, std::span<const double> weights, BlendPose& pose, Threads threads);
 
 /// Writes the normals of a range of elements, and returns how many elements of this range were recomputed, are zero, or

@@ -32,7 +32,7 @@ struct StoredTerm {
 
 struct StoredPair {
   std::uint32_t other = 0;  ///< the number of the other target, which comes later
-  /// Number of elements that touch a face which both targets move; the term has at most this many.
+  /// The number of elements that touch a face which both targets move. The term has at most this many elements.
   std::uint32_t elements = 0;
   StoredTerm term;
 };

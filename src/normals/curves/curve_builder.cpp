@@ -137,7 +137,8 @@ class Build {
           end_at(0);  // so that no thread waits for a part that will not come
           throw;
         }
-        // Parts are taken in order, so some thread is building each earlier part.
+        // Parts are taken in order, so each earlier part is built or some thread is building it, and waiting for its
+        // end is safe.
         std::size_t begin = 0;
         if (p > 0) {
           std::unique_lock lock(mutex);

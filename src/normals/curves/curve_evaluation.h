@@ -69,7 +69,7 @@ void for_flagged(const CurveData& curves, IndexRange range, const LocalTime& t, 
   }
 }
 
-/// Writes the flagged elements of a range. Returns the number of elements that have no direction.
+/// Writes the normals of the flagged elements of a range. Returns the number of elements that have no direction.
 template <class Output>
 std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const LocalTime& t,
                                 const Output& output) noexcept {
@@ -87,8 +87,8 @@ std::size_t write_flagged_range(const CurveData& curves, IndexRange range, const
   return without_direction;
 }
 
-/// Writes the elements of a range at one t, in one pass over their blocks. Returns the number of elements that have no
-/// direction. Precondition: range.first is a multiple of kTile.
+/// Writes the normals of the elements of a range at one t, in one pass over their blocks. Returns the number of
+/// elements that have no direction. Precondition: range.first is a multiple of kTile.
 template <class Output>
 std::size_t evaluate_range(const CurveData& curves, IndexRange range, const LocalTime& t, const CurveWeights& weights,
                            const Output& output) noexcept {

@@ -28,7 +28,7 @@
 
 namespace chronormal::inline internal {
 
-/// Writes elements of a source into tiles one by one.
+/// Writes the control normals of elements of a source into tiles, one element after the other.
 template <class Source>
 void put_each(const Source& source, IndexRange elements, std::span<BoundedTile> bounded) {
   for (std::size_t i = 0; i < bounded.size() * kTile; ++i)

@@ -51,7 +51,7 @@ bool has_certain_direction(const ControlNormals& c, double t) {
   return largest_component(c) == 0 || max_abs(normal_at(c, t)) > smallest_certain(0) * size;
 }
 
-// Writes zeros as the normals, for a time that is NaN, and returns their number.
+// Writes (0, 0, 0) as all normals, for a time that is NaN, and returns the number of normals.
 template <class Output>
 std::size_t write_zeros(std::size_t size, const Output& output) {
   for (std::size_t i = 0; i < size; ++i) output.set(i, {});

@@ -281,8 +281,8 @@ std::size_t write_shared(const Source& source, std::span<const std::uint32_t> el
 
 // ---- vertex buffers ------------------------------------------------------------------------------------------------
 
-// Returns the control normals of one element of exact curves. (If n(t) is constant or linear, these are the control
-// normals that the curves have stored.)
+// Returns the control normals of one element of curves with the tolerance kExactTolerance. (If n(t) is constant or
+// linear, these are the control normals that the curves have stored.)
 ControlNormals control_normals_of(const CurveData& curves, std::size_t element) {
   const auto& flagged = curves.flagged.numbers;
   const auto at = std::lower_bound(flagged.begin(), flagged.end(), element);

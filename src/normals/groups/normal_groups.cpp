@@ -23,8 +23,8 @@ constexpr double kRadiansPerDegree = 1 / kDegreesPerRadian;
 // The error, in radians, that rounding positions to float32 may cause in the angle at an edge.
 constexpr double kCreaseRounding = 1e-6;
 
-// The largest number of faces at a smooth edge. Edges with more faces are hard. The limit bounds the number of pairs of
-// faces that are compared.
+// The largest number of faces at a smooth edge. Edges with more faces are always hard. The limit bounds the time,
+// because all pairs of faces at an edge are compared.
 constexpr std::size_t kMostFacesAtSmoothEdge = 16;
 
 // Returns the faces in an order that follows from their vertices alone. Faces with the same vertices in the same order

@@ -399,7 +399,7 @@ class Call {
   std::size_t window_ = 0;
 };
 
-// Writes zeros as the normals, for a time that is NaN, and returns their number.
+// Writes (0, 0, 0) as all normals, for a time that is NaN, and returns the number of normals.
 std::size_t write_zeros(VectorView<float> result) {
   for (std::size_t i = 0; i < result.count; ++i) result.set(i, {});
   return result.count;

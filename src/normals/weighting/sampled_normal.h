@@ -46,8 +46,8 @@ template <class NormalOfFace>
   return result;
 }
 
-/// Returns the quadratic that has the given values at t = 0, 1/2 and 1. The values are weighted directions, with
-/// lengths by area.
+/// Returns the quadratic that has the given values at t = 0, 1/2 and 1. The values are weighted normals with the
+/// lengths of weights by area (SampledNormal::with_area_length()).
 [[nodiscard]] inline ControlNormals quadratic_through(const Vec3d& start, const Vec3d& middle,
                                                       const Vec3d& end) noexcept {
   return {start, 2.0 * middle - 0.5 * (start + end), end};

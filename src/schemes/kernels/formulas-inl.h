@@ -176,8 +176,8 @@ HWY_INLINE Triple<S> slerp_at(const Triple<S>& a, const Triple<S>& b, const S& t
   const S b_weight = turn.sin / sine;
   const Triple<S> slerp = (turn.cos - b_weight * cosine) * a + b_weight * b;
 
-  // For angles below 1e-4 rad, the chord is used, which differs from the arc by less than rounding. The quotient above
-  // may have been 0 / 0.
+  // For angles below 1e-4 rad, the chord is used, which differs from the arc by less than rounding. For such angles,
+  // the quotient above may be 0 / 0.
   const auto aligned = sine < S(1e-4f);
   if (!any(aligned)) return slerp;
   const auto opposite = !(cosine > S(0.0f));

@@ -30,7 +30,7 @@ inline constexpr double kGain = 1e-4;
 inline constexpr double kNoError = 1e-10;  // an angle in radians; if the mean error is smaller, there is no search
 inline constexpr double kLargestG = 0.77;  // the g of an arc of 150 degrees
 
-// Returns the sine of x, which must be in [0, 0.16], with the rounding error of double.
+// Returns the sine of x, which must be in [0, 0.16], with no larger error than the rounding of double.
 HWY_INLINE Real small_sine(Real x) {
   const Real z = x * x;
   return x - x * z * (Real(1.0 / 6) - z * (Real(1.0 / 120) - z * (Real(1.0 / 5040) - z * Real(1.0 / 362880))));
@@ -118,7 +118,8 @@ HWY_INLINE Real OptimalSlopes(const Real3& n0, const Real3& m, const Real3& n1) 
   search.cosine = dot(start, search.bisector);
   const Real3 half = Real(0.5) * (end - start);
   search.tangent = sqrt(dot(half, half)) / search.cosine;
-  // If the normal of an element is short compared with its control normals, the element is left to the slower search.
+  // If the normal of an element becomes short compared with its control normals, the element is left to the slower
+  // search.
   const Real size = dot(n0, n0) + dot(m, m) + dot(n1, n1);
   Real3 before = start;
   for (std::size_t i = 0; i < kIntervals; ++i) {

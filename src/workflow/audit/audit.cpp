@@ -210,8 +210,8 @@ Vec3f blend_stored(AuditRule rule, const Vec3d& from, const Vec3d& to, double t)
   const Vec3d u0 = unit(from), u1 = unit(to);
   if (rule == AuditRule::kNlerp || u0 == Vec3d{} || u1 == Vec3d{}) return to_float(unit(lerp(u0, u1, t)));
   const double angle = angle_between(u0, u1), sine = portable::sin(angle);
-  // The smallest sine of the angle between u0 and u1 for which the arc between them is computed. Below it, the arc is a
-  // straight line or undefined.
+  // The smallest sine of the angle between u0 and u1 for which the arc between them is computed. If the sine is
+  // smaller, the arc is practically a straight line, or undefined because the ends are opposite.
   constexpr double kStraight = 1e-9;
   if (sine < kStraight) return to_float(unit(lerp(u0, u1, t)));
   return to_float((portable::sin((1 - t) * angle) / sine) * u0 + (portable::sin(t * angle) / sine) * u1);
@@ -250,7 +250,7 @@ void count_torn(const JudgedPart& part, std::span<const Vec3f> differences, cons
 
 std::size_t samples_per_segment(const AuditOptions& options, std::size_t segments, std::size_t fewest) noexcept {
   if (options.samples) return *options.samples;
-  // The number of samples is odd, so that one sample is in the middle of the segment.
+  // An odd number is chosen, so that one sample is in the middle of the segment.
   return std::clamp(kAuditSamplesOfAll / std::max<std::size_t>(1, segments) | 1U, fewest, kAuditSamples);
 }
 

@@ -67,7 +67,8 @@ class BlendSource {
   /// Returns a normal of the i-th output as the screen shows it: transformed by the skin, if there is one. The result
   /// has any length.
   [[nodiscard]] Vec3d seen(std::size_t i, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const noexcept;
-  /// Returns true if the skin collapses the true normal. No target could correct such a normal.
+  /// Returns true if the skin collapses the true normal, so that it is seen as zero or as not finite. No target could
+  /// correct such a normal.
   [[nodiscard]] bool hides(const JudgedOutput& output, const Vec3d& normal, SkinRule rule = SkinRule::kBlended) const;
   [[nodiscard]] const MeshSkin* skin() const noexcept { return skin_; }
   void shown(std::size_t first, std::span<Vec3d> normals) const;

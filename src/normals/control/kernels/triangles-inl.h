@@ -69,7 +69,7 @@ HWY_INLINE PointAccess AccessOf(const Segment& segment) {
   return both_are(kEndsStride) ? PointAccess::kEnds : PointAccess::kRow;
 }
 
-// Returns the number of floats from one point to the next, as a constant if the access determines it.
+// Returns the number of floats from one point to the next, as a constant if kAccess determines this number.
 template <PointAccess kAccess>
 HWY_INLINE std::size_t StrideOf(const VectorView<const float>& points) {
   if constexpr (kAccess == PointAccess::kPacked) return 3;

@@ -160,8 +160,8 @@ struct Scaled16 {
     return hn::ConvertTo(kFloats, hn::ShiftRight<16>(hn::ShiftLeft<16>(pair)));
   }
   HWY_INLINE static Floats High(Ints pair) { return hn::ConvertTo(kFloats, hn::ShiftRight<16>(pair)); }
-  // Returns 2^-e, where e is in the lowest five bits. Writes the exponent field of a float, in which 127 stands for
-  // 2^0.
+  // Returns 2^-e, where e is in the lowest five bits. The result is made by setting the exponent field of a float, in
+  // which 127 stands for 2^0.
   HWY_INLINE static Floats PowerOfTwo(Ints exponent) {
     const Ints e = hn::And(exponent, hn::Set(kInts, kMaxScaleExponent));
     return hn::BitCast(kFloats, hn::ShiftLeft<23>(hn::Sub(hn::Set(kInts, 127), e)));

@@ -25,8 +25,8 @@ struct MemoryAccess {
   bool stream = false;
 };
 
-/// Returns the way in which a pass uses memory, for a pass that reads `read` and writes `written` bytes, if its results
-/// are aligned.
+/// Returns the way in which a pass should use memory if it reads `read` bytes and writes `written` bytes, and its
+/// results are aligned.
 constexpr MemoryAccess access_of_pass(std::size_t read, std::size_t written) noexcept {
   constexpr std::size_t kMiB = std::size_t{1} << 20;
   const std::size_t all = read + written;

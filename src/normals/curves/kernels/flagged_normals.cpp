@@ -1,4 +1,4 @@
-// Evaluates sixteen flagged elements in lanes of double.
+// Evaluates sixteen flagged elements, for which float32 is not accurate enough, in lanes of double.
 #include "normals/curves/kernels/flagged_normals.h"
 
 #include <algorithm>

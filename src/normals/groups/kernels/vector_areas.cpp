@@ -1,5 +1,5 @@
-// Computes the vector areas of triangles, a few at a time, one per lane. Computes sums one element after the other. A
-// row of four doubles is kept in as few registers as possible.
+// Computes the vector areas of triangles, a few at a time, one per lane. Adds up the areas around elements, one element
+// after the other. A row of four doubles is kept in as few registers as possible.
 #include "normals/groups/kernels/vector_areas.h"
 
 #include <algorithm>
