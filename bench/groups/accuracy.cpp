@@ -10,8 +10,8 @@
 
 #include "chronormal/io/input.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/recompute.h"
 #include "groups/groups.h"
+#include "normals/recompute/recompute.h"
 
 namespace chronormal::bench {
 namespace {

@@ -10,10 +10,11 @@
 #include <random>
 #include <utility>
 
-#include "chronormal/normals/blend_normals.h"
+#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"
 #include "groups/groups.h"
+#include "normals/blend/blend_normals.h"
+#include "normals/recompute/recompute.h"
 
 namespace chronormal::bench {
 namespace {

@@ -5,9 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "chronormal/normals/float_recompute.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/recompute.h"
 #include "memory/bare_loop.h"
+#include "normals/recompute/recompute.h"
 
 namespace chronormal::bench {
 namespace {

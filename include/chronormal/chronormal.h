@@ -13,13 +13,12 @@
 #include "chronormal/motion/motion.h"  // faces, keyframes in memory or in a stream, segments, sets of targets
 #include "chronormal/motion/paths.h"   // curves through keyframes, cut into straight pieces
 
-#include "chronormal/normals/blend_normals.h"    // exact normals of blend shapes at any weights
 #include "chronormal/normals/control_normals.h"  // n(t) as three control normals, and their transforms
+#include "chronormal/normals/float_recompute.h"  // normals computed anew from positions, in float32
 #include "chronormal/normals/mesh_normals.h"     // unit normals between keyframes, or at weights; begin here
 #include "chronormal/normals/normal_curves.h"    // curves of normals: prepared once, evaluated at the speed of memory
 // Groups of corners that share a normal, and sums over these groups.
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"  // the baselines, which compute cross products anew at every t
 // The weightings that other tools use for vertex normals (area, angle, uniform and so on), and quadratic curves that
 // are fitted to them.
 #include "chronormal/normals/weighting.h"

@@ -21,14 +21,15 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"
 #include "chronormal_c.h"
 #include "io/mesh/obj.h"
+#include "normals/blend/blend_normals.h"
+#include "normals/recompute/recompute.h"
 #include "simd/targets.h"
+#include "tests/support/blend_oracle.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/hard_motions.h"
 #include "tests/support/integer_normal.h"
@@ -90,17 +91,12 @@ Way all_together(NormalCurves made, Threads threads) {
 }
 
 // Makes a way that blends shapes with one target, whose weight is t.
-Way blended(BlendNormals made, Threads threads, bool together) {
+Way blended(BlendNormals made, Threads threads) {
   const auto normals = std::make_shared<BlendNormals>(std::move(made));
   return [=](const std::vector<double>& times) {
     std::vector<Normals> results(times.size(), Normals(3 * normals->size()));
-    std::vector<VectorView<float>> views;
-    for (Normals& of_time : results) views.push_back(VectorView<float>::packed(of_time.data(), normals->size()));
-    if (together) {
-      normals->unit_normals(times, views, threads);
-      return results;
-    }
-    for (std::size_t i = 0; i < times.size(); ++i) normals->unit_normals({&times[i], 1}, views[i], threads);
+    for (std::size_t i = 0; i < times.size(); ++i)
+      normals->unit_normals({&times[i], 1}, VectorView<float>::packed(results[i]), threads);
     return results;
   };
 }
@@ -256,13 +252,11 @@ void add_other_ways(const Motion& motion, const NormalGroups* groups, std::vecto
     const BlendNormalsOptions options{.forced = forced};
     Kin& blend = all.emplace_back(Kin{kNotJudged, {}});
     for (const Threads threads : {Threads::kOne, Threads::kAll}) {
-      for (const bool together : {false, true}) {
-        blend.ways.push_back({"blend shapes by " + std::string(name_of(forced)), [=] {
-                                return blended(groups == nullptr ? BlendNormals::of_faces(*set, options)
-                                                                 : BlendNormals::of_groups(*set, *groups, options),
-                                               threads, together);
-                              }});
-      }
+      blend.ways.push_back({"blend shapes by " + std::string(test::name_of(forced)), [=] {
+                              return blended(groups == nullptr ? BlendNormals::of_faces(*set, options)
+                                                               : BlendNormals::of_groups(*set, *groups, options),
+                                             threads);
+                            }});
     }
   }
 }

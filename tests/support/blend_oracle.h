@@ -10,16 +10,31 @@
 #include <cstdint>
 #include <set>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
+#include "normals/blend/blend_normals.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
 #include "tests/support/reference.h"
 
 namespace chronormal::test {
+
+/// Returns the name of a path, for messages.
+[[nodiscard]] inline std::string_view name_of(BlendPath path) {
+  switch (path) {
+    case BlendPath::kTerms:
+      return "terms";
+    case BlendPath::kTouched:
+      return "touched";
+    case BlendPath::kWhole:
+      return "whole";
+  }
+  return "";
+}
 
 struct BlendShapeOptions {
   std::size_t cells = 6;  ///< a bumpy sheet of cells x cells quads, some of which are cut into triangles

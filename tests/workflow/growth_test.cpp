@@ -13,11 +13,11 @@
 #include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/workflow/bake.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/sample.h"
+#include "normals/recompute/recompute.h"
 #include "tests/support/cpu_time.h"
 #include "tests/support/large_polygons.h"
 

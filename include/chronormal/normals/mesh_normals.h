@@ -20,7 +20,7 @@
 ///            vertices that coincide at both ends (in all keyframes; in the base and at full weight of each target)
 ///            share a normal. Hard edges are determined at t = 0.
 /// Accuracy   the direction of every normal is within `tolerance` of exact arithmetic on the positions, by a proven
-///            bound. For blend shapes it is within 1e-6 rad (blend_normals.h). Weightings other than area add
+///            bound. For blend shapes it is within 1e-6 rad, unless blends_in_float32 is set. Weightings other than area add
 ///            fit_bound().
 /// Degenerate (0, 0, 0) if there is no normal; calls return the number of such results, usually 0. If n(t) is zero only
 ///            at this t, the limit is written (Direction in control_normals.h). t outside [0, 1] is moved to the nearer
@@ -45,7 +45,6 @@
 #include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
 #include "chronormal/normals/weighting.h"
@@ -58,6 +57,15 @@ struct MeshNormalsOptions {
   /// The largest error of a normal in radians, for segments; at least kExactTolerance.
   double tolerance = kExactTolerance;
   Threads threads = Threads::kOne;  ///< the threads that prepare segments
+  /// The most bytes that blend shapes may take beside the set itself. Only memory that is needed in any case may take
+  /// more. Normals are faster if all terms of the quadratic form in the weights fit; normals whose terms do not fit are
+  /// computed from blended positions.
+  std::size_t most_blend_bytes = std::size_t{1} << 30;
+  /// True to use float32 if all positions of blend shapes are blended, like FloatRecompute. This takes about half as
+  /// long, but there is then no guarantee for the normals: a position has an error of a unit in the last place, which
+  /// turns a normal by the ratio of that unit to the length of an edge. This is enough for shading. The option has no
+  /// effect if some normal belongs to a ring of more than 64 points.
+  bool blends_in_float32 = false;
 };
 
 /// A range that stands for all outputs, however many there are.
@@ -138,11 +146,13 @@ class MeshNormals {
 
   /// Prepares a set of blend shapes, with all weights 0. Errors: kUsage for a weighting other than area; kInvalidInput
   /// for a set of another mesh; those of validate() for a set. The first set can also give those of make_groups().
-  [[nodiscard]] Status set_targets(BlendSet set, const BlendNormalsOptions& options = {});
+  [[nodiscard]] Status set_targets(BlendSet set);
   /// Sets the weights, chooses the cheapest way to compute normals at these weights, and blends positions if this way
-  /// needs them. With one thread it does not allocate or throw. Preconditions: targets are set, and there is a weight
+  /// needs them. The choice is a pure function of the set, the weights and the options. Normals are exact at all
+  /// weights, also at negative weights and above 1. If n(w) is below its own rounding error, the normal is (0, 0, 0).
+  /// With one thread this function does not allocate or throw. Preconditions: targets are set, and there is a weight
   /// for each.
-  BlendChoice set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
+  void set_weights(std::span<const double> weights, Threads threads = Threads::kOne);
   /// Write the unit normals at the current weights, and return the number of (0, 0, 0) written. Precondition: result
   /// has size() elements.
   std::size_t unit_normals(VectorView<float> result, IndexRange outputs = kAllOutputs) const noexcept;

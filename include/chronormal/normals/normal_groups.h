@@ -144,8 +144,8 @@ class NormalGroups {
   [[nodiscard]] std::size_t isolated_count() const noexcept;
 
   /// Frees the data that only curves, and sums weighted by angle, need. Afterwards corners(e), element_of_corner() and,
-  /// if outputs are corners, element_of_output() must not be called. No curves and no NormalRecompute or FloatRecompute
-  /// may be made for these groups afterwards.
+  /// if outputs are corners, element_of_output() must not be called. Afterwards no object that computes normals, such
+  /// as NormalCurves, may be made for these groups.
   void forget_corners() noexcept;
 
   /// Copies the normal of each element to all of its outputs. Preconditions: of_elements has size() elements, and

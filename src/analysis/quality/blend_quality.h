@@ -23,7 +23,7 @@
 #include "analysis/fits/delta_fit.h"
 #include "chronormal/analysis/quality.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
+#include "normals/blend/blend_normals.h"
 
 namespace chronormal::inline internal {
 

@@ -9,7 +9,7 @@
 
 #include "chronormal/core/parallel.h"
 #include "chronormal/core/views.h"
-#include "chronormal/normals/blend_normals.h"
+#include "normals/blend/blend_normals.h"
 #include "normals/blend/blend_scratch.h"
 #include "normals/blend/blend_storage.h"
 

@@ -9,8 +9,8 @@
 
 #include "chronormal/core/vec3.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
 #include "core/memory.h"
+#include "normals/blend/blend_normals.h"
 #include "normals/blend/index_bits.h"
 
 namespace chronormal::inline internal {

@@ -204,23 +204,6 @@ void BlendStorage::fill_pair(std::size_t i, StoredPair& pair) {
   put_all(term, 0, kBlendLanes, stored);
 }
 
-void BlendStorage::target_added() {
-  terms_.target_added();
-  const std::size_t k = targets_.size();
-  targets_.push_back(listed(k));
-  std::vector<Candidate> candidates = {{kTargetBytes * targets_[k].element_count, k, Candidate::kNone}};
-  for (const auto& [other, elements] : terms_.pair_elements(k)) {
-    candidates.push_back({kPairBytes * elements, other, targets_[other].pairs.size()});
-    targets_[other].pairs.push_back({static_cast<std::uint32_t>(k), elements, {}});
-  }
-  choose(std::move(candidates));
-  if (targets_[k].term.is_stored) fill_target(k);
-  for (std::size_t i = 0; i < k; ++i) {
-    if (targets_[i].pairs.empty() || targets_[i].pairs.back().other != k) continue;
-    if (StoredPair& pair = targets_[i].pairs.back(); pair.term.is_stored) fill_pair(i, pair);
-  }
-}
-
 std::size_t BlendStorage::list_bytes() const noexcept {
   std::size_t bytes = terms_.bytes() + rings_.bytes() + large_faces_.capacity() * sizeof(std::uint32_t) +
                       targets_.capacity() * sizeof(StoredTarget);

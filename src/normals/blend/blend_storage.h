@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/normal_groups.h"
+#include "normals/blend/blend_normals.h"
 #include "normals/blend/blend_terms.h"
 #include "normals/blend/index_bits.h"
 #include "normals/groups/rings.h"
@@ -54,8 +54,6 @@ class BlendStorage {
 
   /// Computes the terms that are to be stored.
   void fill();
-  /// Computes the terms of a target that was just appended to the set. Must be called after each appended target.
-  void target_added();
 
   [[nodiscard]] std::span<const StoredTarget> targets() const noexcept { return targets_; }
   [[nodiscard]] const BlendTerms& terms() const noexcept { return terms_; }

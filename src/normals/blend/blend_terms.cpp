@@ -108,8 +108,8 @@ class BlendTerms::PairCounter {
       for (const std::uint32_t f : terms.faces_of_target_[i]) targets_[next[f]++] = static_cast<std::uint32_t>(i);
   }
 
-  // Counts the elements that target i has in common with each other target from `first` on.
-  [[nodiscard]] std::vector<PairCount> count(std::size_t i, std::size_t first) {
+  // Counts the elements that target i has in common with each later target.
+  [[nodiscard]] std::vector<PairCount> count(std::size_t i) {
     std::fill(last_element_.begin(), last_element_.end(), kNone);
     std::fill(counts_.begin(), counts_.end(), 0);
     for (const std::uint32_t f : terms_.faces(i)) is_moved_[f] = true;
@@ -124,9 +124,8 @@ class BlendTerms::PairCounter {
     }
     for (const std::uint32_t f : terms_.faces(i)) is_moved_[f] = false;
     std::vector<PairCount> result;
-    for (std::size_t other = first; other < counts_.size(); ++other) {
-      if (other != i && counts_[other] > 0) result.push_back({static_cast<std::uint32_t>(other), counts_[other]});
-    }
+    for (std::size_t other = i + 1; other < counts_.size(); ++other)
+      if (counts_[other] > 0) result.push_back({static_cast<std::uint32_t>(other), counts_[other]});
     return result;
   }
 
@@ -144,11 +143,6 @@ BlendTerms::BlendTerms(const BlendSet& set, const NormalGroups* groups) : set_(s
   FacesOfVertices faces(set.topology);
   faces_of_target_.reserve(set.targets.size());
   for (const BlendTarget& target : set.targets) faces_of_target_.push_back(faces.around(target.vertices));
-}
-
-void BlendTerms::target_added() {
-  faces_of_target_.push_back(FacesOfVertices(set_.topology).around(set_.targets.back().vertices));
-  assert(faces_of_target_.size() == set_.targets.size());
 }
 
 std::size_t BlendTerms::size() const noexcept { return groups_ ? groups_->size() : set_.topology.face_count(); }
@@ -410,15 +404,11 @@ bool BlendTerms::overlap(std::size_t i, std::size_t j) const noexcept {
   return false;
 }
 
-std::vector<BlendTerms::PairCount> BlendTerms::pair_elements(std::size_t i) const {
-  return PairCounter(*this).count(i, 0);
-}
-
 std::vector<std::vector<BlendTerms::PairCount>> BlendTerms::pair_elements() const {
   PairCounter counter(*this);
   std::vector<std::vector<PairCount>> result;
   result.reserve(faces_of_target_.size());
-  for (std::size_t i = 0; i < faces_of_target_.size(); ++i) result.push_back(counter.count(i, i + 1));
+  for (std::size_t i = 0; i < faces_of_target_.size(); ++i) result.push_back(counter.count(i));
   return result;
 }
 

@@ -11,7 +11,7 @@
 ///
 /// Units      lengths squared, in double; the length of a sum is twice the area.
 /// Order      sums are in the order of NormalGroups, so the bits are the same for every number of threads.
-/// Ownership  the set and the groups must outlive this object. Call target_added() after a target was added to the set.
+/// Ownership  the set and the groups must outlive this object.
 #ifndef CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_
 #define CHRONORMAL_NORMALS_BLEND_BLEND_TERMS_H_
 
@@ -89,10 +89,6 @@ class BlendTerms {
   [[nodiscard]] std::vector<PairCount> pair_elements(std::size_t i) const;
   /// Returns the pairs of all targets. Each pair is listed only for the earlier target.
   [[nodiscard]] std::vector<std::vector<PairCount>> pair_elements() const;
-
-  /// Updates the lists for a target that was just appended to the set. Must be called after each appended target.
-  /// O(corners).
-  void target_added();
 
   /// Returns the bytes of memory that this object keeps.
   [[nodiscard]] std::size_t bytes() const noexcept;

@@ -21,6 +21,7 @@
 
 #include "core/blocks.h"
 #include "core/text.h"
+#include "normals/blend/blend_normals.h"
 #include "normals/control/local_time.h"
 #include "normals/curves/curve_builder.h"
 #include "normals/curves/curve_count.h"
@@ -578,7 +579,7 @@ Status MeshNormals::fill_vertex_buffer(ControlFormat format, std::span<std::byte
   return Success{};
 }
 
-Status MeshNormals::set_targets(BlendSet set, const BlendNormalsOptions& options) {
+Status MeshNormals::set_targets(BlendSet set) {
   Parts& parts = *parts_;
   if (parts.options.weighting != Weighting::kArea)
     return Error{ErrorCode::kUsage, "weighting", "normals of blend shapes can only be weighted by area"};
@@ -587,14 +588,15 @@ Status MeshNormals::set_targets(BlendSet set, const BlendNormalsOptions& options
   if (!parts.knows_elements()) {
     if (Status status = parts.share(star_of(set)); !status) return status;
   }
+  const BlendNormalsOptions options{parts.options.most_blend_bytes, std::nullopt, parts.options.blends_in_float32};
   parts.blend = parts.are_faces() ? BlendNormals::of_faces(std::move(set), options)
                                   : BlendNormals::of_groups(std::move(set), *parts.groups, options);
   return Success{};
 }
 
-BlendChoice MeshNormals::set_weights(std::span<const double> weights, Threads threads) {
+void MeshNormals::set_weights(std::span<const double> weights, Threads threads) {
   assert(parts_->blend);
-  return parts_->blend->set_weights(weights, threads);
+  parts_->blend->set_weights(weights, threads);
 }
 
 std::size_t MeshNormals::unit_normals(VectorView<float> result, IndexRange outputs) const noexcept {

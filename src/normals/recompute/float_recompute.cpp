@@ -2,7 +2,7 @@
 // the paths around sixteen elements at a time are followed (groups/rings.h). The paths are made once, from the topology
 // and the groups.
 
-#include "chronormal/normals/recompute.h"
+#include "chronormal/normals/float_recompute.h"
 
 #include "simd/highway-inl.h"
 

@@ -1,5 +1,5 @@
 // Recomputes normals tile by tile, and examines doubtful elements one by one.
-#include "chronormal/normals/recompute.h"
+#include "normals/recompute/recompute.h"
 
 #include "simd/highway-inl.h"
 

@@ -12,11 +12,11 @@
 #include "analysis/quality/blend_quality.h"
 #include "chronormal/core/parallel.h"
 #include "chronormal/motion/motion.h"
-#include "chronormal/normals/blend_normals.h"
 #include "chronormal/workflow/sample.h"
 #include "core/blocks.h"
 #include "core/text.h"
 #include "core/vector_area.h"
+#include "normals/blend/blend_normals.h"
 #include "workflow/shading/gltf_shading.h"
 #include "workflow/shading/target_weights.h"
 

@@ -13,12 +13,12 @@
 #include "chronormal/core/parallel.h"
 #include "chronormal/normals/mesh_normals.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "core/blocks.h"
 #include "core/text.h"
 #include "core/twofold.h"
 #include "motion/segment_end.h"
+#include "normals/recompute/recompute.h"
 #include "normals/weighting/shared_weighting.h"
 #include "workflow/sample/scheme_normals.h"
 

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "chronormal/normals/blend_normals.h"
-#include "chronormal/normals/recompute.h"
+#include "chronormal/normals/float_recompute.h"
+#include "normals/blend/blend_normals.h"
 #include "simd/targets.h"
 #include "tests/support/fixtures.h"
 
@@ -106,13 +106,14 @@ TEST(BlendFloat, other_paths_are_as_exact_as_ever) {
 TEST(BlendFloat, is_chosen_where_it_is_cheaper_than_terms) {
   const BlendSet set = sheet(5, 60);
   std::vector<double> weights(set.targets.size(), 0.1);
-  const BlendNormals exact = BlendNormals::of_groups(set, groups_of(set)),
-                     normals = BlendNormals::of_groups(set, groups_of(set), {.in_float32 = true});
-  EXPECT_LT(normals.choose(weights).whole_ns, 0.6 * exact.choose(weights).whole_ns);
-  EXPECT_EQ(normals.choose(weights).path, BlendPath::kWhole);
+  BlendNormals exact = BlendNormals::of_groups(set, groups_of(set)),
+               normals = BlendNormals::of_groups(set, groups_of(set), {.in_float32 = true});
+  const BlendChoice choice = normals.set_weights(weights);
+  EXPECT_LT(choice.whole_ns, 0.6 * exact.set_weights(weights).whole_ns);
+  EXPECT_EQ(choice.path, BlendPath::kWhole);
   std::fill(weights.begin(), weights.end(), 0);
   weights[10] = 1;
-  EXPECT_EQ(normals.choose(weights).path, BlendPath::kTerms);
+  EXPECT_EQ(normals.set_weights(weights).path, BlendPath::kTerms);
 }
 
 TEST(BlendFloat, has_no_effect_where_a_ring_is_too_long_for_lanes) {

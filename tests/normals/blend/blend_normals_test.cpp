@@ -1,7 +1,7 @@
 // Compares normals at any weights with normals of blended positions, which are computed in rational numbers or in long
 // double. The tests of real files are skipped unless the environment variable CHRONORMAL_DATA names the folder of these
 // files.
-#include "chronormal/normals/blend_normals.h"
+#include "normals/blend/blend_normals.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
@@ -116,7 +116,7 @@ RC_GTEST_PROP(BlendNormals, any_sparse_overlap_and_weights_equal_blended_positio
     for (const BlendPath path : kPaths) {
       BlendNormals normals = normals_of(set, groups, {kUnlimited, path});
       const Evaluated done = evaluate(normals, weights);
-      expect_exact(done, expected, std::string(name_of(path)));
+      expect_exact(done, expected, std::string(test::name_of(path)));
       RC_ASSERT(done.evaluation.path == path);
     }
   }
@@ -146,7 +146,7 @@ RC_GTEST_PROP(BlendNormals, size_and_place_of_the_mesh_do_not_matter, ()) {
   const std::vector<exact::Vector> expected = test::exact_normals(set, &vertices, weights);
   for (const BlendPath path : kPaths) {
     BlendNormals normals = BlendNormals::of_groups(set, vertices, {kUnlimited, path});
-    expect_exact(evaluate(normals, weights), expected, std::string(name_of(path)));
+    expect_exact(evaluate(normals, weights), expected, std::string(test::name_of(path)));
   }
 }
 
@@ -179,7 +179,7 @@ TEST(BlendNormals, near_a_collapse_double_takes_over_and_at_it_there_are_counted
     for (const double gap : {1e-3, 1e-5, 1e-7}) {
       const std::vector<double> weights = {1 - gap, 0.7};
       const Evaluated done = evaluate(normals, weights);
-      expect_exact(done, test::exact_normals(set, nullptr, weights), std::string(name_of(path)));
+      expect_exact(done, test::exact_normals(set, nullptr, weights), std::string(test::name_of(path)));
       EXPECT_EQ(done.evaluation.recomputed_elements, 1U);
     }
     const Evaluated zero = evaluate(normals, std::vector{1.0, 0.7});
@@ -253,7 +253,8 @@ TEST(BlendNormals, a_weight_that_barely_opens_a_point_gives_its_direction) {
     BlendNormals normals = BlendNormals::of_faces(set, {kUnlimited, path});
     for (const double weight : {1e-20, 1e-70, 1e-78, 1e-82, 1e-100, 1e-140}) {
       const std::vector<double> weights = {weight};
-      expect_exact(evaluate(normals, weights), test::exact_normals(set, nullptr, {{1.0}}), std::string(name_of(path)));
+      expect_exact(evaluate(normals, weights), test::exact_normals(set, nullptr, {{1.0}}),
+                   std::string(test::name_of(path)));
     }
   }
 }
@@ -275,7 +276,7 @@ TEST(BlendNormals, rounding_of_every_target_counts) {
     BlendNormals normals = BlendNormals::of_faces(set, {kUnlimited, path});
     const Evaluated done = evaluate(normals, weights);
     EXPECT_EQ(errors_of(done, expected).far, 1U) << "no rounding to be counted";
-    EXPECT_EQ(done.evaluation.uncertain_elements + done.evaluation.zeros, 1U) << name_of(path);
+    EXPECT_EQ(done.evaluation.uncertain_elements + done.evaluation.zeros, 1U) << test::name_of(path);
   }
 }
 
@@ -299,7 +300,7 @@ TEST(BlendNormals, area_that_rounding_of_positions_may_hide_counts) {
     for (const BlendPath path : {BlendPath::kTouched, BlendPath::kWhole}) {  // sums of terms do not use positions
       BlendNormals normals = BlendNormals::of_groups(set, test::vertices_of(set), {kUnlimited, path});
       const std::vector<float> expected = {0, 0, turns == 0 ? 1.0F : 0.0F};
-      EXPECT_EQ(evaluate(normals, std::vector{1.0, -1.0}).of(0), expected) << name_of(path) << ", " << turns;
+      EXPECT_EQ(evaluate(normals, std::vector{1.0, -1.0}).of(0), expected) << test::name_of(path) << ", " << turns;
     }
   }
 }
@@ -373,7 +374,7 @@ RC_GTEST_PROP(BlendNormals, cost_is_known_from_counts_and_a_limit_leaves_the_nor
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   const BlendSet set = test::random_blend_set(seed, {.cells = 8, .targets = 7, .reach = 0.7});
   const NormalGroups vertices = test::vertices_of(set);
-  const BlendCost all = predict_blend_cost(set, vertices);
+  const BlendCost all = BlendNormals::of_groups(set, vertices).cost();
   RC_ASSERT(all.stored_targets == 7U && all.stored_pairs == all.overlapping_pairs);
   const std::vector<double> weights = test::random_weights(seed, 7, 5);
   const std::vector<exact::Vector> expected = test::exact_normals(set, &vertices, weights);
@@ -381,13 +382,12 @@ RC_GTEST_PROP(BlendNormals, cost_is_known_from_counts_and_a_limit_leaves_the_nor
     const auto limit =
         all.least_bytes + static_cast<std::size_t>(share * static_cast<double>(all.bytes - all.least_bytes));
     const BlendNormalsOptions options{limit, BlendPath::kTerms};
-    const BlendCost cost = predict_blend_cost(set, vertices, options);
+    BlendNormals normals = BlendNormals::of_groups(set, vertices, options);
+    const BlendCost cost = normals.cost();
     RC_ASSERT(cost.bytes <= limit);
     RC_ASSERT(2 * cost.stored_pairs <=
               cost.stored_targets * (cost.stored_targets - std::min<std::size_t>(cost.stored_targets, 1)));
     RC_ASSERT(cost.least_bytes == all.least_bytes && cost.pair_elements == all.pair_elements);
-    BlendNormals normals = BlendNormals::of_groups(set, vertices, options);
-    RC_ASSERT(normals.cost() == cost);
     RC_ASSERT(normals.bytes() <= cost.bytes);
     const Evaluated done = evaluate(normals, weights);
     expect_exact(done, expected, "limited");
@@ -402,7 +402,7 @@ RC_GTEST_PROP(BlendNormals, cost_is_known_from_counts_and_a_limit_leaves_the_nor
 
 void expect_peak(const BlendSet& set, const NormalGroups& groups, std::size_t max_bytes) {
   const BlendNormalsOptions options{max_bytes, {}};
-  const BlendCost cost = predict_blend_cost(set, groups, options);
+  const BlendCost cost = BlendNormals::of_groups(set, groups, options).cost();
   BlendSet own_set = set;
   NormalGroups own_groups = groups;
   const test::AllocationCounter counter;
@@ -447,13 +447,13 @@ TEST(BlendNormals, large_polygons_take_memory_for_their_corners_and_not_for_each
   for (const std::size_t corners : {64U, 65U, 66U, 3000U}) {
     const BlendSet set = cone_over(corners);
     const NormalGroups vertices = test::vertices_of(set);
-    EXPECT_LT(predict_blend_cost(set, vertices, {0, {}}).least_bytes, 2000 + 700 * corners);
+    EXPECT_LT(BlendNormals::of_groups(set, vertices, {0, {}}).cost().least_bytes, 2000 + 700 * corners);
     const std::vector<double> weights = {0.7, 0.4};
     for (const NormalGroups* groups : {&vertices, static_cast<const NormalGroups*>(nullptr)}) {
       for (const BlendPath path : kPaths) {
         BlendNormals normals = normals_of(set, groups, {kUnlimited, path});
         expect_exact(evaluate(normals, weights), test::real_normals(set, groups, weights),
-                     std::to_string(corners).append(" corners, ").append(name_of(path)));
+                     std::to_string(corners).append(" corners, ").append(test::name_of(path)));
       }
     }
   }
@@ -464,7 +464,7 @@ TEST(BlendNormals, peak_memory_is_at_most_what_was_predicted) {
   for (const double reach : {0.05, 0.3, 3.0}) {
     const BlendSet set = test::random_blend_set(5, {.cells = 60, .targets = 20, .reach = reach});
     const NormalGroups groups = test::vertices_of(set);
-    const BlendCost cost = predict_blend_cost(set, groups);
+    const BlendCost cost = BlendNormals::of_groups(set, groups).cost();
     for (const std::size_t limit : {std::size_t{0}, (cost.least_bytes + cost.bytes) / 2, kUnlimited})
       expect_peak(set, groups, limit);
   }
@@ -477,48 +477,12 @@ TEST(BlendNormals, evaluating_on_one_thread_allocates_nothing) {
   const BlendSet set = test::random_blend_set(6, {.targets = 6, .reach = 0.6});
   for (const BlendPath path : kPaths) {
     BlendNormals normals = BlendNormals::of_groups(set, test::vertices_of(set), {kUnlimited, path});
-    EXPECT_TRUE(normals.add_target(set.targets[0]).ok());
-    const std::vector<double> weights = test::random_weights(1, 7, 7);
+    const std::vector<double> weights = test::random_weights(1, 6, 6);
     std::vector<float> xyz(3 * normals.size());
     const test::AllocationCounter counter;
     (void)normals.unit_normals(weights, VectorView<float>::packed(xyz.data(), normals.size()));
     EXPECT_EQ(counter.allocations(), 0U);
   }
-}
-
-TEST(BlendNormals, an_added_target_leaves_what_a_new_object_has_and_a_bad_one_changes_nothing) {
-  const BlendSet all = test::random_blend_set(9, {.cells = 30, .targets = 12, .reach = 0.6});
-  const NormalGroups groups = test::vertices_of(all);
-  const BlendNormalsOptions options{kUnlimited, BlendPath::kTerms};
-  BlendSet set = all;
-  set.targets.pop_back();
-  BlendNormals normals = BlendNormals::of_groups(set, groups, options);
-  BlendTarget bad = all.targets.back();
-  bad.vertices.front() = 1000000;
-  EXPECT_FALSE(normals.add_target(bad).ok());
-  EXPECT_EQ(normals.set().targets.size(), 11U);
-  ASSERT_TRUE(normals.add_target(all.targets.back()).ok());
-
-  BlendNormals fresh = BlendNormals::of_groups(all, groups, options);
-  EXPECT_EQ(normals.cost().stored_pairs, fresh.cost().stored_pairs);
-  EXPECT_EQ(normals.cost().pair_elements, fresh.cost().pair_elements);
-  for (const std::size_t active : {1U, 4U, 12U}) {
-    const std::vector<double> weights = test::random_weights(active, 12, active);
-    EXPECT_EQ(evaluate(normals, weights).xyz, evaluate(fresh, weights).xyz);
-  }
-}
-
-TEST(BlendNormals, targets_can_be_added_to_a_set_that_has_none) {
-  BlendSet set = test::random_blend_set(9, {.cells = 30, .targets = 1, .reach = 0.6});
-  const BlendTarget target = std::move(set.targets.back());
-  set.targets.clear();
-  const NormalGroups groups = test::vertices_of(set);
-  BlendNormals normals = BlendNormals::of_groups(set, groups, {kUnlimited, BlendPath::kTerms});
-  EXPECT_EQ(normals.cost().pair_elements, 0U);
-  EXPECT_EQ(evaluate(normals, {}).evaluation.touched_elements, 0U);
-  ASSERT_TRUE(normals.add_target(target).ok());
-  const std::vector<double> weights = {1.5};
-  expect_exact(evaluate(normals, weights), test::real_normals(normals.set(), &groups, weights), "one");
 }
 
 // ---- the choice of a path of computation ----------------------------------------------------------------------------
@@ -530,7 +494,7 @@ TEST(BlendNormals, choice_is_a_function_of_set_weights_and_options_and_takes_the
   std::vector<std::size_t> taken(3);
   for (std::size_t active = 0; active <= 40; ++active) {
     const std::vector<double> weights = test::random_weights(active, 40, active);
-    const BlendChoice choice = normals.choose(weights), same = again.choose(weights);
+    const BlendChoice choice = normals.set_weights(weights), same = again.set_weights(weights);
     const BlendEvaluation done = evaluate(normals, weights, Threads::kAll).evaluation;
     EXPECT_EQ(choice.path, done.path);
     EXPECT_EQ(choice.path, same.path);
@@ -542,49 +506,29 @@ TEST(BlendNormals, choice_is_a_function_of_set_weights_and_options_and_takes_the
   }
   EXPECT_GT(taken[0], 0U);
   EXPECT_GT(taken[1] + taken[2], 0U) << "all targets at once";
-  EXPECT_EQ(normals.choose(test::random_weights(1, 40, 1)).path, BlendPath::kTerms);
+  EXPECT_EQ(normals.set_weights(test::random_weights(1, 40, 1)).path, BlendPath::kTerms);
 }
 
-TEST(BlendNormals, names_of_paths_are_those_of_reports) {
-  EXPECT_EQ(name_of(BlendPath::kTerms), "terms");
-  EXPECT_EQ(name_of(BlendPath::kTouched), "touched");
-  EXPECT_EQ(name_of(BlendPath::kWhole), "whole");
-}
+// ---- threads, layouts ----------------------------------------------------------------------
 
-// ---- many vectors of weights, threads, layouts ----------------------------------------------------------------------
-
-TEST(BlendNormals, an_animation_has_the_bits_of_its_frames_on_any_number_of_threads) {
+TEST(BlendNormals, any_number_of_threads_gives_the_same_bits) {
   const BlendSet set = test::random_blend_set(7, {.cells = 150, .targets = 10, .reach = 0.6});
   const NormalGroups groups = test::vertices_of(set);
   ASSERT_GT(groups.size(), 16384U) << "more than a block";
   for (const BlendPath path : kPaths) {
     BlendNormals normals = BlendNormals::of_groups(set, groups, {kUnlimited, path});
-    constexpr std::size_t kFrames = 7;
-    std::vector<double> weights;
-    std::vector<Evaluated> frames;
-    for (std::size_t frame = 0; frame < kFrames; ++frame) {
-      const std::vector<double> row = test::random_weights(frame, 10, frame);
-      weights.insert(weights.end(), row.begin(), row.end());
-      frames.push_back(evaluate(normals, row));
-      EXPECT_EQ(evaluate(normals, row, Threads::kAll).xyz, frames.back().xyz);
-    }
-    for (const std::size_t threads : {1U, 2U, 3U, 16U}) {
-      const ThreadLimit limit(threads);
-      EXPECT_EQ(evaluate(normals, std::span(weights).last(10), Threads::kAll).xyz, frames.back().xyz);
-      std::vector<std::vector<float>> xyz(kFrames, std::vector<float>(3 * normals.size()));
-      std::vector<VectorView<float>> results;
-      for (std::vector<float>& values : xyz)
-        results.push_back(VectorView<float>::packed(values.data(), normals.size()));
-      const std::vector<BlendEvaluation> done = normals.unit_normals(weights, results, Threads::kAll);
-      ASSERT_EQ(done.size(), kFrames);
-      for (std::size_t frame = 0; frame < kFrames; ++frame) {
-        EXPECT_EQ(xyz[frame], frames[frame].xyz);
-        EXPECT_EQ(done[frame].active_targets, frame);
-        EXPECT_EQ(done[frame].zeros, frames[frame].evaluation.zeros);
-        EXPECT_EQ(done[frame].recomputed_elements, frames[frame].evaluation.recomputed_elements);
+    for (const std::size_t active : {0U, 1U, 4U, 10U}) {
+      const std::vector<double> weights = test::random_weights(active, 10, active);
+      const Evaluated one = evaluate(normals, weights);
+      EXPECT_EQ(one.evaluation.active_targets, active);
+      for (const std::size_t threads : {1U, 2U, 3U, 16U}) {
+        const ThreadLimit limit(threads);
+        const Evaluated all = evaluate(normals, weights, Threads::kAll);
+        EXPECT_EQ(all.xyz, one.xyz);
+        EXPECT_EQ(all.evaluation.zeros, one.evaluation.zeros);
+        EXPECT_EQ(all.evaluation.recomputed_elements, one.evaluation.recomputed_elements);
       }
     }
-    EXPECT_TRUE(normals.unit_normals({}, std::span<const VectorView<float>>{}, Threads::kAll).empty());
   }
 }
 
@@ -615,7 +559,7 @@ TEST(BlendNormals, every_instruction_set_gives_the_same_bits) {
         const std::vector<float> expected = evaluate(normals, weights).xyz;
         for (const std::int64_t target : supported_targets()) {
           const ScopedTarget scope(target);
-          EXPECT_EQ(evaluate(normals, weights).xyz, expected) << target_name(target) << ", " << name_of(path);
+          EXPECT_EQ(evaluate(normals, weights).xyz, expected) << target_name(target) << ", " << test::name_of(path);
         }
       }
     }
@@ -676,7 +620,7 @@ class RealBlendNormals : public ::testing::Test {
     for (const BlendPath path : kPaths) {
       BlendNormals normals = normals_of(set, groups, {kUnlimited, path});
       const Evaluated done = evaluate(normals, weights);
-      expect_exact(done, expected, std::to_string(active).append(" active, ").append(name_of(path)));
+      expect_exact(done, expected, std::to_string(active).append(" active, ").append(test::name_of(path)));
     }
   }
 
@@ -693,7 +637,7 @@ TEST_F(RealBlendNormals, face_equals_blended_positions_for_1_2_8_and_all_102_tar
     for (const std::size_t active : {1U, 2U, 8U, 102U}) {
       for (std::uint64_t seed = 0; seed < 4; ++seed) {
         const std::vector<double> weights = test::random_weights(10 * active + seed, 102, active);
-        const std::string what = std::to_string(active).append(" active, ").append(name_of(path));
+        const std::string what = std::to_string(active).append(" active, ").append(test::name_of(path));
         expect_exact(evaluate(normals, weights), test::real_normals(set, &vertices, weights), what);
         expect_exact(evaluate(faces, weights), test::real_normals(set, nullptr, weights), what + ", faces");
       }

@@ -10,8 +10,8 @@
 #include <limits>
 #include <vector>
 
-#include "chronormal/normals/blend_normals.h"
 #include "chronormal/normals/normal_groups.h"
+#include "normals/blend/blend_normals.h"
 #include "tests/support/blend_oracle.h"
 #include "tests/support/exact_normal.h"
 #include "tests/support/fixtures.h"
@@ -167,18 +167,18 @@ double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {
   for (const BlendPath path : {BlendPath::kTerms, BlendPath::kWhole}) {
     const double worst = worst_found(near_a_collapse, 12, 600, path);
-    std::cout << "  " << name_of(path) << ": " << worst << " of the promise\n";
-    EXPECT_LE(worst, 1) << name_of(path);
-    EXPECT_GT(worst, least_of_a_search(path)) << name_of(path);
+    std::cout << "  " << test::name_of(path) << ": " << worst << " of the promise\n";
+    EXPECT_LE(worst, 1) << test::name_of(path);
+    EXPECT_GT(worst, least_of_a_search(path)) << test::name_of(path);
   }
 }
 
 TEST(BlendNormals, keep_the_promise_at_vertices_whose_faces_nearly_cancel) {
   for (const BlendPath path : {BlendPath::kTerms, BlendPath::kWhole}) {
     const double worst = worst_found(ring_near_a_collapse, 8, 300, path);
-    std::cout << "  rings, " << name_of(path) << ": " << worst << " of the promise\n";
-    EXPECT_LE(worst, 1) << name_of(path);
-    EXPECT_GT(worst, 0.04) << name_of(path);
+    std::cout << "  rings, " << test::name_of(path) << ": " << worst << " of the promise\n";
+    EXPECT_LE(worst, 1) << test::name_of(path);
+    EXPECT_GT(worst, 0.04) << test::name_of(path);
   }
 }
 

@@ -11,8 +11,8 @@
 
 #include "chronormal/normals/normal_curves.h"
 #include "chronormal/normals/normal_groups.h"
-#include "chronormal/normals/recompute.h"
 #include "core/bits.h"
+#include "normals/recompute/recompute.h"
 #include "simd/targets.h"
 #include "tests/support/integer_mesh.h"
 

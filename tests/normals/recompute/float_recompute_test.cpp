@@ -1,7 +1,7 @@
 // Compares FloatRecompute with arithmetic in double. If several calls must give the same result, also compares their
 // results with each other.
 
-#include "chronormal/normals/recompute.h"
+#include "chronormal/normals/float_recompute.h"
 
 #include <gtest/gtest.h>
 

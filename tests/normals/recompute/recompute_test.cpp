@@ -1,7 +1,7 @@
 // Compares normals that are recomputed from positions at every t with exact rational arithmetic. If several calls must
 // give the same result, also compares their results with each other.
 
-#include "chronormal/normals/recompute.h"
+#include "normals/recompute/recompute.h"
 
 #include <gtest/gtest.h>
 

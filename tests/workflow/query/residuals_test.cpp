@@ -17,13 +17,13 @@
 #include "chronormal/analysis/signs.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_curves.h"
-#include "chronormal/normals/recompute.h"
 #include "chronormal/normals/weighting.h"
 #include "chronormal/schemes/scheme.h"
 #include "chronormal/workflow/audit.h"
 #include "chronormal/workflow/compare.h"
 #include "chronormal/workflow/inspect.h"
 #include "core/twofold.h"
+#include "normals/recompute/recompute.h"
 #include "tests/support/fixtures.h"
 
 namespace chronormal::residuals_test {

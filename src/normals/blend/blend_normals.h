@@ -1,4 +1,4 @@
-/// Exact unit normals of blend shapes at any weights.
+/// Exact unit normals of blend shapes at any weights. Private to the library; MeshNormals is its public interface.
 ///
 /// Engines add one normal delta per target, but the normal is a quadratic form in the weights (blend_terms.h): each
 /// target has a linear and a square term, and two targets that move the same face have a common term. BlendNormals
@@ -16,8 +16,8 @@
 /// Speed      normals are recomputed in lanes of double, along rings of points around elements. If the lanes cannot
 ///            guarantee 1e-6 rad for an element, or if its ring has more than 64 points, the element is computed
 ///            separately, which takes about eight times as long.
-/// Memory     Known in advance (predict_blend_cost()), and limited by max_bytes: if not all terms fit, those of the
-///            targets and pairs with the most terms are not stored, and elements that need them are computed from
+/// Memory     Limited by max_bytes, and counted before terms are computed (BlendCost): if not all terms fit, those of
+///            the targets and pairs with the most terms are not stored, and elements that need them are computed from
 ///            blended positions.
 /// Accuracy   Within 1e-6 rad of the normals of the blended positions in exact arithmetic, on every path (except with
 ///            BlendNormalsOptions::in_float32). Terms are stored in float32, each with an error bound; an element whose
@@ -29,23 +29,20 @@
 /// Ownership  the set and the groups are moved in and kept. A moved-from object may only be destroyed or assigned.
 /// Threads    const functions may run at the same time. Results have the same bits on any number of threads, in ranges
 ///            of any size, and on every instruction set.
-#ifndef CHRONORMAL_NORMALS_BLEND_NORMALS_H_
-#define CHRONORMAL_NORMALS_BLEND_NORMALS_H_
+#ifndef CHRONORMAL_NORMALS_BLEND_BLEND_NORMALS_H_
+#define CHRONORMAL_NORMALS_BLEND_BLEND_NORMALS_H_
 
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
-#include <vector>
 
 #include "chronormal/core/parallel.h"
-#include "chronormal/core/result.h"
 #include "chronormal/core/views.h"
 #include "chronormal/motion/motion.h"
 #include "chronormal/normals/normal_groups.h"
 
-namespace chronormal {
+namespace chronormal::inline internal {
 
 enum class BlendPath {
   kTerms,    ///< add the terms of the active targets, for the elements that these targets touch
@@ -53,17 +50,11 @@ enum class BlendPath {
   kWhole,    ///< blend positions, and recompute all elements
 };
 
-/// Returns the name of a path: "terms", "touched" or "whole".
-[[nodiscard]] std::string_view name_of(BlendPath path) noexcept;
-
-/// The default limit of memory, one gigabyte. The terms of many dense targets take more, but then another path than
-/// kTerms is usually cheaper.
-inline constexpr std::size_t kUsualBlendBytes = std::size_t{1} << 30;
-
 struct BlendNormalsOptions {
   /// The limit of BlendCost::bytes. It does not apply to least_bytes, the memory that is needed even if no terms are
-  /// stored.
-  std::size_t max_bytes = kUsualBlendBytes;
+  /// stored. The terms of many dense targets take more than the default, but then another path than kTerms is usually
+  /// cheaper.
+  std::size_t max_bytes = std::size_t{1} << 30;
   /// The path that is always taken, whatever its cost.
   std::optional<BlendPath> forced = {};
   /// True to blend positions and compute normals in float32 on the path kWhole, like FloatRecompute. This takes about
@@ -91,12 +82,6 @@ struct BlendCost {
 
   friend bool operator==(const BlendCost&, const BlendCost&) = default;
 };
-
-/// Predicts the memory from the faces of each target and the rings of points around elements, without computing terms.
-/// Pure. Preconditions: the set is valid; the groups are groups of its topology, and forget_corners() was not called.
-[[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const BlendNormalsOptions& options = {});
-[[nodiscard]] BlendCost predict_blend_cost(const BlendSet& set, const NormalGroups& groups,
-                                           const BlendNormalsOptions& options = {});
 
 /// The path that is chosen for some weights, and the expected costs that led to this choice.
 struct BlendChoice {
@@ -139,21 +124,10 @@ class BlendNormals {
   /// Preconditions: weights has one number for each target, and result has size() elements.
   BlendEvaluation unit_normals(std::span<const double> weights, VectorView<float> result,
                                Threads threads = Threads::kOne);
-  /// Writes the normals for many weight vectors, for example of an animation. `weights` has a row for each vector, (n,
-  /// targets), and results[k] gets the normals for row k. With Threads::kAll the rows are divided among the threads.
-  /// Each thread except the first allocates its own scratch memory during the call, which cost() does not count.
-  std::vector<BlendEvaluation> unit_normals(std::span<const double> weights, std::span<const VectorView<float>> results,
-                                            Threads threads = Threads::kOne);
-  /// Returns the path that set_weights() would choose for these weights.
-  [[nodiscard]] BlendChoice choose(std::span<const double> weights) const;
-
-  /// Appends a target. Computes its terms and those of its pairs with other targets, as far as max_bytes allows;
-  /// existing terms are kept. Errors: those of validate(); after an error the object is unchanged.
-  Status add_target(BlendTarget target);
 
   [[nodiscard]] std::size_t size() const noexcept;
   [[nodiscard]] const BlendSet& set() const noexcept;
-  /// Returns the memory and the counts for all targets, including those that were added later.
+  /// Returns the memory that all targets need, and the counts from which it follows.
   [[nodiscard]] const BlendCost& cost() const noexcept;
   /// Returns the number of bytes of memory in use, which is at most cost().bytes.
   [[nodiscard]] std::size_t bytes() const noexcept;
@@ -165,6 +139,6 @@ class BlendNormals {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace chronormal
+}  // namespace chronormal::inline internal
 
-#endif  // CHRONORMAL_NORMALS_BLEND_NORMALS_H_
+#endif  // CHRONORMAL_NORMALS_BLEND_BLEND_NORMALS_H_
