@@ -1,5 +1,5 @@
-// Tests that no message joins a number and a plural noun by hand, since such a message is wrong for one: "1 vertices".
-// Messages use counted() (core/text.h) instead.
+// Tests that no message joins a number and a plural noun by hand, since such a message is wrong for the number 1: "1
+// vertices". Messages use counted() (core/text.h) instead.
 
 #include <gtest/gtest.h>
 

@@ -330,8 +330,8 @@ TEST(Layers, raw_intrinsics_stand_in_two_files) {
 }
 
 // Returns the lines in which a private header declares names in the public namespace. Private names must be in an
-// inline namespace: then the linker and the compiler keep them apart, but code can use them without naming this
-// namespace.
+// inline namespace. The compiler and the linker then keep private names and public names apart, but code of the library
+// can use private names without naming the namespace.
 std::vector<std::string> public_names(const std::string& path, const std::string& text) {
   std::vector<std::string> found;
   for (const std::string& line : lines_of(text)) {

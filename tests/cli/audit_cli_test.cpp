@@ -88,7 +88,7 @@ TEST_F(AuditCli, tolerance_is_a_gate) {
             "chronormal audit: the worst error is 90 degrees, beyond the tolerance of 89.9: "
             "vertex 3 of Hinge, primitive 0, target 0 (fold\\x1b[2J) at weight 1\n");
   expect_words(text_of("hinge.glb --tolerance 90.1"), {"; within 90.1 degrees\n"});
-  // Every viewer tears four edges of the hinge at the same moment.
+  // In every viewer, four edges of the hinge are torn at the same moment.
   EXPECT_EQ(run("hinge.glb --tears 4").exit_code, 0);
   const ProcessResult torn = run("hinge.glb --tears 3 --tolerance 91");
   EXPECT_EQ(torn.exit_code, 4);
@@ -472,8 +472,9 @@ TEST_F(AuditCli, advice_is_kept_by_the_command_that_it_names) {
   EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
 }
 
-// A sheet in the plane z = 0 swings around the x axis. Its normal is linear in the weight, so one delta is right at all
-// weights. The tangents along y do not follow.
+// A sheet in the plane z = 0 swings around the x axis. The normal is linear in the weight, so a single normal delta
+// gives the true normal at all weights. The file has no deltas for the tangents, which point along y, so the tangents
+// do not turn with the sheet.
 TEST_F(AuditCli, advice_for_tangents_is_kept_by_the_command_that_it_names) {
   constexpr double kAngle = 0.9;
   test::ShadedMesh sheet = test::random_sheet(3, 5, 1, 0);
@@ -497,7 +498,8 @@ TEST_F(AuditCli, advice_for_tangents_is_kept_by_the_command_that_it_names) {
   const ProcessResult baked = run_shell(std::string(kProgram) + " bake swing.glb -o baked.glb -q", folder_.path(), "");
   ASSERT_EQ(baked.exit_code, 0) << baked.err;
   EXPECT_EQ(last_line(text_of("baked.glb")), "nothing to do, since no error is larger than 1 degree");
-  // A bake for a viewer that does not morph tangents leaves them as they are, and a second bake changes nothing.
+  // A bake for a viewer that does not morph tangents leaves the tangents as they are, so the advice must not be a
+  // second bake.
   target.normals.clear();
   folder_.write("bare_swing.glb", sheet.file().glb());
   const ProcessResult of_three =
@@ -525,12 +527,12 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"were baked before", "that no animation moves"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The first bake stored a single delta for each target, although the animation could drive correction targets.
+  // This bake stores a single delta for each target, although the animation could drive correction targets.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // The first bake was for all viewers. A bake for fewer viewers would allow smaller errors.
+  // This bake is for all viewers. A bake for fewer viewers would allow smaller errors.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --for"});

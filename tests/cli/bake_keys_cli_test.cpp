@@ -36,8 +36,8 @@ TEST_F(BakeKeysCommand, report_counts_keys_and_what_they_save) {
   const std::string text = run("--sample bend --encode keys --tolerance 2 --force -o bend.glb").out;
   EXPECT_NE(text.find(" between keyframes; 0 keyframes left out; "), std::string::npos) << text;
   EXPECT_NE(text.find("\nthe error is at most "), std::string::npos) << text;
-  // A bake of keys leaves a mark of the same form as a bake for all viewers, so all readers of marks understand the
-  // mark.
+  // A bake with --encode keys leaves a mark in the file that has the same form as the mark of a bake for all viewers,
+  // so all readers of marks understand it.
   const Json audited = Json::parse(
       run_shell(std::string(kProgram) + " audit bend.glb --json --for three --tolerance 2.01", folder_.path()).out);
   EXPECT_LE(audited["viewers"][0]["worst_degrees"], 2.01) << audited;

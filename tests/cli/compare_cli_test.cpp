@@ -23,8 +23,9 @@ using Json = nlohmann::json;
 
 // Three triangles move in the first of two segments. The first has no area. The normal of the second turns over at t =
 // 1/4. The normal of the third turns from z to -y, where linear interpolation has an error of 45 - atan(1/2) degrees at
-// t = 1/2. There are 3 x 2 x 3 samples, of which 6 have no exact normal. Linear interpolation has two errors: the error
-// of the third triangle, and 180 degrees where opposite normals cancel.
+// t = 1/2. There are 18 samples: 3 faces, 2 segments, and 3 times in each segment. For 6 of them, there is no exact
+// normal. Linear interpolation has two errors: the error of the third triangle, and 180 degrees where opposite normals
+// cancel.
 class CompareFigures : public testing::Test {
  protected:
   CompareFigures() {

@@ -418,8 +418,8 @@ TEST_F(HostileCli, a_small_stack_is_enough) {
   }
 }
 
-// The headers promise a terabyte of data. Almost none of it was written, except that p.ply and q.ply are as long as
-// their headers say.
+// The headers of the files promise up to a terabyte of data, but almost no data was written to the disk. Only p.ply and
+// q.ply are as long as their headers say.
 TEST_F(HostileCli, sparse_files_are_refused_at_once_and_whole) {
   folder_.write("mesh.obj", kFirst);
   const std::string header =

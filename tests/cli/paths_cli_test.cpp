@@ -121,8 +121,8 @@ TEST_F(Paths, are_straight_between_two_keyframes_and_all_commands_say_so) {
 }
 
 // Compares the rendered normals between keyframes with the normals of the curves through the keyframes. The tolerance
-// includes the error of the straight pieces and the error of the keys. Vertices whose face normals nearly cancel are
-// skipped, since a bound for the normals of faces is not a bound for the direction of their sum.
+// includes the error of the straight pieces and the error of the keys that bake writes. Vertices whose face normals
+// nearly cancel are skipped, since a bound for the normals of faces is not a bound for the direction of their sum.
 TEST_F(Paths, keys_of_curves_are_within_the_tolerance_of_the_curves_themselves) {
   constexpr std::uint64_t kSeed = 20261127;
   constexpr std::size_t kSide = 8;

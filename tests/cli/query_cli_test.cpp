@@ -96,7 +96,8 @@ TEST_F(QueryCli, elements_are_of_the_questions_that_take_them) {
   expect_misuse("facing a.obj b.obj --direction 0,0,1 --elements vertices --silhouettes", "--silhouettes");
   const Json vertices = json_of("facing a.obj b.obj --direction 0,0,1 --elements vertices");
   EXPECT_EQ(vertices["summary"]["vertices"], 4);
-  // Vertex 3 crosses the diagonal. It belongs only to face 1, so it shows its front until face 1 turns over at t = 1/2.
+  // Vertex 3 crosses the diagonal. Only face 1 has this vertex, so the vertex counts as front-facing until face 1 turns
+  // over at t = 1/2.
   const Json &of = vertices["arrays"]["vertex"], &to = vertices["arrays"]["to"];
   ASSERT_EQ(of.size(), 4U);
   expect_near(Json::array({to[3]}), {0.5});

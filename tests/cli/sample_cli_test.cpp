@@ -147,8 +147,8 @@ TEST_F(SampleCli, times_are_a_list_or_a_range) {
   EXPECT_EQ(tenths.size(), 21U);
   EXPECT_EQ(tenths.back(), 2) << "the last is the end itself";
   EXPECT_EQ(times_of("0.5:1:0.5"), (std::vector<double>{0.5}));
-  // In floating point, 3 x 0.1 is larger than 0.3, and 0.3 / 0.1 is smaller than 3. The range must have four times all
-  // the same, and end at 0.3.
+  // In floating point, 3 x 0.1 is larger than 0.3, and 0.3 / 0.1 is smaller than 3. In spite of such rounding errors,
+  // the range must have four times and end at 0.3.
   const auto thirds = times_of("0:0.1:0.3");
   EXPECT_EQ(thirds.size(), 4U);
   EXPECT_EQ(thirds.back(), 0.3);

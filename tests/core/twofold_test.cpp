@@ -30,7 +30,8 @@ TEST(Twofold, sums_and_products_of_doubles_are_exact_and_those_of_pairs_nearly) 
   }
 }
 
-// The high parts of two twofold numbers nearly cancel, as in differences of coordinates far from the origin.
+// A twofold number is the sum of two doubles, a high and a low part. In this test, the high parts of two such numbers
+// nearly cancel, as in differences of coordinates far from the origin.
 TEST(Twofold, differences_are_rounded_once_whatever_cancels) {
   constexpr std::uint64_t kSeed = 4954;
   fixtures::Random random(kSeed);

@@ -1,24 +1,29 @@
-/// Finds which sums of face normals the normals of a mesh follow. Private to workflow.
+/// Finds the rule by which a modelling tool added up face normals to the normals of a mesh. Private to workflow.
 ///
-/// The tool that made a mesh weighted polygons or triangles in its own way, and the stored normals show which rule it
-/// used. The normals of targets at weight 1 are compared first, with the offset of the base applied: a flat base or a
-/// cube has the same normals by all rules, but its targets do not. The base is used only if no target tells rules
-/// apart.
+/// Each modelling tool weights polygons or triangles in its own way, and the stored normals of a mesh show which rule
+/// its tool used. The normals of targets at weight 1 are compared first, with the offset of the base applied: a flat
+/// base or a cube has the same normals by all rules, but its targets do not. The base is used only if no target tells
+/// rules apart.
 ///
-///     candidates   five weightings, of triangles or quads, of an element's own corners or its whole point
-///     tells        a stored normal tells if some candidate is more than 0.1 degrees from triangles by area there; at
-///                  all other normals the candidates hardly differ
-///     distance     of a candidate: a quantile, over the normals that tell, of the angle to the stored normal
-///     found        the candidate that a tenth of these normals follow to 0.003 degrees, at a third of the distance of
-///                  triangles by area, even if much of the mesh was bent by hand; among several such candidates, the
-///                  one that three quarters of the normals follow exactly, if there is one. Otherwise the candidate
-///                  with the smallest median, if that is at most a degree, and at most two thirds of the median of
-///                  triangles by area. Otherwise triangles by area, which can be computed exactly at every time
+///     candidate    a rule that the tool may have used: one of five weightings, of triangles or of quads, over the
+///                  corners of an element or over all corners at the point of the element
+///     tells        a stored normal tells rules apart if some candidate differs there by more than 0.1 degrees from
+///                  weighting triangles by area; at all other normals the candidates hardly differ
+///     distance     a quantile of the angles between a candidate and the stored normals that tell rules apart
 ///
-/// The rule is changed around normals that do not follow it, if the change makes a normal follow exactly. Triangles in
-/// a row become larger polygons, quads are split, and elements add up their whole point (also both sides of faces that
-/// look like the two sides of a sheet but are not). Changes that only bring normals nearer to the sums are not made,
-/// since that may be chance.
+/// Three choices are tried in this order:
+///
+///     1. A candidate that a tenth of the telling normals follow to 0.003 degrees, even if much of the mesh was bent by
+///        hand. The distance of this candidate must be at most a third of the distance of triangles by area. Among
+///        several such candidates, one that three quarters of the normals follow exactly is preferred.
+///     2. The candidate with the smallest median distance, if this distance is at most a degree, and at most two thirds
+///        of the median distance of triangles by area.
+///     3. Triangles by area, since their normals can be computed exactly at every time.
+///
+/// Around normals that do not follow the rule, the rule is changed if the change makes a normal follow exactly.
+/// Consecutive triangles become larger polygons, quads are split, and elements add up all corners at their points (also
+/// on both sides of faces that look like the two sides of a sheet but are not). A change that only brings normals
+/// nearer to the sums is not made, since that may be chance.
 #ifndef CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 #define CHRONORMAL_WORKFLOW_TRUTH_AUTHOR_RULE_H_
 
@@ -37,8 +42,8 @@ struct AuthorRule {
   bool any_whole_point = false;  ///< true if some elements add up more than the corners that show them
   std::size_t telling = 0;       ///< the number of stored normals that tell rules apart
   double distance = 0;           ///< the median distance of the candidate that was found, in degrees
-  /// The median over all stored normals that tell rules apart: the median of the largest angle between a candidate and
-  /// triangles by area, in degrees.
+  /// For each stored normal that tells rules apart, takes the largest angle between a candidate and triangles by area.
+  /// `spread` is the median of these angles, in degrees.
   double spread = 0;
 
   [[nodiscard]] bool is_plain() const noexcept {
@@ -52,8 +57,8 @@ struct FoundRule {
 };
 
 /// Finds the rule of a mesh. Preconditions: the groups of the shading have their corners, and the shading has kept its
-/// deltas of normals. Takes O(corners) for each candidate in the base and in each target, but examines some tens of
-/// thousands of normals at most. Uses all cores. The result has the same bits on any number of threads.
+/// deltas of normals. Takes O(corners) time for each candidate in the base and in each target, but examines some tens
+/// of thousands of normals at most. Uses all cores. The result has the same bits on any number of threads.
 [[nodiscard]] FoundRule find_author_rule(const GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -7,8 +7,8 @@
 namespace chronormal::inline internal {
 namespace {
 
-// Returns the outline of some consecutive triangles, or an empty list if they do not fill an outline that has no vertex
-// inside.
+// Returns the vertices of the outline of some consecutive triangles. Returns an empty list if the triangles do not form
+// a single polygon without a vertex inside.
 std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first, std::size_t count) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::vector<Edge> edges;
@@ -42,7 +42,8 @@ std::vector<std::uint32_t> outline(const Topology& triangles, std::size_t first,
   return loop.size() == count + 2 ? loop : std::vector<std::uint32_t>();
 }
 
-// Returns true if a vertex shows the other side of a polygon that consists of some consecutive triangles.
+// Returns true if a vertex shows the normal of the back of a polygon. The polygon consists of `count` triangles from
+// `first` on.
 bool is_at_the_back(const GltfShading& shading, std::size_t first, std::size_t count, std::uint32_t vertex) {
   if (shading.at_the_back.empty()) return false;
   const auto corners = shading.set.topology.corners();

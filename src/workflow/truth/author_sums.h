@@ -41,9 +41,9 @@ struct AuthorSum {
   double terms = 0;  ///< the sum of the lengths of its terms
   double areas = 0;  ///< the sum of the lengths of its face normals, each twice the area of the face
 
-  /// Returns the sum with the length of a sum by area whose faces all have the same direction. The direction of the sum
-  /// stays. If the terms cancel so far that the sum is shorter than a twentieth of them, the length becomes smaller,
-  /// and reaches zero where the direction is lost.
+  /// Returns a vector with the direction of the sum. Its length is the sum of the lengths of the face normals, as in a
+  /// sum by area whose faces all have one direction. If the terms cancel so far that the sum is shorter than a
+  /// twentieth of `terms`, the length becomes smaller, and reaches zero with the sum.
   [[nodiscard]] Vec3d with_area_length() const noexcept {
     constexpr double kLost = 0.05;
     const double size = length(normal);
@@ -60,8 +60,8 @@ class Polygons {
   /// taken apart, and its other triangles become single. Returns false, and changes nothing, if the outline of the
   /// triangles is not a polygon around all of their vertices.
   bool join(std::size_t first, std::size_t count);
-  /// Makes quads of all pairs of triangles that have the order of a cut quad, within the parts of the mesh. Returns the
-  /// number of quads.
+  /// Joins each pair of consecutive triangles that looks like a cut quad (see above) to a quad. Both triangles must be
+  /// in the same part of the mesh. Returns the number of quads.
   std::size_t join_quads(std::span<const GltfPart> parts);
 
   /// Returns the polygon to which a triangle belongs. A polygon has the index of its first triangle.
@@ -81,11 +81,10 @@ class Polygons {
   void take_apart(std::size_t polygon);
 
   const Topology* triangles_;
-  // The lists below are empty until triangles are joined.
-  // first_ has for each triangle the first triangle of its polygon. count_ has for this first triangle the number of
-  // triangles in the polygon.
+  // The lists below are empty until triangles are joined. first_ has for each triangle the first triangle of its
+  // polygon. count_ has, at the index of this first triangle, the number of triangles in the polygon.
   std::vector<std::uint32_t> first_, count_;
-  // The place in loops_ at which the corners of a larger polygon begin, by the first triangle of the polygon.
+  // For the first triangle of each larger polygon, the place in loops_ at which the corners of the polygon begin.
   std::vector<std::uint32_t> loop_of_;
   std::vector<std::uint32_t> loops_;  // corners of larger polygons; each has two more corners than triangles
   std::size_t joined_ = 0;
@@ -95,9 +94,9 @@ class Polygons {
 class AuthorSums {
  public:
   AuthorSums() = default;
-  /// Prepares sums over the corners that show an element's normal. For elements that are set in `whole_point`, prepares
-  /// sums over all corners at their points instead. If `wanted` is not empty, elements that are not set in `wanted` get
-  /// no corners.
+  /// Prepares sums over the corners that show an element's normal. For elements that are true in `whole_point`,
+  /// prepares sums over all corners at their points instead. If `wanted` is not empty, elements that are false in
+  /// `wanted` get no corners.
   AuthorSums(const GltfShading& shading, const Polygons& polygons, Weighting weighting,
              const std::vector<bool>& whole_point, const std::vector<bool>& wanted = {});
 
@@ -117,8 +116,8 @@ class AuthorSums {
     return result;
   }
 
-  /// Calls visit(i, sum) for the i-th of some elements, in order. visit() must not compute sums itself. One call for
-  /// about kElementsOfBlock elements takes a fraction of the time of single calls of at().
+  /// Calls visit(i, sum) for the i-th of the given elements, in order. visit() must not compute sums itself. One call
+  /// for about kElementsOfBlock elements takes a fraction of the time of a call of at() for each of these elements.
   template <class PositionOf, class Visit>
   void for_each(std::span<const std::uint32_t> elements, const PositionOf& position, const Visit& visit) const {
     for_each(elements, position, visit, weighting_);

@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kFramesOfBlock = 256;
 constexpr double kOnSum = 0.01 / kDegreesPerRadian;  // radians: a normal that is nearer to its sum has no offset
 
-// Returns the angle by which rounding may turn a stored normal, in radians. The angle is above zero only if the
-// components look like signed bytes, which some exporters store.
+// Returns the largest angle, in radians, by which an exporter may have turned normals by rounding. Returns zero unless
+// all components look like multiples of 1/127, since some exporters store normals as signed bytes.
 double rounding_of_stored(const GltfShading& shading) {
   constexpr double kSteps = 127, kNear = 1e-3;
   constexpr std::size_t kEnough = 16;
@@ -29,7 +29,8 @@ double rounding_of_stored(const GltfShading& shading) {
 
 }  // namespace
 
-// The search for elements that have offsets, for the edges from which their azimuths are measured, and for stale keys.
+// Finds the elements whose normals have offsets, the edges from which the azimuths of these offsets are measured, and
+// stale keys.
 class AuthorTruth::Finder {
  public:
   explicit Finder(AuthorTruth& truth)
@@ -214,8 +215,8 @@ class AuthorTruth::Finder {
   StaleKeys stale_;
   std::vector<std::uint32_t> element_of_;  // for each frame, its element
   std::vector<PlaneOffset> base_offsets_;  // for each edge, the base's offset with the azimuth measured from it
-  // For each edge, the sum over keys of the squared distance between the offset at the key and the base's, with
-  // azimuths measured from this edge; -1 if the edge cannot be used.
+  // For each edge, the sum over all keys of the squared distance between the offset at the key and the offset in the
+  // base, with azimuths measured from this edge; or -1 if the edge cannot be used.
   std::vector<double> differences_;
 };
 

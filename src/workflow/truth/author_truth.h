@@ -4,8 +4,8 @@
 /// and the sum at weights w is called r(w). The author may have changed the normals after that, by hand or by a
 /// modifier. This change is the *offset*, which moves along with the surface (offset_frame.h). Let o_0 be the offset of
 /// the base, and o_i the offset of target i at weight 1, as the file stores them. The truth at weights w has the offset
-/// o(w) = o_0 + sum of w_i (o_i - o_0), limited to a right angle from the sum. For this reason the truth equals all
-/// stored normals at their weights, and equals r(w) if there is no offset.
+/// o(w) = o_0 + sum of w_i (o_i - o_0), limited to a right angle from the sum. The truth therefore equals the stored
+/// normals of the base, and of each target at weight 1. If there is no offset, the truth equals r(w).
 ///
 /// An azimuth is the angle around the sum at which an offset points. Azimuths are measured from the edge for which the
 /// offsets of an element differ least between keys. If no edge can be used at every key, they are measured from a
@@ -98,7 +98,7 @@ class AuthorTruth {
   [[nodiscard]] AuthorSum at(std::uint32_t element, const PositionOf& position, const Pose& pose) const {
     return turned_sum(element, sums_.at(element, position), position, pose);
   }
-  /// Turns the sum r(w) of an element by the author's offset. Keeps the length of the sum.
+  /// Turns the sum r(w) of an element by the author's offset in a pose. Keeps the length of the sum.
   template <class PositionOf>
   [[nodiscard]] Vec3d with_offset(std::uint32_t element, const Vec3d& sum, const PositionOf& position,
                                   const Pose& pose) const {
@@ -158,7 +158,7 @@ class AuthorTruth {
 };
 
 /// Returns the true normals of a mesh. If a weighting is requested, the truth consists of sums by this weighting.
-/// Otherwise it is found from the stored normals, and vertices at one point whose normals differ at a key become
+/// Otherwise the truth is found from the stored normals, and vertices at one point whose normals differ at a key become
 /// separate elements. The shading must satisfy the preconditions of the constructor of AuthorTruth.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 

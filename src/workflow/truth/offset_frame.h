@@ -66,8 +66,8 @@ template <class PositionOf>
   return length(along) > kLeastLength * longest && length(cross(unit(along), z)) > kLeastSine;
 }
 
-/// Returns the offset of a normal. x is the direction of azimuth 0. `mean` is the mean angle between z and the edges,
-/// in radians.
+/// Returns the offset of a normal from z, which is the unit sum of face normals. x is the direction of azimuth 0.
+/// `mean` is the mean angle between z and the edges, in radians.
 [[nodiscard]] inline PlaneOffset offset_of(const Vec3d& normal, const Vec3d& z, const Vec3d& x, double mean) {
   const Vec3d s = unit(normal), across = unit(s - dot(s, z) * z);
   if (s == Vec3d{} || x == Vec3d{} || across == Vec3d{}) return {};
@@ -75,7 +75,8 @@ template <class PositionOf>
   return {size * dot(across, x), size * dot(across, cross(z, x))};
 }
 
-/// Returns the unit normal with the given offset from z. The normal is at most a right angle from z.
+/// Returns the unit normal with the given offset from z. The angle between the normal and z is limited to a right
+/// angle.
 [[nodiscard]] inline Vec3d with_offset(const PlaneOffset& offset, const Vec3d& z, const Vec3d& x, double mean) {
   const double size = portable::hypot(offset.x, offset.y);
   if (size == 0 || x == Vec3d{}) return z;
@@ -85,9 +86,10 @@ template <class PositionOf>
   return portable::cos(alpha) * z + portable::sin(alpha) * across;
 }
 
-/// Returns the angle in radians between a stored normal at a key and the base normal with its offset moved to that key.
-/// Tries all edges and returns the smallest angle. base and at_key return positions, z0 and z are the unit sums, and s0
-/// and s are the stored normals, in the base and at the key.
+/// Moves the offset of the base normal to a key, and returns the angle in radians between the result and the stored
+/// normal at the key. Measures azimuths from each edge in turn, and returns the smallest angle. In the base,
+/// base(vertex) returns positions, z0 is the unit sum, and s0 is the stored normal; at_key(vertex), z and s are the
+/// same at the key.
 template <class BaseOf, class KeyOf>
 [[nodiscard]] double carried_error(std::span<const OffsetEdge> edges, const Vec3d& z0, const Vec3d& s0,
                                    const BaseOf& base, const Vec3d& z, const Vec3d& s, const KeyOf& at_key) {

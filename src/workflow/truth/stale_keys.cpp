@@ -70,7 +70,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// The vertices of one connected part of the mesh that a key turns.
+// Facts about the vertices of one connected part of the mesh whose sums of face normals are turned by a key.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians: the turn of each vertex that turns, and the error of its normal
   double together = 0, of_surface = 0, of_stored = 0;
@@ -157,11 +157,12 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> classes(shading.groups.element_of_output().begin(),
                                      shading.groups.element_of_output().end());
   std::size_t count = shading.groups.size();
-  // For each class of vertices, the vertex with which the other vertices of the class are compared.
+  // A class is a set of vertices that share an element. For each class, the vertex with which its other vertices are
+  // compared.
   std::vector<std::uint32_t> first_of = vertex_of;
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
-    // Lists, for each class that this key splits, the first vertex of each new class.
+    // Lists, for each class that this key splits, one vertex of each new class.
     std::vector<std::vector<std::uint32_t>> apart;
     std::vector<std::uint32_t> apart_of;
     for (const std::uint32_t v : sharing) {

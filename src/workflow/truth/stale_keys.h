@@ -49,15 +49,16 @@ class StaleKeys {
 
  private:
   std::vector<std::uint32_t> part_of_vertex_;
-  // For each target and part of the mesh, whether the target is stale there; empty if it is stale nowhere.
+  // For each target, a list that is true for each part of the mesh on which the target is stale. The list is empty if
+  // the target is stale nowhere.
   std::vector<std::vector<bool>> stale_;
   std::vector<bool> is_all_stale_;  // for each target, true if it is stale wherever it turns the mesh
   std::vector<StaleKey> list_;
 };
 
-/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ. This
-/// happens if an edge is hard in a single target. Ignores stale keys. The groups must have their corners. Returns true
-/// if any element was split.
+/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ, as at
+/// an edge that is hard in a single target only. Ignores stale keys. The groups of the shading must have their corners.
+/// Returns true if any element was split.
 bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal

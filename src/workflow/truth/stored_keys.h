@@ -17,7 +17,7 @@
 
 namespace chronormal::inline internal {
 
-/// The positions and normals of all vertices, in the base or in one target at weight 1.
+/// The positions and stored normals of all vertices, in the base or in one target at weight 1.
 class StoredKey {
  public:
   /// Reads the base.

@@ -20,15 +20,15 @@ bool has_own_splines(TrackRule rule, GltfInterpolation interpolation) noexcept {
          (rule == TrackRule::kSplinesWithoutDuration || rule == TrackRule::kSplinesMisread);
 }
 
-// Returns the four factors of cubic Hermite interpolation at t in [0, 1]: for the value before, its tangent, the value
-// after, and its tangent.
+// Returns the four factors of cubic Hermite interpolation at t in [0, 1]: of the value at the start, the tangent at the
+// start, the value at the end, and the tangent at the end.
 std::array<double, 4> hermite(double t) noexcept {
   const double s = 1 - t;
   return {(1 + 2 * t) * s * s, t * s * s, t * t * (3 - 2 * t), t * t * (t - 1)};
 }
 
-// Returns the index of the last sample of an animation, as gltfpack computes it. gltfpack rounds the number of samples,
-// and more often up than down.
+// Returns the index of the last sample of an animation, as gltfpack computes the index. gltfpack rounds the number of
+// samples up if its fraction is at least 0.2.
 double index_of_last_sample(const TimeRange& animation) noexcept {
   constexpr double kBias = 0.8;
   return std::floor((animation.last - animation.first) * kViewerSampleRate + kBias);
@@ -90,9 +90,9 @@ void PlayedTrack::play_spline(double time, bool just_before, std::span<double> w
       weights[i] = h[0] * number(from, 1) + h[2] * number(to, 1) + t * (h[1] * number(from, 2) + h[3] * number(to, 0));
       continue;
     }
-    // By the rule kSplinesMisread, a viewer takes only the in-tangents of a target, which are a third of the target's
-    // numbers. It reads them as if they were an in-tangent, a value and an out-tangent for each key. For later keys no
-    // numbers are left, so the weight is 0.
+    // A viewer with the rule kSplinesMisread takes only the in-tangents of a target, which are a third of the target's
+    // numbers. The viewer reads these in-tangents as if they were an in-tangent, a value and an out-tangent for each
+    // key. No numbers are left for the later keys, so their weight is 0.
     const auto number = [&](std::size_t at) { return keys_.values[3 * at * targets + i]; };
     weights[i] = 3 * to + 1 >= keys || 3 * from + 2 >= keys
                      ? 0

@@ -64,8 +64,8 @@ Vec3d from_octahedral(const Octahedral& o) noexcept {
   return unit(Vec3d{o.x - std::copysign(fold, o.x), o.y - std::copysign(fold, o.y), z});
 }
 
-// Returns a direction after it was stored in octahedral form. The form has two unsigned integers that represent [-1,
-// 1], rounded down.
+// Returns the direction that a viewer reads back after it has stored `v` in octahedral form. The form has two unsigned
+// integers of `bits` bits that represent [-1, 1], rounded down.
 Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits) - 1;
@@ -74,7 +74,8 @@ Vec3d through_unsigned_octahedral(const Vec3d& v, int bits) noexcept {
   return from_octahedral({kept(o.x), kept(o.y)});
 }
 
-// Returns a direction after it was stored in octahedral form. The form has two signed integers, rounded to nearest.
+// Returns the direction that a viewer reads back after it has stored `v` in octahedral form. The form has two signed
+// integers of `bits` bits, rounded to the nearest integer.
 Vec3d through_signed_octahedral(const Vec3d& v, int bits) noexcept {
   if (v == Vec3d{} || !is_finite(v)) return v;
   const double most = std::ldexp(1, bits - 1) - 1;

@@ -1,7 +1,7 @@
 // Compares the certified error bounds of every scheme with errors that are computed in integers of any size. Each
-// element is tested at 64 times. No error may exceed the upper bound of the element; at the time that the certificate
-// names, the error may not be below the lower bound. The test has 600 elements from fixed seeds, or as many as
-// CHRONORMAL_FULL_CASES asks for, up to 200,000 (./test --full exact).
+// element is tested at 64 times. No error may exceed the upper bound of the element; and at the time that the
+// certificate names, the error may not be below the lower bound. The test has 600 elements from fixed seeds, or as many
+// as the environment variable CHRONORMAL_FULL_CASES says, up to 200,000 (./test --full exact).
 
 #include "chronormal/analysis/certify.h"
 #include "chronormal/core/polynomial.h"
@@ -51,7 +51,8 @@ std::size_t wanted_elements() {
   return std::clamp<std::size_t>(cases, 600, 200000);
 }
 
-// A scheme that is prepared for the faces of a segment, with the control normals and the bounds of these faces.
+// A scheme that is prepared for the faces of a segment, with the control normals of these faces and the bounds of their
+// errors.
 struct Prepared {
   std::unique_ptr<Scheme> scheme;
   std::vector<ControlNormals> normals;
@@ -78,7 +79,8 @@ double error_of(const Vec3f& shown, const IntegerVector& exact) {
   return test::angle_between(shown, test::direction_of(exact));
 }
 
-// The numbers of elements of a scheme that violate their error bounds or have no bound, and how tight the bounds are.
+// Counts the elements of a scheme that violate their error bounds or have no bound, and measures how tight the bounds
+// are.
 struct Tally {
   std::size_t elements = 0, over = 0, under = 0, crossed = 0, unknown = 0;
   double largest_share = 0;  // largest ratio of a measured error to the upper bound
@@ -247,12 +249,13 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;
     EXPECT_NEAR(bounds.to, 0.25, 1e-6) << scheme;
   }
-  // The scheme `recompute` computes the normal from positions at t, and is accurate right up to the collapse.
+  // The scheme `recompute` computes the normal from positions at t, so its normals are accurate right up to the
+  // collapse of the face.
   EXPECT_EQ(bounds_of("recompute", moving(kFlat, turned)).upper, 1e-6);
 }
 
 TEST(Certificates, are_half_a_turn_where_opposite_ends_cancel) {
-  // Vertex c moves around the edge from a to b. The normal turns from +z through -y to -z and never vanishes. But the
+  // Vertex c moves around the edge from a to b. The normal turns from +z through -y to -z and is never zero. But the
   // straight line between the normals at both ends passes through zero at t = 1/2.
   const std::vector<Vec3d> at{{0, 0, 1}, {0, -1, 0}, {0, 0, -1}};
   const ControlNormals turning{at[0], at[1], at[2]};
@@ -420,8 +423,8 @@ class KnownEasedLine : public EasedLine {
   [[nodiscard]] WeightBasis basis() const { return {3, {{1, 1, 0, 0}, {0, 0, 1, 1}}}; }
 };
 
-// A sum of four vectors. Its weights are polynomials of degree 9 in t: the Bernstein polynomials of degree 3, taken at
-// the eased time. No other scheme has such weights.
+// A scheme that is a sum of four vectors. Their weights are polynomials of degree 9 in t: the Bernstein polynomials of
+// degree 3, taken at the eased time. No other scheme has such weights.
 class LongSum {
  public:
   [[nodiscard]] std::size_t plane_count() const { return 12; }

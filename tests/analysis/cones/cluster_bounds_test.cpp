@@ -1,7 +1,7 @@
-// Tests bounds of meshlets (clusters of faces) while the mesh deforms. meshoptimizer's culling tests, given these
-// bounds, must not reject a meshlet with a face that is front-facing at some instant of the interval. Integers decide
-// whether a face is front-facing. Bounds from the positions at a single instant fail this test. The mesh is a sheet of
-// 512 faces; ./test --full exact adds the built-in morphs.
+// Tests bounds of meshlets (clusters of faces) over an interval in which the mesh deforms. With these bounds,
+// meshoptimizer's culling tests must not reject a meshlet with a face that is front-facing at some instant of the
+// interval. Exact integer arithmetic decides whether a face is front-facing. Bounds from the positions at a single
+// instant would fail this test. The mesh is a sheet of 512 faces; ./test --full exact adds the built-in morphs.
 
 #include "chronormal/analysis/cones.h"
 
@@ -50,8 +50,8 @@ meshopt_Bounds as_meshopt(const ClusterBounds& bounds) {
 }
 
 // The functions below compute in float32 the culling tests that the comments of meshoptimizer.h describe. Only sums of
-// squares are computed in double: in float32, squares of lengths below 1e-19 underflow, so every test with a length
-// would fail for this reason alone.
+// squares are computed in double. In float32, squares of lengths below 1e-19 underflow, and for this reason alone every
+// test that needs a length would fail.
 Vec3f vector_of(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 float length_of(const Vec3f& v) { return static_cast<float>(std::sqrt(dot(to_double(v), to_double(v)))); }
 Vec3f normalized_of(const Vec3f& v) { return (1 / length_of(v)) * v; }
@@ -117,7 +117,7 @@ Meshlets meshlets_of(Motion motion, std::size_t segment) {
   return result;
 }
 
-// The normals and first corners of the faces at one instant, as integers with a common scale.
+// The normal and the first corner of each face at one instant, as integers with a common scale.
 struct Instant {
   std::vector<IntegerVector> normals, corners;
   mpz_class unit;  // the unit of the integers in `corners`, as a multiple of the unit of floats

@@ -1,5 +1,6 @@
-// Compares normal cones with integers of any size: no exact normal of the interval may lie outside its cone. Each
-// element is tested at 64 instants. The test has 2,000 elements, or 200,000 under ./test --full exact.
+// Compares normal cones with normals that are computed in integers of any size: no exact normal of the interval may lie
+// outside the cone of its element. Each element is tested at 64 instants. The test has 2,000 elements, or 200,000 under
+// ./test --full exact.
 
 #include "chronormal/analysis/cones.h"
 
@@ -223,8 +224,8 @@ TEST(Cones, are_the_whole_sphere_where_a_normal_turns_over) {
   }
 }
 
-// At t = 1/2, the control normals of this test nearly cancel. Errors of 2^-26 in the control normals therefore change
-// the direction of n(t) by much more than 2^-26 radians.
+// At t = 1/2, the weighted control normals of this test nearly cancel. Errors of 2^-26 in the control normals therefore
+// change the direction of n(t) by much more than 2^-26 radians.
 TEST(Cones, of_parts_cover_what_control_normals_may_be_off_by) {
   for (const double left : {0x1p-4, 0x1p-8, 0x1p-13, 0x1p-20}) {
     const ControlNormals given{{1, 0, left}, {-1, 0, left}, {1, 0, left}};
@@ -269,7 +270,7 @@ TEST(Cones, of_faces_are_sharp_up_to_the_very_instant_of_a_collapse) {
 }
 
 // The half-angle of a cone is at least half of the largest angle between two of its normals. Compares the half-angle of
-// each cone with this lower bound, from 21 normals.
+// each cone with this lower bound, which is computed from 21 normals of the element.
 TEST(Cones, are_tight) {
   for (const BuiltinMorph& morph : builtin_morphs()) {
     const Motion motion = make_builtin_morph(morph.name).value();

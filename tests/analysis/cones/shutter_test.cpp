@@ -1,6 +1,6 @@
 // Compares the mean normals over the time for which a shutter is open with oracles that share no code with the library.
-// If n(t) is a straight line, the oracle is a formula, also for lines that pass close to zero. Otherwise the oracle
-// computes normals from positions and integrates them by dense Gaussian quadrature in long double.
+// If n(t) moves along a straight line, the oracle is a formula, also for lines that pass close to zero. Otherwise the
+// oracle computes normals from positions and integrates them by dense Gaussian quadrature in long double.
 
 #include "chronormal/analysis/cones.h"
 

@@ -113,8 +113,8 @@ Vec3f lattice_point(Random& random, std::size_t half) {
   return {x, y, coordinate()};
 }
 
-// Returns the points to which vertices move from `points`; all of these are points of a lattice. Many vertices stay in
-// place, or many move by the same vector.
+// Returns random points of a lattice to which the vertices at `points` move. In most cases, either many vertices stay
+// in place, or all move by the same vector.
 std::vector<Vec3f> moved_on_lattice(const std::vector<Vec3f>& points, Random& random) {
   const std::size_t kind = random.below(4);
   const Vec3f shift = lattice_point(random, 4);
@@ -271,7 +271,7 @@ TEST(ExactContainment, crossings_are_the_roots_in_rationals) {
             << " touch something\n";
 }
 
-// Makes a cube from (0, 0, 0) to (1, 1, 1) that rests, with its faces outwards.
+// Makes a cube from (0, 0, 0) to (1, 1, 1) that stands still, with its faces outwards.
 Scene resting_cube() {
   std::vector<Vec3f> corners = kShapes[2];
   for (Vec3f& p : corners) p = 0.0625F * (p + Vec3f{8, 8, 8});

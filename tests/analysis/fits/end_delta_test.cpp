@@ -1,5 +1,5 @@
-// best_end_delta() chooses the scale of one end normal. Compares this scale with the best one that a search in long
-// double finds, over a fine grid of scales and times.
+// best_end_delta() chooses the scale of one end normal. Compares this scale with the best scale that a search in long
+// double finds on a fine grid of scales and times.
 
 #include "analysis/fits/end_delta.h"
 
@@ -47,7 +47,8 @@ Vector exact(const ControlNormals& n, Real w) {
 }
 
 // Returns the largest angle, in radians, between the exact normals n(w) and the straight line `from` to `to`. The times
-// w are a grid that is also dense near both ends. The result may be too small by a relative error of about 1e-3.
+// w are a grid that is also dense near both ends. The result may be smaller than the true largest angle by about a
+// thousandth.
 Real brute_error(const ControlNormals& normals, const Vector& from, const Vector& to, int steps) {
   using reference::add, reference::scaled;
   Real worst = 0;

@@ -10,8 +10,8 @@
 namespace chronormal::leading_vectors_test {
 namespace {
 
-// A matrix with given eigenvalues, and its eigenvectors as rows. The rows are made by reflections, so they are
-// orthonormal.
+// A matrix with given eigenvalues. `vectors` has its eigenvectors as rows, which are made by reflections and are
+// therefore orthonormal.
 struct Known {
   std::vector<std::vector<double>> vectors;
   std::vector<double> matrix;

@@ -125,8 +125,8 @@ TEST(ReferenceNormals, of_a_polygon_are_its_vector_area) {
 }
 
 TEST(ReferenceNormals, a_collapse_is_exact_zero_wherever_it_lies) {
-  // Both edges are zero at the same t, which is not a binary fraction. The rounding error at this t must not become a
-  // direction.
+  // Two edges of the face have length zero at the same t, which is not a binary fraction. The rounding error at this t
+  // must not be returned as the direction of a normal.
   for (const auto& [start, end] :
        {std::pair{7.0f, -13.0f}, {1.0f, -9.0f}, {3.0f, -7.0f}, {9.0f, -11.0f}, {17.0f, -3.0f}}) {
     const std::vector<float> from = {0, 0, 0, start, start, 0, 0, start, start};
@@ -146,7 +146,7 @@ TEST(ReferenceNormals, far_from_the_origin_they_lose_nothing) {
   EXPECT_LT(length(near - far), 1e-12);
 }
 
-// Compares the normals of faces, and sums of normals of several faces, with integers of any size.
+// Compares the normals of faces, and sums of the normals of several faces, with exact results in integers of any size.
 TEST(ReferenceNormals, of_hard_motions_point_where_whole_numbers_say) {
   constexpr std::uint64_t kSeed = 4950;
   fixtures::Random random(kSeed);

@@ -1,4 +1,5 @@
-// Compares the times at which faces collapse with the roots of polynomials whose coefficients are integers of any size.
+// Compares the times at which faces collapse (have no area) with the exact roots of polynomials whose coefficients are
+// integers of any size.
 
 #include "chronormal/analysis/signs.h"
 
@@ -134,7 +135,7 @@ Collapses collapses_of(const std::vector<fixtures::Point>& from, const std::vect
 }
 
 TEST(Collapse, a_vertex_that_crosses_the_opposite_edge_turns_the_face_over_at_a_rational_instant) {
-  // n(t) . z = 1 - 3 t, and the other components are zero.
+  // The z component of n(t) is 1 - 3 t, and the other components are zero.
   const Collapses found = collapses_of({{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, {{0, 0, 2}, {1, 0, 2}, {0, -2, 2}});
   ASSERT_EQ(found.count, 1U);
   const Collapse& one = found.at[0];

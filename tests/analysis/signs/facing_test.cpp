@@ -26,7 +26,7 @@ namespace {
 
 using test::WholePolynomial;
 
-// The two functions whole() return a vector of doubles, and a vector of floats, as integers in units of 2^-1074.
+// Returns a vector as integers in units of 2^-1074, the smallest positive double.
 test::WholeVector whole(const Vec3d& v) {
   const auto one = [](double x) {
     int exponent = 0;
@@ -46,8 +46,8 @@ WholePolynomial facing_polynomial(const Segment& segment, std::size_t face, cons
   std::array<test::Whole, 4> values;
   for (const long t : {-1L, 0L, 1L, 2L}) {
     const test::WholeVector a = test::on_line(whole(segment.from[vertices[0]]), whole(segment.to[vertices[0]]), t);
-    // The local times of the viewer are fractions with two different denominators. Multiplying by both makes the times
-    // integers.
+    // The places of the viewer on its path at t = 0 and at t = 1 are fractions with two different denominators.
+    // Multiplying by both denominators makes them integers.
     const auto time = [](double difference) { return test::Whole(std::ldexp(difference, 60)); };
     const test::WholeVector n = test::whole_normal(segment, vertices, t), from = whole(view.from), to = whole(view.to);
     const test::Whole first = time(view.start.end - view.start.start), second = time(view.end.end - view.end.start);
@@ -268,7 +268,7 @@ TEST(Facing, a_bracket_is_right_for_coefficients_that_are_off_by_nothing) {
       SingleRoots roots{};
       for (std::size_t lane = 0; lane < kFacingBlock; ++lane) {
         for (std::size_t k = 0; k <= degree; ++k) roots.p[k][lane] = random.uniform(-1, 1);
-        // In every fourth lane, the first or the last coefficient is so small that its sign is hardly certain.
+        // In every fourth lane, the first or the last coefficient is made small, so that its sign is hardly certain.
         if (lane % 4 == 0)
           roots.p[lane % 8 == 0 ? 0 : degree][lane] *= std::ldexp(1, -static_cast<int>(random.below(50)));
       }

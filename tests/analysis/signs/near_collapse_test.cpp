@@ -16,8 +16,7 @@ std::vector<ControlNormals> normals_of(const Motion& motion) {
   return normals;
 }
 
-// Returns a curve along z. Its length is a quadratic with the coefficients a0, a1 and a2 of 1, t and t^2. The vector
-// `beside` is added to the curve.
+// Returns the control normals of the curve beside + (0, 0, a0 + a1 t + a2 t^2).
 ControlNormals along_z(double a0, double a1, double a2, const Vec3d& beside = {}) {
   const auto at = [&](double z) { return beside + Vec3d{0, 0, z}; };
   return {at(a0), at(a0 + a1 / 2), at(a0 + a1 + a2)};
@@ -58,8 +57,8 @@ TEST(NearCollapse, mirror_image_turns_over_half_way) {
   }
 }
 
-// If a face moves in a plane, n(t) has only one component. The expected roots come from the quadratic formula in long
-// double.
+// If a face moves in the plane z = 0, only the z component of n(t) is not zero. The expected roots come from the
+// quadratic formula in long double.
 TEST(NearCollapse, in_a_plane_collapses_are_the_roots_of_the_signed_area) {
   Motion motion = fixtures::large_soup(2000, 21);
   for (Motion::Keyframe& keyframe : motion.keyframes) {

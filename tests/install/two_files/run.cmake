@@ -1,7 +1,8 @@
 # cmake -DSOURCE=... -DFOLDER=... -DCOMPILER=... [-DFLAGS=...] [-DRUN=...] [-DLIBRARY=...] -P: tests tools/two_files.py.
 # Makes the two files, and compiles them together with the example of docs/cpp.md, by the command on that page. The
 # example and bits.cpp must print the same text when they are linked with the library instead. LIBRARY is the command
-# line for linking the library. Without LIBRARY, their output from an earlier run in FOLDER is used.
+# line for linking the library. Without LIBRARY, the output that the library gave in an earlier run in FOLDER is
+# compared.
 file(MAKE_DIRECTORY ${FOLDER})
 function(run output)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE result OUTPUT_VARIABLE said ERROR_VARIABLE errors)

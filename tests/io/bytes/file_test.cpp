@@ -88,7 +88,7 @@ TEST(FileBytes, pipe_and_standard_input_are_read_to_the_end) {
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   for (const bool as_stdin : {false, true}) {
-    // write_output() must write into the pipe, and must not rename a file over it.
+    // write_output() must write into the pipe, and must not replace the pipe by a file.
     std::thread writer([&] { EXPECT_TRUE(write_output(pipe, bytes, false).ok()); });
     if (as_stdin) {
       const int opened = ::open(pipe.c_str(), O_RDONLY);

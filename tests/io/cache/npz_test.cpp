@@ -195,8 +195,8 @@ TEST(ReadNpz, damaged_array_headers_are_errors) {
             std::string::npos);
   EXPECT_NE(error_with("{'descr': [('x', '<f4')], 'fortran_order': False, 'shape': (2, 3, 3)}").find("has records"),
             std::string::npos);
-  // For the large shapes, the number of bytes overflows, for the first shape to exactly the number of bytes in the
-  // file. The small shapes need more or fewer bytes than the file has.
+  // The number of bytes of the large shapes overflows 64 bits. For the first shape, the result of the overflow is
+  // exactly the number of bytes in the file. The small shapes need more or fewer bytes than the file has.
   for (const char* const shape :
        {"(4611686018427387906, 3, 3)", "(6148914691236517206, 3, 3)", "(4611686018427387904, 1, 1)",
         "(4294967296, 4294967296, 3)", "(2, 3, 4)", "(2, 3, 2)", "(18446744073709551615, 3, 3)"})

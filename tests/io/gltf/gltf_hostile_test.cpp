@@ -54,7 +54,8 @@ constexpr const char* kSlow = "under a sanitizer memory is not measured, and thi
 
 constexpr const char* kHead = R"({"asset": {"version": "2.0"}, )";
 
-// Makes a document with a chain of nodes 0 -> 1 -> 2 ... The last node has the child `back`, unless `back` is empty.
+// Makes a document with a chain of nodes, in which each node is the only child of the node before it. The last node has
+// the child `back`, unless `back` is empty.
 std::string chain(std::size_t count, const std::string& back) {
   std::string text = std::string(kHead) + R"("nodes": [)";
   for (std::size_t i = 0; i + 1 < count; ++i) text += std::string(R"({"children":[)") + std::to_string(i + 1) + "]},";
@@ -220,7 +221,8 @@ class HostileData : public ::testing::Test {
   fs::path data_;
 };
 
-// Reads a file. If `strict`, notes are errors; otherwise the file is read as for users.
+// Reads a file. If `strict` is true, notes are errors. Otherwise the file is read with the settings that users have by
+// default.
 fuzz::GltfReading read_file(const fs::path& path, bool strict = true) {
   const Result<GltfDocument> document = GltfDocument::open(path.string(), {.strict = strict});
   return fuzz::read_all_of(document, path.filename().string(), GltfMotionOptions().most_bytes);

@@ -57,8 +57,8 @@ std::array<double, 3> normal_of(int x, int y, int one, double length) {
   return {place[0] * scale, place[1] * scale, place[2] * scale};
 }
 
-// Returns the largest rounding error of any component of the decoded normals, compared with normals that are not
-// rounded.
+// Compares the components of decoded normals, which are integers, with normals that are not rounded. Returns the
+// largest difference.
 template <class T>
 double worst_rounding(const std::vector<T>& elements) {
   const std::vector<T> result = decoded(elements);

@@ -323,7 +323,7 @@ TEST_F(OpenInput, motions_say_what_they_are_and_npz_keeps_it) {
     EXPECT_NE(refused.error().message.find(".npz"), std::string::npos) << refused.error().message;
   }
 
-  // An animation that is read at other times keeps its jumps.
+  // An animation that jumps at t = 1 s keeps this jump when it is written to a file and read again.
   Motion jumps = read({"body.obj", "walk.pc2"}).value();
   jumps.keyframes.insert(jumps.keyframes.end(), {jumps.keyframes[0], jumps.keyframes[1]});
   for (std::size_t k = 0; k < 4; ++k) jumps.keyframes[k].time = std::vector<double>{0, 1, 1, 2}[k];

@@ -198,7 +198,7 @@ TEST_P(MotionReaders, boundary_numbers_in_text_are_errors_or_results) {
                                       "6148914691236517206", "9223372036854775808", "18446744073709551615",
                                       "18446744073709551616", "-1", "-2147483648", "-9223372036854775808", "", "1.5"}) {
         SCOPED_TRACE(fixture.label + ", byte " + std::to_string(at) + " := " + value);
-        // Replaces a number by another one, which may be longer or shorter. A text file then keeps its structure; a
+        // Replaces a number by another number, which may be longer or shorter. A text file then keeps its structure; a
         // binary file may lose it.
         (void)read_anything(std::string(bytes).replace(at, end - at, value));
       }

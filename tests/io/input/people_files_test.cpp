@@ -87,12 +87,13 @@ TEST(PaddedFaces, are_refused_and_say_so) {
   EXPECT_NE(read(npy_of("<i4", {2, 5}, std::vector<std::int32_t>{4, 0, 1, 2, 3, 4, 0, 4, 2, 1}))
                 .find("begins with its number of corners"),
             std::string::npos);
-  // A single face that follows its number of corners gives the same message as several faces, although its vertices do
-  // not exist.
+  // An array with a single face that begins with its number of corners gives the same message as an array with several
+  // such faces, although the vertices of this face do not exist.
   EXPECT_NE(
       read(npy_of("<i4", {1, 4}, std::vector<std::int32_t>{3, 7, 8, 9})).find("begins with its number of corners"),
       std::string::npos);
-  // Faces are not padded if they have vertex 3 in common by chance, or if they begin with different numbers.
+  // The first number of each face is a vertex, and not the number of corners, if all faces begin with vertex 3 by
+  // chance, or if faces begin with different numbers.
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{3, 0, 1, 2, 3, 2, 4, 0})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 4}, std::vector<std::int32_t>{0, 1, 2, 3, 3, 2, 1, 4})), "");
   EXPECT_EQ(read(npy_of("<i4", {2, 3}, std::vector<std::int32_t>{2, 0, 1, 2, 1, 4})), "");

@@ -235,7 +235,8 @@ TEST(ReadObj, positions_count_from_the_origin_before_they_are_rounded) {
   EXPECT_NEAR(far.value().positions[0], 0.123, 1e-7);
   EXPECT_NEAR(far.value().positions[7], 1.009, 1e-6);
   EXPECT_EQ(far.value().positions[2], 101.5F);
-  // A number with trailing digits that float32 keeps does not count as a number with more digits than float32.
+  // has_more_digits must be false if float32 would keep all digits of the numbers even without the subtraction of the
+  // origin.
   EXPECT_FALSE(read_obj("v 1024.5 2048.25 4\nv 1024 2048 4\nv 1025 2049 4\nf 1 2 3\n", "a.obj", {1024, 2048, 4})
                    .value()
                    .has_more_digits);

@@ -56,8 +56,9 @@ TEST(ExactCurve, has_every_component_to_the_last_place) {
   }
 }
 
-// Compares control normals with exact ones, relative to their own length: rounding errors must never make up a
-// direction. Tests the kernel for many faces, and the function for a single face.
+// Compares control normals with exact control normals. The error of each control normal must be small relative to its
+// own length, so that rounding errors never decide its direction. Tests the kernel for many faces, and the function for
+// a single face.
 TEST(FaceControlNormals, are_never_made_of_rounding) {
   fixtures::Random random(42);
   for (int i = 0; i < 40; ++i) {

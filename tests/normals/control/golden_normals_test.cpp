@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A mesh file from another tool: the mesh as a motion, the stored normal of each corner, and the smoothing group of
-// each face. chronormal's reader of OBJ files leaves out the last two here.
+// each face. read_obj() does not return the normals and groups here, so this test reads them from the file itself.
 struct Golden {
   Motion motion;  // a motion whose two keyframes are both the mesh
   std::vector<float> normal_of_corner;

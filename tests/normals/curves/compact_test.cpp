@@ -34,8 +34,8 @@ using test::largest_of;
 constexpr std::array<double, 13> kTolerances{1e-6, 2e-6, 1e-5, 6e-5, 1e-4, 1.7e-4, 2e-4,
                                              5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1};
 
-// The smallest |n(t)| that the tests judge, as a share of the sum of the lengths of its terms. Below it, n(t) in double
-// is not accurate enough for the tolerances of this file.
+// The smallest |n(t)| that the tests judge, as a share of the sum of the lengths of the terms of n(t). If n(t) is
+// shorter, n(t) in double is not accurate enough for the tolerances of this file.
 constexpr double kBelowDouble = 1e-9;
 
 std::vector<Vec3f> unit_normals(const NormalCurves& curves, double t) {
@@ -118,7 +118,7 @@ TEST(CompactCurves, keep_the_tolerance_among_neighbours_of_any_size_kind_and_deg
     while (normals.size() < 3000) {
       const auto& family = test::hard_families()[random.below(test::hard_families().size())];
       const double scale =
-          // The scale is 1, or any power of two from 1e-271 to 1e301.
+          // The scale is 1 or, in a quarter of the cases, a random power of two between 1e-271 and 1e301.
           random.below(4) == 0 ? std::ldexp(1, static_cast<int>(random.below(1900)) - 900) : 1;
       for (std::size_t left = random.below(3) == 0 ? random.below(90) : 1; left > 0; --left)
         normals.push_back(random.below(40) == 0 ? ControlNormals{} : test::scaled_by(scale, family.make(random)));
@@ -150,7 +150,7 @@ TEST(CompactCurves, keep_the_tolerance_at_every_scale_that_double_has) {
       for (const double tolerance : {1e-6, 2e-4, 1e-3, 1e-2, 0.1}) {
         const NormalCurves curves(std::span(&c, 1), {tolerance});
         for (const double t : {0.0, 0.3, test::hardest_time(c), 1.0}) {
-          // Subnormal control normals have lost digits already, so they are skipped.
+          // Control normals that are so small that double has lost some of their digits are skipped.
           if (!has_direction(c, t) || largest_of(c) < 0x1p-960) continue;
           const Vec3f u = unit_normals(curves, t).front();
           ASSERT_LE(angle_to(u, c, t), tolerance) << family.name << " times 2^" << exponent << ", t = " << t;

@@ -138,8 +138,7 @@ TEST(Octahedral, decoded_and_encoded_again_is_the_same_direction) {
   }
 }
 
-// ---- encoded normals as results of curves
-// ----------------------------------------------------------------------------
+// ---- encoded normals as results of curves ---------------------------------------------------------------------------
 
 TEST(EncodedResults, are_within_both_tolerances) {
   fixtures::Random random(85);

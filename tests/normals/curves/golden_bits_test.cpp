@@ -91,8 +91,8 @@ void add_recompute(Hash& hash, NormalRecompute recompute, Results& results) {
   }
 }
 
-// The expected hash of all results. It changes with any bit of any result, and with the format of any block. Replace it
-// only if the change is intended.
+// The expected hash of all results. The hash changes with any bit of any result, and with the format of any block.
+// Replace the hash only if the change is intended.
 constexpr std::uint64_t kGolden = 0x3b625b5cb14a70ca;
 
 TEST(GoldenBits, are_the_same_on_every_instruction_set_number_of_threads_and_compiler) {

@@ -155,7 +155,7 @@ TEST(UnitNormal, nothing_at_all_is_none) {
 
 TEST(ControlNormalsOfFaces, collinear_corners_give_exact_zero) {
   // The products of the coordinates in this test are not exact in double. The rounding errors of these products must
-  // not become a direction.
+  // not be returned as the direction of a normal.
   const Topology topology = Topology::triangles(3, {0, 1, 2}).value();
   std::vector<float> p(9);
   int tested = 0;

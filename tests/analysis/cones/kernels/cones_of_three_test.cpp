@@ -1,5 +1,5 @@
-// Tests the kernel that computes the cone around three control normals. The components are floats, so integers can
-// decide exactly whether a vector lies in its cone.
+// Tests the kernel that computes the cone around three control normals. The components are floats, so integer
+// arithmetic can decide exactly whether a control normal lies in the cone.
 #include "analysis/cones/kernels/cones_of_three.h"
 
 #include <gtest/gtest.h>
@@ -61,8 +61,9 @@ TEST(ConesOfThree, flags_what_has_no_direction) {
   std::array<std::uint16_t, 1> flags{};
   cones_of_three(normals.data(), normals.size(), kNormalShare, cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b110011110);
-  // The bits of flags[0] mark elements whose cone the kernel cannot make. A control normal of a part of [0, 1] is zero
-  // only where n(t) is zero: {x, -x, x} has a zero at t = 1/2. Lengths far below 2^-1000 always count as uncertain.
+  // Bit i of flags[0] is set if the kernel cannot make the cone of element i. The kernel computes the control normals
+  // of the curve between two times. For element 6, {x, -x, x}, one of these is zero only if the part contains t = 1/2,
+  // where n(t) is zero. Lengths far below 2^-1000 count as uncertain.
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0, 0.25), cones.data(), flags.data());
   EXPECT_EQ(flags[0], 0b10011100);
   cones_of_parts(normals.data(), normals.size(), Restriction::to(0.25, 0.5), cones.data(), flags.data());

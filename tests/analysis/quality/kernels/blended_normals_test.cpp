@@ -1,6 +1,6 @@
 // Checks the kernels that add up blended normals in many poses, and that measure the errors of these normals. On every
-// instruction set, they must give the same bits as plain loops. The largest openness must be that of angles in long
-// double.
+// instruction set, the kernels must give the same bits as plain loops. The openness is a measure of the angle between
+// two normals, and the largest openness must agree with angles in long double.
 #include "analysis/quality/kernels/blended_normals.h"
 
 #include <gtest/gtest.h>

@@ -101,8 +101,8 @@ TEST(ShownAngles, have_the_bits_of_one_angle_after_the_other_on_every_instructio
     ends[i] = i % 20 < 2 ? -starts[i] : unit(starts[i] + random.uniform(0, 1) * unit(vector()));
     sums[i] = i % 15 == 0 ? Vec3d{} : vector();
     const double size = max_abs(sums[i]);
-    // The values of some elements say that the element has no normal, that its normal is hardly more than rounding
-    // error, or that none of its faces is drawn.
+    // The fourth values of `from` and `right` are chosen so that some elements have no certain normal, some normals are
+    // hardly more than rounding error, and some elements have no face that is drawn.
     put(from, i, starts[i], i % 4 == 0 ? 2 * size : 0.3 * size);
     put(to, i, ends[i], 0);
     put(right, i, sums[i], i % 6 == 0 ? 1e14 * size : i % 8 == 0 ? 4 * size : size);

@@ -149,7 +149,7 @@ std::vector<Motion> motions_of_every_degree() {
   };
   std::vector<Motion> motions = {start};
   motions.push_back(moved([](float v, std::size_t) { return v; }));
-  // Positions are rounded to float32, so n(t) of the next three motions has the degree 0 or 1 only nearly.
+  // Positions are rounded to float32, so n(t) of the next three motions has the degree 0 or 1 only approximately.
   motions.push_back(moved([](float v, std::size_t) { return v + 2; }));
   motions.push_back(moved([](float v, std::size_t i) { return i % 3 == 0 ? 3 * v : v; }));  // stretches x
   motions.push_back(moved([](float v, std::size_t i) { return i == 21 ? v + 1 : v; }));     // moves one vertex

@@ -50,7 +50,8 @@ TEST(PrefetchRule, trials_are_repeated_after_a_while_and_replace_those_before) {
   constexpr std::size_t kAll = PrefetchRule::kTrials * PrefetchRule::kDistances.size();
   EXPECT_EQ(try_all(3), kAll);
   for (const std::size_t fastest : {1U, 4U}) {
-    // The call that ended the trials was the first without a trial. Call number kCallsBetween starts the next round.
+    // The call that ended the trials was the first call without a trial. Call number kCallsBetween starts the next
+    // round of trials.
     for (std::size_t call = 2; call < PrefetchRule::kCallsBetween; ++call) ASSERT_FALSE(rule.next()) << call;
     EXPECT_EQ(try_all(fastest), kAll);
     EXPECT_EQ(rule.best(), PrefetchRule::kDistances[fastest]);
