@@ -621,14 +621,14 @@ TEST_F(AuditCli, gltf_files_and_keyframes_are_not_mixed) {
 }
 
 TEST_F(AuditCli, weighting_of_the_author_is_said_and_can_be_overridden) {
-  // A wide face and a narrow, leaning face meet at vertex 0. Weighted by angle, the normal of vertex 0 is parallel to
-  // (0, -s, 1 + c).
+  // A face with the unit normal (0, 0, 1) and a larger, leaning face with the unit normal (r, 0, r) share the edge from
+  // vertex 0 to vertex 2.
   test::ShadedMesh mesh;
   mesh.corners = {0, 1, 2, 0, 2, 3};
   mesh.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, -8, 8, 8};
   const float r = std::sqrt(0.5F);
   mesh.normals = {0, 0, 1, 0, 0, 1, 0, 0, 1, r, 0, r};
-  // The corners of the two faces have equal angles at vertex 0, and also at vertex 2.
+  // By uniform weights, the normals of vertices 0 and 2 are parallel to the sum of the two unit normals, (r, 0, 1 + r).
   for (const std::size_t v : {0U, 2U}) {
     const float x = r, z = 1 + r, length = std::sqrt(x * x + z * z);
     mesh.normals[3 * v] = x / length;

@@ -574,8 +574,8 @@ TEST_F(Cli, json_is_one_object_as_the_contract_has_it) {
   }
   EXPECT_EQ(names, (std::vector<std::string>{"linear", "quadratic", "cubic", "polynomial", "slerp", "decasteljau:4",
                                              "quaternion:matrix", "quaternion:optimal", "circle:timed"}));
-  // The expected error of linear interpolation was computed by hand: it is the angle between (1, 0, 1) and (1, -1, 1),
-  // which linear interpolation has at t = 1/4 and at t = 3/4.
+  // The largest error of linear interpolation is at t = 1/2. It was computed by hand, as the angle between the
+  // interpolated normal, (1, 0, 1), and the exact normal, (1, -1, 1).
   EXPECT_NEAR(json["schemes"][0]["max_degrees"].get<double>(), 35.264389683, 1e-5);
   for (const Json& row : json["schemes"]) EXPECT_EQ(row["missing"], 0);
 }

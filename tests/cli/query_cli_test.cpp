@@ -158,7 +158,7 @@ TEST_F(QueryCli, faces_show_their_front_in_intervals) {
 
 TEST_F(QueryCli, an_eye_moves_over_the_whole_motion) {
   // The eye passes through the plane z = 0 at time 1, so face 0 is hidden after time 1. Face 1 shows its front in the
-  // first and the second quarter of the motion.
+  // first and the third quarter of the motion.
   const Json arrays = json_of("facing a.obj b.obj c.obj --eye .2,.2,1,.2,.2,-1").at("arrays");
   EXPECT_EQ(arrays.at("segment"), Json({0, 0, 1}));
   EXPECT_EQ(arrays.at("face"), Json({0, 1, 1}));

@@ -126,8 +126,8 @@ TEST_F(Resume, files_of_other_people_are_not_touched) {
 }
 
 TEST_F(Resume, a_run_that_has_done_nothing_leaves_nothing) {
-  // Even the first thing that each command writes is too large for the limit: a row of the first command, a journal
-  // record of the other commands.
+  // The limit on the size of files is so small that the first write of each command fails. The first command writes a
+  // row of its result, and the other commands write a record of their journals.
   for (const std::string command :
        {"sample --sample twist --times 0,1 --format npy", "compare --sample twist", "audit --sample twist"}) {
     const ProcessResult failed = cut(command + " --resume -o out", command.starts_with("sample") ? "4" : "2");

@@ -73,7 +73,7 @@ TEST_F(SampleCli, vertices_across_a_seam_are_exact_by_hand) {
   EXPECT_EQ(array.shape, (std::vector<std::size_t>{3, 8, 3}));
   const auto normals = array.as<float>();
   // An edge of the second quad moves from (1, 0, 0) to (0, 0, 1), so the normal of the second quad at t is (-t, 0, 1 -
-  // t). At the seam, the normals of both quads are added; that of the first quad is (0, 0, 1).
+  // t). At the seam, the normals of both quads are added. The normal of the first quad is (0, 0, 1).
   for (const auto& [time, t] : {std::pair{0U, 0.0}, std::pair{1U, 0.5}, std::pair{2U, 1.0}}) {
     const double length = std::sqrt(t * t + (2 - t) * (2 - t));
     for (const std::size_t v : {2U, 3U, 4U, 5U}) {

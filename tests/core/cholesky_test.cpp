@@ -18,8 +18,8 @@ std::vector<Vec3d> solution(const std::vector<double>& matrix, double least, std
 TEST(Cholesky, solves_a_system) {
   // Entries of the matrix that must not be read have the value 7.
   const auto x = solution({4, 7, 7, 2, 5, 7, 2, 1, 6}, 1e-300, {{8, 0, 4}, {8, 4, 2}, {9, 1, 2}});
-  // The right-hand sides are A = (4 2 2; 2 5 1; 2 1 6) times (1, 1, 1), times (-0.5, 1, 0.16666...), and times (1, 0,
-  // 0), computed by hand. The residuals below check the solutions.
+  // The right-hand sides are A = (4 2 2; 2 5 1; 2 1 6) times (1, 1, 1), times (-0.6, 1, 0.2), and times (1, 0, 0),
+  // computed by hand. The residuals below check the solutions.
   const double a[3][3] = {{4, 2, 2}, {2, 5, 1}, {2, 1, 6}};
   const Vec3d right[3] = {{8, 0, 4}, {8, 4, 2}, {9, 1, 2}};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-/* Does what only a program of Windows can do to another one (tests/machines/test_machine.py).
+/* Does what only a program of Windows can do to another program (tests/machines/test_machine.py).
  *
  *     hold FILE                    opens a file that nobody can replace or remove, prints a line, and waits for stdin
  *     break PROGRAM ARGUMENT...    starts a program, interrupts it by Ctrl-C as soon as it has a temporary file in this

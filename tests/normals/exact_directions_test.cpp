@@ -1,6 +1,6 @@
-// Compares every direction that is computed from positions with integers of any size. A case is one element at one t.
-// The test has 100,000 cases from a fixed seed, or as many as the variable CHRONORMAL_FULL_CASES asks for (./test
-// --full exact).
+// Compares every direction that is computed from positions with the exact direction, which the oracle computes in
+// integers of any size. A case is one element at one t. The test has 100,000 cases from a fixed seed, or as many as the
+// variable CHRONORMAL_FULL_CASES asks for (./test --full exact).
 
 #include <gtest/gtest.h>
 

@@ -31,9 +31,9 @@ using test::scheme_names;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Returns the largest permitted difference between 1 and the length of a result. `rational` divides by a length that a
-// quartic in float32 gives, and not by the length of its result. If n(t) is small relative to its control normals, the
-// quartic loses digits, but the direction is as accurate as in other schemes.
+// Returns the largest permitted difference between 1 and the length of a result. The scheme `rational` divides by a
+// length that a quartic polynomial in float32 gives, and not by the length of its result. If n(t) is short relative to
+// its control normals, the polynomial loses digits, but the direction is as accurate as in other schemes.
 double length_tolerance(std::string_view scheme) { return scheme == "rational" ? 2e-6 : 1e-6; }
 
 // A motion, and all data that schemes and oracles need.
@@ -112,8 +112,8 @@ const std::array<Family, 4> kSmallFamilies{
     Family{"smooth morph", [] { return fixtures::smooth_morph(10); }},
     Family{"soup, independent ends", [] { return fixtures::large_soup(200, 11); }},
     Family{"soup, motion 0.2", [] { return fixtures::moderate_soup(200, 12); }},
-    // If normals turn little, as between two frames of an animation, the ends are so close that the circles of the
-    // family differ visibly only if their angle phi is near +-pi/2.
+    // If normals turn little, as between two frames of an animation, the normals at both ends are so close that the
+    // circles among which quaternion:optimal searches differ visibly only if their angle phi is near +-pi/2.
     Family{"soup, motion 0.02", [] { return fixtures::soup({.face_count = 200, .seed = 13, .motion = 0.02}); }},
 };
 
@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(all, SchemeOracle, testing::ValuesIn(scheme_names()), [
   return label;
 });
 
-// The angles of quaternion:random depend on the index of the segment, too.
+// Tests a segment with index 1, since the random angles of quaternion:random depend on the index of the segment.
 TEST(Oracle, agrees_with_random_frames_in_a_second_segment) {
   Motion motion = fixtures::large_soup(50, 36);
   motion.keyframes.insert(motion.keyframes.begin(), motion.keyframes[1]);

@@ -129,8 +129,8 @@ TEST(Schemes, equal_ends_of_a_still_face_stay_where_they_are) {
 }
 
 TEST(Schemes, equal_ends_with_motion_between_give_unit_normals) {
-  // The triangle turns by 180 degrees about a line in its plane, and two corners are swapped, so its normal is the same
-  // at both ends.
+  // In both motions, the triangle turns by 180 degrees in its plane, which keeps its normal. In the first motion, two
+  // corners also rise out of the plane, which tilts the normal at the end.
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0.5f, 1, 0, 0.25f}}), "moving");
   expect_unit_for_all_schemes_and_times(Prepared({kFlat, {1, 1, 0, 0, 1, 0, 1, 0, 0}}), "half a turn in the plane");
 }

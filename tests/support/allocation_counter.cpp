@@ -60,7 +60,8 @@ static void release(void* memory) noexcept {
 
 }  // namespace chronormal::test
 
-// The forms of operator new and operator delete below count memory. The standard library's other forms call these.
+// The forms of operator new and operator delete below count memory. The other forms, which the standard library
+// defines, call these forms.
 void* operator new(std::size_t size) { return chronormal::test::counted(std::malloc(std::max<std::size_t>(size, 1))); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
   const auto step = static_cast<std::size_t>(alignment);

@@ -10,7 +10,7 @@ namespace chronormal::test {
 /// counter at a time.
 class AllocationCounter {
  public:
-  /// Returns false under a sanitizer, whose operator new replaces the counting one.
+  /// Returns false under a sanitizer, whose operator new replaces the operator new that counts.
   [[nodiscard]] static bool works() noexcept;
 
   AllocationCounter();

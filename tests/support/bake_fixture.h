@@ -17,7 +17,7 @@
 
 namespace chronormal::test {
 
-/// A glTF document, the result of its bake, and readers of both.
+/// A glTF document, the result of its bake, and a reader for each of the two files.
 struct Baked {
   std::unique_ptr<GltfFixture> source;
   std::string bytes;  ///< the result; empty if the bake failed

@@ -125,7 +125,8 @@ struct BlendShapeOptions {
   return NormalGroups::of_vertices(set.topology, separate_points(set.topology.vertex_count()));
 }
 
-/// Returns the bilinear form B(p, q) of a face, where p and q have a vector for each vertex. The normal is B(p, p).
+/// Returns the value of the bilinear form B(p, q) of a face, where p and q have a vector for each vertex. At positions
+/// p, the normal of the face is B(p, p).
 template <class P, class Q>
 [[nodiscard]] exact::Vector exact_form(std::span<const std::uint32_t> face, const P& p, const Q& q) {
   exact::Vector sum{0, 0, 0};

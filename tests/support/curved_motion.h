@@ -51,8 +51,8 @@ namespace chronormal::test {
 
 /// Returns the positions (V, 3) of all vertices at local t on the cubic curve from keyframe s to keyframe s + 1. If
 /// `given`, uses the velocities that the keyframes store. Otherwise, the velocity at a keyframe is the slope of the
-/// parabola through this keyframe and its neighbours. At the first and the last keyframe, it is the slope of the cubic
-/// through the nearest four keyframes, or of the polynomial through all keyframes if there are fewer.
+/// parabola through this keyframe and its neighbours. At the first and the last keyframe, the velocity is the slope of
+/// the cubic through the nearest four keyframes, or of the polynomial through all keyframes if there are fewer.
 [[nodiscard]] inline std::vector<long double> on_curve(const Motion& motion, std::size_t s, long double t,
                                                        bool given = false) {
   const auto& keys = motion.keyframes;

@@ -220,7 +220,7 @@ struct SoupOptions {
   return make_motion(make_soup(face_count), from, to);
 }
 
-/// Makes triangles whose motions are 1e-9 to 1 times their size, with all orders of magnitude in between. Normals
+/// Makes triangles whose motions are 1e-9 to 1 times their size, with all orders of magnitude in between. Their n(t)
 /// therefore have all degrees, and coefficients of all magnitudes.
 [[nodiscard]] inline Motion graded_soup(std::size_t face_count = 1000, std::uint64_t seed = 10) {
   Random random(seed);

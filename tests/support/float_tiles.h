@@ -20,7 +20,7 @@
 
 namespace chronormal::test {
 
-/// Changes the positions at the end of the motion, so that normals have degree 1 or 0. With `kind` 0, each point moves
+/// Changes the positions at the end of the motion, so that n(t) has degree 1 or 0. With `kind` 0, each point moves
 /// along z by a different distance; with 1, all points move by the same vector; with 2, the mesh is stretched along x;
 /// with 3, nothing moves.
 [[nodiscard]] inline Motion of_low_degree(Motion motion, int kind) {
@@ -54,8 +54,9 @@ struct FloatTileFaults {
   double largest_bound = 0;          ///< the largest error bound, relative to the sum of absolute products
   std::string fault;
 
-  /// Checks one element of a tile. `right` has the true control normals of the element. `products` must be at least the
-  /// sum of the absolute products in each component, and `count` is the number of cross products in the sum.
+  /// Checks one element of a tile. `right` has the true control normals of the element. A component of a control normal
+  /// is a sum of products. `products` must be at least the sum of the absolute values of these products, and `count` is
+  /// the number of cross products that are added.
   void look_at(const ControlTile& tile, std::size_t lane, const ControlNormals& right, double products,
                std::size_t count) {
     const std::string place = "element " + std::to_string(elements++);
@@ -69,7 +70,8 @@ struct FloatTileFaults {
       for (const double component : {v.x, v.y, v.z}) {
         const double off = std::fabs(double{tile.normals[k++][lane]} - component);
         if (off > 0 && in_range) largest_share = std::max(largest_share, off / bound);
-        // An error below the smallest normal float does not matter. NaN exceeds every bound except an infinite one.
+        // Errors of up to 2^-140, which is below the smallest normal float, do not matter. NaN counts as a fault unless
+        // the bound is infinite.
         if (!(off <= bound + 0x1p-140) && bound <= std::numeric_limits<float>::max())
           fault = place + " is off by " + std::to_string(off / bound) + " of its bound";
       }

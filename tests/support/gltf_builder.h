@@ -183,7 +183,7 @@ class GltfBuilder {
     return type == "SCALAR" ? 1 : static_cast<std::size_t>(type.back() - '0');
   }
   // Returns the JSON with the length and the URI of buffer 0. If a test has added buffers to the JSON, the first of
-  // these stands for buffer 0. The others are kept.
+  // these buffers is buffer 0, and the other buffers are kept.
   [[nodiscard]] Json with_buffer(const std::optional<std::string>& uri) const {
     Json document = json;
     if (buffer.empty()) return document;

@@ -160,7 +160,7 @@ struct Pose {
 };
 
 /// Compares the normals that viewers render after the bake with the true normals before the bake, in the given poses.
-/// Skips samples in which |n(w)| is below 1e-4 of the largest |n| of the same vertex in the given poses.
+/// Skips samples in which |n(w)| is below 1e-4 of the largest |n| of the same vertex in the base and the given poses.
 [[nodiscard]] inline ShownError shown_error(const GltfTruth& truth, const GltfPlayer& after, std::size_t mesh,
                                             const std::vector<Pose>& poses) {
   ShownError error;

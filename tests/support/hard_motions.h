@@ -40,7 +40,8 @@ struct MovingTriangle {
   return {x, y, one()};
 }
 
-/// Makes a triangle in which each corner has its own random magnitude between 1e-10 and 1e10 at each end.
+/// Makes a triangle in which each corner has its own random magnitude between 1e-10 and 1e10 at each end. In a quarter
+/// of the triangles, each coordinate is also scaled separately. A third of the triangles stand still.
 [[nodiscard]] inline MovingTriangle mixed_scales(Random& random) {
   MovingTriangle triangle;
   const bool stands_still = random.below(3) == 0, each_coordinate = random.below(4) == 0;
@@ -56,8 +57,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle whose corners are on a line through the origin, except for rounding to float32. One corner is very
-/// close to the origin.
+/// Makes a triangle with one corner very close to the origin. The other two corners are on a line through the origin,
+/// except for rounding to float32.
 [[nodiscard]] inline MovingTriangle sliver_at_origin(Random& random) {
   MovingTriangle triangle;
   const double ratio = random.below(2) == 0 ? 2 : random.uniform(0.3, 3);
@@ -115,11 +116,12 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle that moves in a plane and turns over. Its normal is zero once, with opposite directions before and
-/// after.
+/// Makes a triangle that moves at random in a plane. If the triangle turns over, its normal is zero at some time, and
+/// has opposite directions before and after that time.
 [[nodiscard]] inline MovingTriangle turning_over(Random& random) {
   MovingTriangle triangle;
-  // The triangle moves in the plane z = 7 + slope x - y with an integer slope, or in a plane parallel to two axes.
+  // The triangle moves in a slanted plane, such as z = 7 + slope x - y with an integer slope, or in a plane that is
+  // perpendicular to an axis.
   const bool is_whole = random.below(2) == 0;
   const std::size_t across = random.below(3);
   const double slope = static_cast<double>(random.below(4)), height = random.uniform(-1, 1);
@@ -132,8 +134,8 @@ struct MovingTriangle {
   return triangle;
 }
 
-/// Makes a triangle without a normal at one or both ends. There, the triangle is a line or a point, either exactly or
-/// as nearly as float32 allows.
+/// Makes a triangle that has no normal at one or both ends, in most cases. There, the triangle is a line or a point,
+/// either exactly or as nearly as float32 allows.
 [[nodiscard]] inline MovingTriangle collapsed_at_ends(Random& random) {
   MovingTriangle triangle;
   for (auto* corners : {&triangle.from, &triangle.to}) {
@@ -237,8 +239,8 @@ template <class Make>
   return fixtures::make_motion(fixtures::make_triangles(from.size(), corners), from, to);
 }
 
-/// Makes 4 to 15 faces with only 4 to 8 vertices, so the normals of the faces at a vertex partly cancel. Sometimes some
-/// of the faces are quads.
+/// Makes 4 to 15 faces with only 4 to 8 vertices, so the normals of the faces at a vertex partly cancel. In half of the
+/// meshes, some faces are polygons of four to six corners.
 [[nodiscard]] inline Motion tangle_of_faces(Random& random) {
   const std::size_t vertices = 4 + random.below(5), faces = 4 + random.below(12);
   std::vector<Point> from, to;

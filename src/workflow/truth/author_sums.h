@@ -90,7 +90,8 @@ class Polygons {
   std::size_t joined_ = 0;
 };
 
-/// The sums of face normals of all elements: for each element, the corners of polygons whose normals it adds up.
+/// The sums of face normals of all elements. Lists, for each element, the corners of polygons whose normals the element
+/// adds up.
 class AuthorSums {
  public:
   AuthorSums() = default;

@@ -45,8 +45,8 @@ class AuthorTruth::Finder {
         stale_(shading_) {}
 
   void find() {
-    // A key that follows the rule of the mesh is not stale, even if it looks stale compared with plain sums of
-    // triangles.
+    // A target whose normals follow the rule of the mesh is not stale, even if its normals look stale compared with
+    // plain sums of triangles.
     if (!stale_.list().empty()) stale_.keep_common(StaleKeys(shading_, &truth_.sums_));
     parallel_each(z0_.size(), kFramesOfBlock, [&](std::size_t i) {
       const auto e = static_cast<std::uint32_t>(i);
@@ -76,7 +76,8 @@ class AuthorTruth::Finder {
     return truth_.sums_.at(e, [&](std::uint32_t v) { return key.position(v); }).normal;
   }
 
-  // Marks the elements whose stored normals at key k differ from the sum of face normals by more than the tolerance.
+  // Marks the elements whose stored normals in target k, at weight 1, differ from the sum of face normals by more than
+  // the tolerance.
   void note_bent(std::size_t k) {
     const StoredKey key(shading_, k);
     std::vector<bool> moves(shading_.element_of_vertex.size());
@@ -145,7 +146,8 @@ class AuthorTruth::Finder {
                      mean_edge_angle(truth_.edges_of(frame), z, position));
   }
 
-  // Returns true if the stored normal of a frame's element at a key can be used. Writes the unit sum at that key to z.
+  // Returns true if the stored normal of the element of frame n in target k, at weight 1, can be used. Writes the unit
+  // sum of face normals in this target to z.
   [[nodiscard]] bool tells(const StoredKey& key, std::size_t k, std::size_t n, Vec3d& z) const {
     const std::uint32_t e = element_of_[n];
     if (stale_.is_stale(k, vertex_of_[e])) return false;

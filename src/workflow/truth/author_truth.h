@@ -7,9 +7,10 @@
 /// o(w) = o_0 + sum of w_i (o_i - o_0), limited to a right angle from the sum. The truth therefore equals the stored
 /// normals of the base, and of each target at weight 1. If there is no offset, the truth equals r(w).
 ///
-/// An azimuth is the angle around the sum at which an offset points. Azimuths are measured from the edge for which the
-/// offsets of an element differ least between keys. If no edge can be used at every key, they are measured from a
-/// direction that turns along with the sum by the smallest rotation.
+/// An azimuth is the angle around the sum at which an offset points. A key is a target at weight 1. Azimuths are
+/// measured from the edge for which the offsets of an element at all keys differ least from the offset of the base. If
+/// no edge can be used at every key, they are measured from a direction that turns along with the sum by the smallest
+/// rotation.
 ///
 /// Unknown    If no target stores normals that tell rules apart, the motion of an offset is unknown. The truth is then
 ///            the sum by area, rotated as in the base, and can be computed exactly.
@@ -158,8 +159,8 @@ class AuthorTruth {
 };
 
 /// Returns the true normals of a mesh. If a weighting is requested, the truth consists of sums by this weighting.
-/// Otherwise the truth is found from the stored normals, and vertices at one point whose normals differ at a key become
-/// separate elements. The shading must satisfy the preconditions of the constructor of AuthorTruth.
+/// Otherwise the truth is found from the stored normals, and vertices at one point whose normals differ in a target
+/// become separate elements. The shading must satisfy the preconditions of the constructor of AuthorTruth.
 [[nodiscard]] AuthorTruth author_truth(GltfShading& shading, std::optional<Weighting> asked);
 
 }  // namespace chronormal::inline internal

@@ -70,7 +70,7 @@ std::vector<Vec3d> sums_of_elements(const GltfShading& shading, const AuthorSums
   return result;
 }
 
-// Facts about the vertices of one connected part of the mesh whose sums of face normals are turned by a key.
+// Facts about the vertices of one connected part of the mesh whose sums of face normals a target turns.
 struct PartOfKey {
   std::vector<float> turned, off;  // radians: the turn of each vertex that turns, and the error of its normal
   double together = 0, of_surface = 0, of_stored = 0;
@@ -162,7 +162,7 @@ bool split_by_keys(GltfShading& shading) {
   std::vector<std::uint32_t> first_of = vertex_of;
   for (const std::size_t k : targets) {
     const StoredKey key(shading, k);
-    // Lists, for each class that this key splits, one vertex of each new class.
+    // Lists, for each class that this target splits, the first vertex of each new class.
     std::vector<std::vector<std::uint32_t>> apart;
     std::vector<std::uint32_t> apart_of;
     for (const std::uint32_t v : sharing) {

@@ -56,9 +56,9 @@ class StaleKeys {
   std::vector<StaleKey> list_;
 };
 
-/// Gives vertices at one point separate elements if their base normals agree but their normals at a key differ, as at
-/// an edge that is hard in a single target only. Ignores stale keys. The groups of the shading must have their corners.
-/// Returns true if any element was split.
+/// Gives vertices at one point separate elements if their base normals agree but their normals in a target differ, as
+/// at an edge that is hard in a single target only. Ignores targets on parts of the mesh on which they are stale. The
+/// groups of the shading must have their corners. Returns true if any element was split.
 bool split_by_keys(GltfShading& shading);
 
 }  // namespace chronormal::inline internal

@@ -243,7 +243,8 @@ TEST(Certificates, are_half_a_turn_where_the_normal_vanishes_and_say_when) {
     EXPECT_EQ(bounds_of(scheme, moving(kFlat, turned)).upper, std::numbers::pi) << scheme;
   }
   // The unit normals at both ends are opposite, so a weighted sum of them is zero at t = 1/2, and changes its direction
-  // abruptly there. n(t) changes its direction abruptly at t = 1/4.
+  // abruptly there. For the schemes below, the bound is largest at t = 1/4 instead, where n(t) changes its direction
+  // abruptly.
   for (const char* const scheme : {"polynomial", "rational", "slerp", "quaternion:optimal", "circle"}) {
     const ErrorBounds bounds = bounds_of(scheme, moving(kFlat, turned));
     EXPECT_NEAR(bounds.from, 0.25, 1e-6) << scheme;

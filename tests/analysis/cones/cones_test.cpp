@@ -199,8 +199,8 @@ TEST(Cones, leave_out_control_normals_that_are_zero) {
     EXPECT_NEAR(half_angle(cones[i]) * kDegreesPerRadian, 45, 3e-4);
     EXPECT_GE(half_angle(cones[i]) * kDegreesPerRadian, 45);
   }
-  // On the first half of the interval, the control normals of element 1 are {zero, zero, x}. On the second half, none
-  // of its control normals is zero.
+  // On the first half of the interval, the control normals of element 1 are {zero, zero, x / 4}. On the second half,
+  // none of its control normals is zero.
   normal_cones(normals, 0, 0.5, cones);
   EXPECT_EQ(cones[1].axis, (Vec3f{1, 0, 0}));
   normal_cones(normals, 0.5, 1, cones);

@@ -262,7 +262,7 @@ TEST(GltfNotes, strict_and_lenient_readers_differ_by_notes_alone) {
     } else {
       ++noted;
       ASSERT_FALSE(strictly.errors.empty()) << file->notes()[0].text() << text;
-      // A file with notes can still be edited and written: its arrays remain where other programs look for them.
+      // GltfEdit must be able to write the file again, although the reader gave notes on it.
       ASSERT_TRUE(GltfEdit(*file).bytes("").ok());
     }
   }

@@ -68,7 +68,7 @@ TEST(ReadPly, passes_over_what_is_not_ours_in_any_order) {
 }
 
 // Makes an ASCII PLY file of three vertices with velocities. first, second and third are the names of the velocity
-// properties, and `type` is the type of the second. Other properties are between them.
+// properties, and `type` is the type of the second velocity property. Other properties are between these three.
 std::string moving_file(const std::string& first, const std::string& second, const std::string& third,
                         const std::string& type = "float") {
   return "ply\nformat ascii 1.0\nelement vertex 3\nproperty " + type + " " + second +

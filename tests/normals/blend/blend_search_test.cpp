@@ -159,9 +159,9 @@ double worst_found(const Start& start_at, int starts, int steps, BlendPath path)
   return worst;
 }
 
-// Returns the share of the guaranteed error that the search must reach, so that it is strong enough. On the path by
-// terms, errors are larger, because terms are stored in float32. On the path by positions, only the result is rounded
-// to float32.
+// Returns the share of the guaranteed error that the search must at least find, since a search that finds only small
+// errors proves nothing. On the path BlendPath::kTerms, errors are larger, because terms are stored in float32. On the
+// path by positions, only the result is rounded to float32.
 double least_of_a_search(BlendPath path) { return path == BlendPath::kTerms ? 0.3 : 0.04; }
 
 TEST(BlendNormals, keep_the_promise_in_the_worst_cases_that_a_search_finds) {

@@ -134,7 +134,8 @@ RC_GTEST_PROP(GroupNormals, any_scale_gives_its_square, ()) {
 }
 
 RC_GTEST_PROP(GroupNormals, a_rotation_by_quarter_turns_rotates_them_bit_for_bit, ()) {
-  // The cyclic permutation x -> y -> z -> x and a half turn about x are rotations that cause no rounding errors.
+  // The map from (x, y, z) to (z, -x, -y) is a cyclic permutation of the axes, followed by a half turn about x. This
+  // rotation causes no rounding errors.
   const Motion motion = any_mesh(1, *rc::gen::arbitrary<std::uint64_t>(), *rc::gen::arbitrary<bool>());
   const auto turned = [](const Vec3d& v) { return Vec3d{v.z, -v.x, -v.y}; };
   const auto before = vertex_controls(motion);

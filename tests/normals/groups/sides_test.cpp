@@ -66,7 +66,8 @@ TEST(Sides, sheets_with_vertices_of_their_own_share_none_and_seams_still_do) {
   for (int draw = 0; draw < 30; ++draw) {
     const Sheet sheet(random);
     const std::size_t triangles = sheet.corners.size() / 3;
-    // Some corners get a copy of their point as an own vertex, separately on each side. The faces are in random order.
+    // Some corners get a vertex of their own, which is a copy of their point. The two sides choose these corners
+    // separately. The faces are in random order.
     std::vector<Point> places;
     std::vector<int> side_of;
     std::vector<std::uint32_t> point_of, corners;

@@ -528,7 +528,7 @@ TEST(Recompute, a_collapse_takes_the_limit_and_nothing_at_all_is_zero_and_counte
 
 TEST(Recompute, a_line_for_ever_is_no_direction_made_of_rounding) {
   // Corner c is on the line through a and b at both ends, and therefore at every t. At t = 0.3, rounding in double puts
-  // it slightly beside the line.
+  // corner c slightly beside the line.
   const std::vector<fixtures::Point> from = {{0, 0, 0}, {1, 2, 3}, {3, 6, 9}};
   const std::vector<fixtures::Point> to = {{0, 0, 0}, {5, 7, 11}, {15, 21, 33}};
   const Motion motion = fixtures::make_motion(fixtures::make_soup(1), from, to);

@@ -78,7 +78,8 @@ TEST(Weighting, at_the_corner_of_a_box_of_unequal_sides) {
 }
 
 TEST(Weighting, max_is_exact_on_a_sphere) {
-  // Nelson Max's theorem holds for every fan of triangles around a point on a sphere, even an irregular fan.
+  // By Nelson Max's theorem, his weighting gives the exact normal of a sphere for every fan of triangles around a point
+  // on the sphere, even for an irregular fan.
   fixtures::Random random(5);
   for (int round = 0; round < 100; ++round) {
     std::vector<Point> points = {{0, 0, 1}};
