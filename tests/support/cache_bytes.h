@@ -224,7 +224,8 @@ struct ZipMember {
   return end.bytes() + comment;
 }
 
-/// Makes an .npz file of a motion with every array that a motion may have. Each array has a different type.
+/// Makes an .npz file of a motion with the arrays `positions`, `faces` and `times`, and with an array that the reader
+/// does not know. Each array has a different type.
 [[nodiscard]] inline std::string small_npz(bool is_deflated) {
   return zip({{"positions.npy", npy(npy_header("<f4", "(2, 3, 3)"), raw(turning_elements<float>(false))), is_deflated},
               {"other.npy", npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': ()}", "abcd")},

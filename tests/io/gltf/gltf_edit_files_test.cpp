@@ -32,8 +32,8 @@ using test::take_apart;
 using test::TemporaryFolder;
 using Json = nlohmann::json;
 
-// Makes a document with two triangles, whose arrays are in two buffers with one view each. Some bytes of the second
-// buffer are unused.
+// Makes a document with a triangle that has one target. The positions and the deltas are in two buffers with one view
+// each. Some bytes of the second buffer are unused.
 GltfBuilder two_buffers(const std::string& first, const std::string& second) {
   GltfBuilder builder;
   builder.json["buffers"] = {{{"byteLength", 36}, {"name", "one"}, {"extras", "\xC3\xA9"}}, {{"byteLength", 41}}};

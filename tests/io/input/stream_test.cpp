@@ -32,14 +32,15 @@ using test::TemporaryFolder;
 
 constexpr std::uint32_t kSide = 8;
 
-// Makes a wavy sheet with a seam: two columns of vertices coincide until they separate in the last keyframe.
+// Makes a wavy sheet with a seam, at which two columns of vertices coincide. In the last keyframe, the vertices at one
+// end of the seam separate.
 Motion wave(std::size_t keyframes) {
   Motion motion;
   std::vector<std::uint32_t> corners;
   for (std::uint32_t y = 0; y + 1 < kSide; ++y) {
     for (std::uint32_t x = 0; x + 1 < kSide; ++x) {
       const std::uint32_t v = y * kSide + x;
-      if (x == 3) continue;  // columns 2 and 3 have the same x
+      if (x == 3) continue;  // columns 3 and 4 have the same x
       corners.insert(corners.end(), {v, v + 1, v + kSide, v + 1, v + kSide + 1, v + kSide});
     }
   }

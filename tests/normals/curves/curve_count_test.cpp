@@ -17,8 +17,9 @@
 namespace chronormal::curve_count_test {
 namespace {
 
-// Counts the faces of a segment in ranges of `together` faces, by the bytes and the degrees of their curves. Compares
-// the result with the counts that NormalCurves and face_control_normals() give.
+// Counts the bytes and the flagged elements of the curves of a segment, in ranges of `together` faces, and compares the
+// counts with NormalCurves. Also compares the control normals that the count returns with those of
+// face_control_normals().
 void expect_same(const Segment& segment, std::size_t together, const char* name) {
   const std::size_t faces = segment.topology->face_count();
   const NormalCurves curves = NormalCurves::of_faces(segment);

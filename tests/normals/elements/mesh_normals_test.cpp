@@ -228,7 +228,8 @@ TEST(MeshNormals, what_does_not_fit_is_refused_with_its_place) {
 
 // ---- ranges of elements, threads, output formats --------------------------------------------------------------------
 
-// Makes a mesh with seams, whose vertices and faces are in random order. Some faces are thin, and some collapse.
+// Makes a mesh whose faces are in random order. At t = 1, some vertices are at the positions of other vertices, so some
+// faces are thin, and some collapse.
 Motion hard_mesh(Random& random, std::uint32_t cells) {
   Motion motion = fixtures::smooth_morph(cells);
   auto& from = motion.keyframes[0].positions;

@@ -161,8 +161,8 @@ RC_GTEST_PROP(GroupNormals, time_reversal_swaps_the_ends_bit_for_bit, ()) {
 RC_GTEST_PROP(GroupNormals, shuffled_faces_give_the_same_bits, ()) {
   const auto seed = *rc::gen::arbitrary<std::uint64_t>();
   Motion motion = any_mesh(1, seed, *rc::gen::arbitrary<bool>());
-  // Every face occurs twice in the new mesh. In half of the second copies, the list of corners begins with another
-  // corner.
+  // Every face occurs twice in the new mesh. The first copies of the faces are in random order, and their lists of
+  // corners begin with another corner.
   auto order = test::shuffled_order(motion.topology.face_count(), seed);
   const std::size_t face_count = order.size();
   for (std::size_t i = 0; i < face_count; ++i) order.push_back(i);

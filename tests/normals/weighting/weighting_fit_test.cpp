@@ -26,8 +26,8 @@ namespace {
 using fixtures::Point;
 using reference::Real;
 
-// Makes a closed fan of `count` triangles around vertex 0. Vertex 0 moves by up to `distance`, so normals at different
-// times may have any angle between them.
+// Makes a closed fan of `count` triangles around vertex 0. Each coordinate of each vertex moves by up to `distance`, so
+// normals at different times may have any angle between them.
 Motion fan(std::size_t count, double distance, fixtures::Random& random) {
   std::vector<Point> from = {random.in_cube(0.3)}, to;
   std::vector<std::uint32_t> corners;

@@ -31,8 +31,8 @@ struct Pairs {
 
 Vec3d to_vector(const fixtures::Point& p) { return {p[0], p[1], p[2]}; }
 
-// Makes pairs of vectors with angles from 0 to 180 degrees and lengths from 1e-60 to 1e60, and pairs with vectors of
-// length zero.
+// Makes pairs of vectors with angles from 0 to 180 degrees and lengths from 1e-60 to 1e60, and pairs with vectors that
+// are zero, infinite or NaN.
 Pairs hard_pairs() {
   fixtures::Random random(24);
   Pairs pairs;

@@ -273,7 +273,7 @@ TEST(GroupTiles, take_a_vertex_of_many_faces) {
 }
 
 TEST(GroupTiles, have_no_noise_where_faces_cancel) {
-  // Every face occurs twice, in both orientations and in random order. In the second case, three faces occur once more.
+  // Every face occurs twice, once in each orientation. In the second case, three faces occur once more.
   for (const std::size_t more : {std::size_t{0}, std::size_t{3}}) {
     Motion motion = fixtures::shaken(fixtures::icosphere(1), 0.3, 7);
     std::vector<std::uint32_t> corners(motion.topology.corners().begin(), motion.topology.corners().end());
