@@ -527,12 +527,12 @@ TEST_F(AuditCli, advice_never_is_what_was_done_or_cannot_help) {
   std::string advice = last_line(text_of("still_baked.glb"));
   expect_words(advice, {"were baked before", "that no animation moves"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // This bake stores a single delta for each target, although the animation could drive correction targets.
+  // The bake below stores a single delta for each target, although the animation could drive correction targets.
   bake("sheet.glb -o endpoint.glb --encode endpoint -q");
   advice = last_line(text_of("endpoint.glb"));
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --encode exact"});
   EXPECT_EQ(advice.find("chronormal bake"), std::string::npos);
-  // This bake is for all viewers. A bake for fewer viewers would allow smaller errors.
+  // The bake below is for all viewers. A bake for fewer viewers would allow smaller errors.
   bake("sheet.glb -o alike.glb -q");
   advice = last_line(run("alike.glb --tolerance 1e-6").out);
   expect_words(advice, {"were baked before", "bake the ORIGINAL file with --for"});

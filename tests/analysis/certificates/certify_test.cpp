@@ -484,7 +484,7 @@ class Silent final : public Scheme {
   std::size_t count_ = 0;
 };
 
-// Measures the errors of a scheme at 400 samples and fails if an error exceeds its bound. Returns the largest error, in
+// Measures the errors of a scheme at 401 times and fails if an error exceeds its bound. Returns the largest error, in
 // radians, over all elements with a bound below half a turn, and adds the number of these elements to `known`.
 double held_against_samples(Scheme& scheme, std::size_t& known) {
   double largest = 0;

@@ -210,7 +210,8 @@ TEST(GltfHuge, hundred_thousand_channels_are_read_in_a_breath) {
   }
 }
 
-// A fixture that finds the invalid files of other projects, and skips the test if they are missing.
+// A fixture that finds the invalid files of other projects, and skips the test if CHRONORMAL_DATA does not name their
+// folder.
 class HostileData : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -359,7 +359,8 @@ TEST(GltfStep, holds_still_between_keys_and_jumps_at_them) {
     EXPECT_EQ(from.positions, held[s]);
     EXPECT_EQ(to.positions, held[s]);
   }
-  // A key between the first and the last becomes two keyframes: just before the key and just after it.
+  // A key of a STEP track between the first and the last key becomes two keyframes: one just before the time of the key
+  // and one just after.
   EXPECT_EQ(std::count_if(motion.keyframes.begin(), motion.keyframes.end(), [](const auto& k) { return k.time == 1; }),
             2);
 }

@@ -35,7 +35,8 @@ GltfMotion cut(const Spline& spline, double tolerance) {
   return motion ? std::move(motion).value() : GltfMotion{};
 }
 
-// Returns the largest distance between a vertex of the motion and its true position on the spline, at a thousand times.
+// Returns the largest distance between a vertex of the motion and its true position on the spline, at 1,001 equidistant
+// times.
 double largest_distance(const Spline& spline, const Motion& motion) {
   double largest = 0;
   const double first = spline.times.front(), last = spline.times.back();

@@ -87,7 +87,8 @@ TEST(Rings, with_too_many_points_are_left_out) {
 }
 
 TEST(Rings, of_few_triangles_are_those_of_any_polygons) {
-  // A square far away turns the triangle mesh into a mesh of polygons. The other faces are the same.
+  // A square of vertices 8 to 11, which no other face has, turns the triangle mesh into a mesh of polygons. All other
+  // faces stay the same.
   fixtures::Random random(17);
   for (int i = 0; i < 200; ++i) {
     std::vector<std::uint32_t> corners;
