@@ -321,8 +321,8 @@ std::string fault_in_bytes(const NamedWay& way, const std::vector<double>& times
   return "";
 }
 
-// Compares the normals of all elements at all times with true normals from integers. Describes the first fault, or
-// returns "".
+// Compares the normals of all elements at all times with true normals that are computed in integers. Describes the
+// first fault, or returns "".
 std::string fault_in_directions(double tolerance, const std::vector<double>& times, const std::vector<Normals>& found,
                                 const IntegerNormals& oracle, const NormalGroups* groups) {
   for (std::size_t i = 0; i < times.size(); ++i) {

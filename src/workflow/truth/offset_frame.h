@@ -31,8 +31,8 @@ struct OffsetEdge {
   std::uint32_t from = 0, to = 0;
 };
 
-/// Returns the mean angle, in radians, between z and the edges. The edges leave the point whose unit sum of face
-/// normals is z. Returns 1 if there is no edge.
+/// Returns the mean angle, in radians, between z and the edges, where z is the unit sum of face normals at the point
+/// that all edges leave. Returns 1 if there is no edge.
 template <class PositionOf>
 [[nodiscard]] double mean_edge_angle(std::span<const OffsetEdge> edges, const Vec3d& z, const PositionOf& position) {
   double sum = 0;

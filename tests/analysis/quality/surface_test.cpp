@@ -82,7 +82,8 @@ TEST(Surface, a_sheet_that_is_there_twice_is_doubled_and_not_wound_against_itsel
 }
 
 TEST(Surface, doubled_faces_are_told_from_those_back_to_back) {
-  // Faces 1 and 3 are copies of face 0, and face 2 is its back. Face 4 uses a vertex twice and is ignored.
+  // Faces 1 and 3 are copies of face 0, and face 2 has the corners of face 0 in reverse order. Face 4 uses a vertex
+  // twice and is ignored.
   const Surface surface = survey_triangles(4, {0, 1, 2, 1, 2, 0, 0, 2, 1, 2, 0, 1, 0, 0, 1, 1, 2, 3});
   EXPECT_EQ(surface.doubled_faces, (Found{2, 1}));
   EXPECT_EQ(surface.back_to_back, (Found{1, 0}));
@@ -101,8 +102,8 @@ TEST(Surface, polygons_lie_on_each_other_only_with_the_same_outline) {
   };
   EXPECT_EQ(pair({3, 2, 0, 1}).doubled_faces, (Found{1, 1}));
   EXPECT_EQ(pair({3, 1, 0, 2}).back_to_back, (Found{1, 0}));
-  // The outlines of the four polygons below cross themselves. Each has the points of the first polygon, but is neither
-  // its copy nor its back.
+  // The outlines of the four polygons below cross themselves. Each has the points of the first polygon, but not the
+  // same four edges, so it counts neither as a copy nor as a reversed copy.
   for (const Corners& crossed : {Corners{0, 3, 1, 2}, Corners{0, 1, 2, 3}, Corners{2, 1, 0, 3}, Corners{3, 0, 2, 1}}) {
     EXPECT_EQ(pair(crossed).back_to_back, Found{});
     EXPECT_EQ(pair(crossed).doubled_faces, Found{});
@@ -232,7 +233,8 @@ TEST(Surface, agrees_with_a_count_by_hand_on_any_mesh) {
     RC_ASSERT(surface.unreferenced.count == topology.vertex_count() - used.size());
     RC_ASSERT(surface.repeating_faces.count == repeating);
     RC_ASSERT(surface.pieces == pieces.size());
-    // Each later face with the same points as an earlier face is either a copy of that face or its back.
+    // Each later face with the same points as an earlier face is either a copy of that face or has its corners in
+    // reverse order.
     RC_ASSERT(surface.doubled_faces.count <= pairs);
     RC_ASSERT(surface.doubled_faces.count + surface.back_to_back.count >= pairs);
   });

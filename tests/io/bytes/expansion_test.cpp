@@ -144,7 +144,8 @@ TEST(Expansion, of_compressed_views_is_asked_for_before_they_are_decompressed) {
 }
 
 // The files begin with "DRACO", version 2.2, and a mesh without metadata. In the sequential encoding, the number of
-// faces follows immediately. In the edgebreaker encoding, a byte and the number of vertices precede it.
+// faces follows immediately. In the edgebreaker encoding, a byte and the number of vertices precede the number of
+// faces.
 TEST(Expansion, of_faces_that_a_draco_mesh_declares_is_asked_for_before_it_is_decoded) {
   const std::string many("\xFF\xFF\xFF\x7F", 4), few("\x03", 1), head("DRACO\x02\x02\x01", 8), no_flags("\0\0", 2);
   for (const std::string& coded :

@@ -1,4 +1,5 @@
-// Reads files of other projects. Skipped unless the environment variable CHRONORMAL_DATA names their folder.
+// Reads files of other projects. The tests are skipped unless the environment variable CHRONORMAL_DATA names their
+// folder.
 #include <gtest/gtest.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Checks that one weighting and one grouping of chronormal reproduce the normals that other tools store. Skipped unless
-// the environment variable CHRONORMAL_DATA names the folder of their files.
+// Checks that one weighting and one grouping of chronormal reproduce the normals that other tools store. The tests are
+// skipped unless the environment variable CHRONORMAL_DATA names the folder of their files.
 
 #include <gtest/gtest.h>
 
